@@ -1,0 +1,45 @@
+"""The one type for everything that tltlc has to say about a source text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from tltlc.source import SourceFile, Span
+
+Severity = Literal["error", "warning", "note"]
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A place in a source, with an optional short remark printed under its caret."""
+
+    source: SourceFile
+    span: Span
+    message: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """A message: what happened (title), where (labels, the first is the main one), one way out (help).
+
+    ``code`` is one of the closed list in :mod:`tltlc.diagnostics.codes`.
+    """
+
+    code: str
+    title: str
+    labels: tuple[Label, ...] = ()
+    help: str | None = None
+    severity: Severity = field(default="error")
+
+
+class TltlError(Exception):
+    """Raised where a stage cannot go on; carries every diagnostic found so far.
+
+    ``diagnostics`` is never empty and holds at least one error.
+    """
+
+    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+        self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)
+        super().__init__("; ".join(f"{d.code}: {d.title}" for d in self.diagnostics))

@@ -1,0 +1,325 @@
+"""The syntax tree: frozen nodes with spans, as close to the text as the later stages need.
+
+Formulas and arithmetic share one expression grammar, typed only by :mod:`tltlc.resolve`, since
+LALR(1) cannot tell the two apart before the end of a bracket.  Operators are stored under one
+canonical spelling each: ``not and or implies iff F G X N U W R M then`` and ``+ - * / ^ < <= > >=``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Union
+
+from tltlc.source import SourceFile, Span
+
+# --- expressions ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A literal, with the unit written behind it (``m``, ``%``, ``steps``, …) or none; ``inf`` is one."""
+
+    value: float
+    unit: str | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """``true`` or ``false``."""
+
+    value: bool
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A name without brackets behind it; may be dotted."""
+
+    name: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """One argument of a call; ``name`` where it is given by keyword."""
+
+    name: str | None
+    value: Expr
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """``name(arguments)``: a predicate, a signal of an entity, a ``let`` or a function."""
+
+    name: str
+    arguments: tuple[Argument, ...]
+    name_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """``[low, high]`` of a temporal operator, in samples or seconds; ``low`` is None for ``within`` and ``for``."""
+
+    low: Number | None
+    high: Number
+    span: Span
+    words: bool
+    """True for ``within 20 steps``, ``for 20 steps``, ``after 3 steps``, False for ``F[0,20]``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """``-`` or ``not`` or a temporal operator ``F G X N`` before an operand, with a bound or none."""
+
+    op: str
+    operand: Expr
+    bound: Bound | None
+    op_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """An infix operator between two operands."""
+
+    op: str
+    left: Expr
+    right: Expr
+    op_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """An expression in round brackets: kept, because ``then`` asks for them."""
+
+    inner: Expr
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Quantified:
+    """``all x in (s1, s2): body`` (``all`` True) or ``any x in (…): body``."""
+
+    all: bool
+    variable: str
+    entities: tuple[Name, ...]
+    body: Expr
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class WhenCase:
+    """``when condition: value``."""
+
+    condition: Expr
+    value: Expr
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class When:
+    """A case distinction; only in predicates."""
+
+    cases: tuple[WhenCase, ...]
+    otherwise: Expr
+    span: Span
+
+
+Expr = Union[Number, Constant, Name, Call, Unary, Binary, Group, Quantified, When]
+
+# --- declarations -----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """``import stealth``, ``import stealth (near, alive)``, ``import stealth as st``, ``import "file.tltl"``."""
+
+    target: str
+    is_path: bool
+    names: tuple[Name, ...] | None
+    alias: str | None
+    target_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """``in [low, high]``; the limits are constant expressions (``-1``, ``2 m``, ``inf``)."""
+
+    low: Expr
+    high: Expr
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """``name: type = default`` in the head of a signal, predicate or ``let``."""
+
+    name: str
+    type: str | None
+    default: Expr | None
+    name_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class SignalDecl:
+    """``signal distance(target: entity): length in [0 m, inf]``; ``type`` is None for a bare ``in``."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    type: str | None
+    interval: Interval | None
+    doc: str
+    name_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class EntityDecl:
+    """``entity a, b``."""
+
+    names: tuple[Name, ...]
+    doc: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ParamDecl:
+    """``param level_size: length in [2 m, 10 km] = 20 m``."""
+
+    name: str
+    type: str | None
+    interval: Interval | None
+    value: Expr
+    doc: str
+    name_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ClockDecl:
+    """``clock 20 Hz`` or ``clock 0.05 s``."""
+
+    value: Number
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class PredicateDecl:
+    """``predicate near(target: entity) in [-1, 1] = expression``."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    interval: Interval | None
+    body: Expr
+    doc: str
+    name_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class LetDecl:
+    """``let name(parameters) = formula``."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    body: Expr
+    doc: str
+    name_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class ExclusiveDecl:
+    """``exclusive A, B, …``."""
+
+    atoms: tuple[Expr, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """A line of a spec.
+
+    ``kind`` is one of ``reach keep avoid require`` (``value`` an expression), ``level judge semantics``
+    (``value`` a Name), ``limit`` (``value`` a Number), ``tag`` (``value`` a tuple of Names).
+    """
+
+    kind: str
+    value: Expr | tuple[Name, ...]
+    doc: str
+    keyword_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class SpecDecl:
+    """``spec NAME { clauses }``; ``spec NAME = FORMULA`` holds one ``require`` and ``block`` False."""
+
+    name: str
+    clauses: tuple[Clause, ...]
+    block: bool
+    doc: str
+    name_span: Span
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class TestStep:
+    """``step 3x alive, not near(s1)``."""
+
+    times: int
+    atoms: tuple[Expr, ...]
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class TestExpect:
+    """``expect pending``, ``expect progress >= 0.5``, ``expect state "G p"``.
+
+    ``kind`` is ``verdict``, ``progress`` or ``state``; ``value`` the verdict, the number or the label;
+    ``comparison`` one of ``< <= > >=`` for progress, else None.
+    """
+
+    kind: str
+    value: str | float
+    comparison: str | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class TestDecl:
+    """``test "…" for SPEC { step … expect … }``."""
+
+    title: str
+    spec: Name
+    items: tuple[Union[TestStep, TestExpect], ...]
+    doc: str
+    span: Span
+
+
+Declaration = Union[
+    Import, SignalDecl, EntityDecl, ParamDecl, ClockDecl, PredicateDecl, LetDecl, ExclusiveDecl, SpecDecl, TestDecl
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """A ``//`` or ``///`` comment with its slashes, for tools that print the text back."""
+
+    text: str
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """One source file, parsed: its declarations in order and its comments in order."""
+
+    source: SourceFile
+    declarations: tuple[Declaration, ...]
+    comments: tuple[Comment, ...]

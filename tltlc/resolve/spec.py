@@ -1,0 +1,123 @@
+"""What a specification means once every name, type and unit is settled: the compiler's middle.
+
+Nothing here points back to the syntax tree, except by span for messages.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from tltlc.expression import Expression
+from tltlc.logic.formula import Formula
+from tltlc.source import SourceFile, Span
+
+ValueType = Literal["number", "ratio", "length", "time", "speed", "angle", "bool"]
+Judge = Literal["goal", "limit"]
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """A number that the game supplies at each step, in SI units; None is an open end of the range."""
+
+    name: str
+    type: ValueType
+    low: float | None
+    high: float | None
+    doc: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Param:
+    """A constant, in SI units, that may be overridden within its range when the automaton is loaded."""
+
+    name: str
+    type: ValueType
+    value: float
+    low: float | None
+    high: float | None
+    doc: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """An atom: holds iff its expression, with values in [-1, 1], is > 0."""
+
+    name: str
+    expression: Expression
+    doc: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One conjunct of a spec's formula and the clause that it came from, so that errors can name it."""
+
+    formula: Formula
+    source: SourceFile
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Spec:
+    """A specification, ready for the automaton.
+
+    ``atoms`` are those of the formula in order of appearance, then those only in ``exclusive``.
+    ``exclusive`` holds groups of indices into ``atoms``; ``signals`` and ``params`` are those that
+    the atoms use, in order of first use.  ``judge`` is None where no clause decides
+    (semantics, section 4).  ``clock_s`` is the sampling period in seconds, or None.
+    """
+
+    name: str
+    doc: str
+    formula: Formula
+    parts: tuple[Part, ...]
+    atoms: tuple[Atom, ...]
+    signals: tuple[Signal, ...]
+    params: tuple[Param, ...]
+    exclusive: tuple[tuple[int, ...], ...]
+    level: str | None
+    limit_steps: int | None
+    judge: Judge | None
+    semantics: Literal["finite", "infinite"]
+    tags: tuple[str, ...]
+    clock_s: float | None
+    source: SourceFile
+    name_span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One line of a test: the atoms that hold (the others are false), repeated ``times``."""
+
+    times: int
+    holds: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Expect:
+    """What must hold of the prefix so far; fields as in :class:`tltlc.grammar.tree.TestExpect`."""
+
+    kind: Literal["verdict", "progress", "state"]
+    value: str | float
+    comparison: str | None
+    source: SourceFile
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Test:
+    """A ``test`` block of a spec."""
+
+    title: str
+    spec: str
+    items: tuple[Step | Expect, ...]
+    source: SourceFile
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A resolved file: its own specs and tests, in order."""
+
+    specs: tuple[Spec, ...]
+    tests: tuple[Test, ...]
