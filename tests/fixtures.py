@@ -1,0 +1,95 @@
+"""Automata written by hand, for tests that must not depend on the construction."""
+
+from __future__ import annotations
+
+from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text
+from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.resolve import spec
+
+
+def cover_and_hide() -> Fspa:
+    """The automaton of Fig. 3 of the paper, with the three buttons exclusive and a limit of 400 steps.
+
+    States: 0 the whole formula, 1 the first button pressed, 2 the trap, 3 both pressed, 4 the goal.
+    """
+    a, b, c, p = "near(s1)", "near(s2)", "near(exit)", "alive"
+    whole = Text(
+        f"F ({a} & X F ({b} & X F {c})) & G {p}",
+        f"◇({a} ∧ ○◇({b} ∧ ○◇{c})) ∧ □{p}",
+        f"Eventually {a}, then {b}, then {c}; and always {p}.",
+    )
+    second = Text(
+        f"F ({b} & X F {c}) & G {p}", f"◇({b} ∧ ○◇{c}) ∧ □{p}", f"Eventually {b}, then {c}; and always {p}."
+    )
+    third = Text(f"F {c} & G {p}", f"◇{c} ∧ □{p}", f"Eventually {c}; and always {p}.")
+    goal = Text(f"G {p}", f"□{p}", f"Always {p}.")
+    trap = Text("false", "⊥", "Never.")
+    dead = Guard(f"!{p}", (((3, False),),))
+    safe = Guard(p, (((3, True),),))
+    return Fspa(
+        name="cover_and_hide",
+        doc="Button 1, then button 2, then the exit, without dying.",
+        formula=whole,
+        level="cover_and_hide",
+        limit_steps=400,
+        judge="goal",
+        semantics="finite",
+        tags=("paper",),
+        clock_s=0.05,
+        signals=(
+            *(spec.Signal(f"distance({entity})", "length", 0.0, None) for entity in ("s1", "s2", "exit")),
+            spec.Signal("health", "ratio", 0.0, 1.0),
+        ),
+        params=(spec.Param("level_size", "length", 20.0, 2.0, 10_000.0),),
+        atoms=(
+            *(spec.Atom(f"near({entity})", near(f"distance({entity})")) for entity in ("s1", "s2", "exit")),
+            spec.Atom(p, Signal("health"), "The character has health left."),
+        ),
+        exclusive=((0, 1, 2),),
+        states=(
+            State(0, whole, False, "pending", 3),
+            State(1, second, False, "pending", 2),
+            State(2, trap, False, "violated", None),
+            State(3, third, False, "pending", 1),
+            State(4, goal, True, "holding", 0),
+        ),
+        edges=(
+            Edge(0, 0, _stay(0, a)),
+            Edge(0, 1, _advance(0, a)),
+            Edge(0, 2, dead),
+            Edge(1, 1, _stay(1, b)),
+            Edge(1, 2, dead),
+            Edge(1, 3, _advance(1, b)),
+            Edge(2, 2, Guard("true", ((),))),
+            Edge(3, 2, dead),
+            Edge(3, 3, _stay(2, c)),
+            Edge(3, 4, _advance(2, c)),
+            Edge(4, 2, dead),
+            Edge(4, 4, safe),
+        ),
+        spec_size=3,
+    )
+
+
+def near(distance: str, close: float = 1.0, far: str = "level_size") -> Expression:
+    """Eq. 2 of the paper: 1 at the target, 0 at ``close``, -1 from ``far`` on."""
+    d, reach, one = Signal(distance), Param(far), Const(1.0)
+    share = Op("/", (Op("-", (reach, d)), Op("-", (reach, Const(close)))))
+    return When(
+        (
+            (Condition("<", (d, Const(close))), Op("-", (one, Op("/", (d, Const(close)))))),
+            (Condition("<=", (d, reach)), Op("-", (Op("^", (share, Const(2.0))), one))),
+        ),
+        Const(-1.0),
+    )
+
+
+def _advance(goal: int, name: str) -> Guard:
+    return Guard(f"{name} & alive", (((goal, True), (3, True)),))
+
+
+def _stay(goal: int, name: str) -> Guard:
+    """Alive and not at the goal; the primes with the other two buttons come from their exclusivity."""
+    others = [((other, True), (3, True)) for other in range(3) if other != goal]
+    primes = sorted([((goal, False), (3, True)), *others])
+    return Guard(f"!{name} & alive", tuple(primes))
