@@ -1,0 +1,1 @@
+"""Tests of the formulas, their laws and their texts."""

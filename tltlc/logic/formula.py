@@ -54,6 +54,19 @@ class Formula:
                     seen.add(argument)
                     stack.append(argument)
 
+    def bottom_up(self) -> Iterator[Formula]:
+        """Every distinct subformula, each after its operands, this one last, without recursion."""
+        seen: set[Formula] = set()
+        stack = [(self, False)]
+        while stack:
+            node, operands_done = stack.pop()
+            if operands_done:
+                yield node
+            elif node not in seen:
+                seen.add(node)
+                stack.append((node, True))
+                stack.extend((argument, False) for argument in reversed(node.args))
+
     def atoms(self) -> tuple[str, ...]:
         """The names of the atoms, in the order in which they stand in the formula."""
         return tuple(node.name for node in self.walk() if node.op == "atom")
@@ -170,6 +183,11 @@ def then(left: Formula, right: Formula) -> Formula:
     """
     rest = right if right.op == "F" else eventually(right)
     return eventually(and_(left, next_(rest)))
+
+
+def temporal(op: Op, operands: tuple[Formula, ...]) -> Formula:
+    """The temporal operator ``op`` over its one or two operands."""
+    return _intern(op, operands)
 
 
 def rebuild(formula: Formula, args: tuple[Formula, ...]) -> Formula:

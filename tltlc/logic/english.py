@@ -1,0 +1,276 @@
+"""A formula as one English sentence: what the player or the agent has to do, in the imperative."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from tltlc.logic import formula as build
+from tltlc.logic.formula import FALSE, TRUE, Formula
+from tltlc.logic.notation import ASCII, Notation, write
+
+_PHRASE: Final = Notation(
+    {"not": "not "},
+    {"and": " and ", "or": " or ", "implies": " implies ", "iff": " exactly when "},
+    {"true": "true", "false": "false"},
+    space_before_bracket=True,
+    brackets_between_infix=True,
+)
+_DUAL: Final = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
+
+_PLAIN, _LIST, _SCOPED = 0, 1, 2
+"""How far a clause may be misread beside another: not at all; it has inner commas; it must stand apart."""
+
+_DEEPEST: Final = 4
+"""Clauses nested deeper than this are given as formulas: no sentence of that depth helps a reader."""
+
+_Clause = tuple[str, int]
+
+
+def english_text(formula: Formula) -> str:
+    """The formula as one sentence, from a capital letter to a full stop; atoms stand in it by name.
+
+    ``F(near(s1) & X F near(exit)) & G alive`` reads "Reach near(s1), then near(exit), and keep alive throughout."
+    "Reach" means now or later, "then" strictly later, "throughout" from now to the end.  Sentences
+    that are equal belong to formulas that are equal on all traces.
+    """
+    if formula is TRUE:
+        return "Nothing remains to be done."
+    if formula is FALSE:
+        return "The spec is violated."
+    text, _ = _clause(formula, "now", _DEEPEST)
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _clause(node: Formula, when: str, depth: int) -> _Clause:
+    """What to do so that ``node`` holds at the moment that ``when`` names."""
+    if _is_state(node):
+        return f"{_keep(node, 'have', 'avoid')} {when}", _PLAIN
+    if depth == 0:
+        return f"satisfy {write(node, ASCII)}", _SCOPED
+    bounded = _bounded(node)
+    if bounded is not None:
+        return bounded
+    match node.op:
+        case "not":
+            return _clause(_without_negation(node), when, depth)
+        case "and":
+            return _together([_clause(part, when, depth - (len(node.args) > 1)) for part in _parts(node)])
+        case "or":
+            return "either " + " or ".join(_inner(part, when, depth) for part in _parts(node)), _SCOPED
+        case "implies" if _is_state(node.args[0]):
+            return f"if {_phrase(node.args[0])} {when}, {_inner(node.args[1], when, depth)}", _SCOPED
+        case "implies":
+            return _clause(build.or_(build.not_(node.args[0]), node.args[1]), when, depth)
+        case "iff":
+            left, right = (_inner(part, when, depth) for part in node.args)
+            return f"do both or neither of these: {left}, {right}", _SCOPED
+        case "X" | "N":
+            return _next(node, depth)
+        case "F":
+            return _reach(node, when, depth)
+        case "G":
+            return _throughout(node.args[0], depth)
+        case _:
+            return _until(node, depth)
+
+
+def _parts(conjunction: Formula) -> list[Formula]:
+    """The operands, with those without temporal operators gathered where the first of them stands."""
+    make = build.and_ if conjunction.op == "and" else build.or_
+    parts: list[Formula] = []
+    states = [part for part in conjunction.args if _is_state(part)]
+    for part in conjunction.args:
+        if not _is_state(part):
+            parts.append(part)
+        elif part is states[0]:
+            parts.append(make(*states))
+    return list(dict.fromkeys(parts))
+
+
+def _together(clauses: Sequence[_Clause]) -> _Clause:
+    """The clauses as one list."""
+    texts = [text for text, _ in clauses]
+    if len(texts) == 1:
+        return clauses[0]
+    separator = "; " if any(rank == _SCOPED for _, rank in clauses) else ", "
+    return f"{separator.join(texts[:-1])}{separator}and {texts[-1]}", _SCOPED
+
+
+def _reach(node: Formula, when: str, depth: int) -> _Clause:
+    """``F``: a goal, or a sequence of goals."""
+    steps: list[str] = []
+    while True:
+        body = node.args[0]
+        link, rest = _next_goal(body)
+        if rest is None:
+            steps.append(_goal(body, depth))
+            break
+        steps.append(_phrase(build.and_(*(part for part in body.args if _is_state(part)))) + link)
+        node = rest
+    plain = len(steps) == 1 and _is_literal(node.args[0])
+    later = " then or later" if len(steps) == 1 and when != "now" and _is_state(node.args[0]) else ""
+    if later and not plain:
+        steps = [_bracketed(node.args[0])]
+    return "reach " + "".join(steps) + later, _PLAIN if plain or later else _LIST
+
+
+def _next_goal(body: Formula) -> tuple[str, Formula | None]:
+    """What links ``p & X F q`` or ``p & F q`` to its next goal, and that goal's ``F``; None where none follows."""
+    if body.op != "and":
+        return "", None
+    temporal = [part for part in body.args if not _is_state(part)]
+    if len(temporal) != 1:
+        return "", None
+    (rest,) = temporal
+    if rest.op == "X" and rest.args[0].op == "F":
+        return ", then ", rest.args[0]
+    return (", then or at the same time ", rest) if rest.op == "F" else ("", None)
+
+
+def _goal(body: Formula, depth: int) -> str:
+    """The last goal of a sequence, with what it asks for from there on."""
+    if _is_state(body):
+        return _phrase(body)
+    if body.op == "and":
+        states = [part for part in body.args if _is_state(part)]
+        others = [part for part in body.args if not _is_state(part)]
+        if states:
+            return f"{_bracketed(build.and_(*states))} and from that step on {_inner(build.and_(*others), '', depth)}"
+    return f"a {_step(body, depth)}"
+
+
+def _throughout(body: Formula, depth: int) -> _Clause:
+    """``G``: what to keep, what to avoid, what to do whenever something holds."""
+    if _is_state(body):
+        return _keep(body, "keep", "avoid") + " throughout", _PLAIN
+    left, right = _implication(body)
+    if left is not None and right is not None:
+        return f"whenever {_phrase(left)}, {_inner(right, 'at that step', depth)}", _SCOPED
+    return f"at every step, {_inner(body, 'at that step', depth)}", _SCOPED
+
+
+def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
+    """``body`` as "if the first, which is not temporal, then the second"; None where it has no such form."""
+    if body.op == "implies" and _is_state(body.args[0]):
+        return body.args[0], body.args[1]
+    if body.op == "or":
+        negated = [_negated(part) for part in body.args if _is_state(part)]
+        if negated:
+            return build.and_(*negated), build.or_(*(part for part in body.args if not _is_state(part)))
+    return None, None
+
+
+def _until(node: Formula, depth: int) -> _Clause:
+    """``U W R M``."""
+    left, right = node.args
+    if node.op in ("U", "M"):
+        goal, held = (right, left) if node.op == "U" else (left, right)
+        target = f"reach {_bracketed(goal)}" if _is_state(goal) else f"reach a {_step(goal, depth)}"
+        until = "until then" if node.op == "U" else "up to and including that step"
+        if _is_state(held):
+            return f"{target}, {_keep(held, 'keeping', 'avoiding')} {until}", _SCOPED
+        return f"{target}, and at every step {until} {_inner(held, 'at that step', depth)}", _SCOPED
+    stop, held = (right, left) if node.op == "W" else (left, right)
+    until = "until the first" if node.op == "W" else "up to and including the first"
+    keep = _keep(held, "keep", "avoid") if _is_state(held) else f"at every step, {_inner(held, 'at that step', depth)},"
+    return f"{keep} {until} {_step(stop, depth)}, or throughout if there is none", _SCOPED
+
+
+def _next(node: Formula, depth: int) -> _Clause:
+    """``X`` and ``N``, alone or several in a row."""
+    op, count, body = node.op, 0, node
+    while body.op == op:
+        body, count = body.args[0], count + 1
+    moment = "at the next step" if count == 1 else f"{count} steps later"
+    if op == "X" and body is TRUE:
+        return f"go on for {count} more step{'s' * (count > 1)}", _PLAIN
+    if op == "N" and body is FALSE and count == 1:
+        return "be at the last step", _PLAIN
+    if op == "N":
+        last = "if there is one" if count == 1 else "if there are that many"
+        if _is_state(body):
+            return f"{_keep(body, 'have', 'avoid')} {moment}, {last}", _LIST
+        return f"{moment}, {last}, {_inner(body, 'at that step', depth)}", _SCOPED
+    if _is_state(body):
+        return f"{_keep(body, 'have', 'avoid')} {moment}", _PLAIN
+    return f"{moment}, {_inner(body, 'at that step', depth)}", _SCOPED
+
+
+def _bounded(node: Formula) -> _Clause | None:
+    """The expansions ``p | X(p | X p)`` and ``p & N(p & N p)`` of bounded operators."""
+    if node.op not in ("and", "or"):
+        return None
+    step, steps, rest = "X" if node.op == "or" else "N", 0, node
+    make = build.or_ if node.op == "or" else build.and_
+    body = make(*node.args[:-1])
+    if not _is_state(body):
+        return None
+    while rest.op == node.op and rest.args[-1].op == step and make(*rest.args[:-1]) is body:
+        rest, steps = rest.args[-1].args[0], steps + 1
+    if not steps or rest is not body:
+        return None
+    if node.op == "or":
+        return f"reach {_bracketed(body)} within {steps} step{'s' * (steps > 1)}", _PLAIN
+    return _keep(body, "keep", "avoid") + f" for {steps + 1} steps", _PLAIN
+
+
+def _step(node: Formula, depth: int) -> str:
+    """A noun for a moment at which ``node`` holds."""
+    return f"step with {_bracketed(node)}" if _is_state(node) else f"step from which on to {_inner(node, '', depth)}"
+
+
+def _inner(node: Formula, when: str, depth: int) -> str:
+    """The clause as part of another, in brackets unless it is plain."""
+    text, rank = _clause(node, when or "at that step", depth - 1)
+    return text if rank == _PLAIN else f"({text})"
+
+
+def _keep(node: Formula, keep: str, avoid: str) -> str:
+    return f"{avoid} {_bracketed(node.args[0])}" if node.op == "not" else f"{keep} {_bracketed(node)}"
+
+
+def _phrase(state: Formula) -> str:
+    return write(state, _PHRASE)
+
+
+def _bracketed(state: Formula) -> str:
+    """A formula without temporal operators as a phrase that reads as one thing."""
+    return _phrase(state) if _is_literal(state) else f"({_phrase(state)})"
+
+
+def _without_negation(node: Formula) -> Formula:
+    """A formula that does not begin with ``not``, for one that does and is temporal."""
+    negations = 0
+    while node.op == "not":
+        node, negations = node.args[0], negations + 1
+    return _negated(node) if negations % 2 else node
+
+
+def _negated(node: Formula) -> Formula:
+    """The negation, pushed through the outermost operator."""
+    args = node.args
+    match node.op:
+        case "not":
+            return args[0]
+        case "and":
+            return build.or_(*(build.not_(part) for part in args))
+        case "or":
+            return build.and_(*(build.not_(part) for part in args))
+        case "implies":
+            return build.and_(args[0], build.not_(args[1]))
+        case "iff":
+            return build.iff(args[0], build.not_(args[1]))
+        case op if op in _DUAL:
+            return build.temporal(_DUAL[op], tuple(build.not_(part) for part in args))  # type: ignore[arg-type]
+        case _:
+            return build.not_(node)
+
+
+def _is_state(node: Formula) -> bool:
+    """Whether the formula has no temporal operator."""
+    return not any(part.is_temporal for part in node.walk())
+
+
+def _is_literal(node: Formula) -> bool:
+    return not node.args or (node.op == "not" and not node.args[0].args)

@@ -1,0 +1,99 @@
+"""Negation normal form: negation only before atoms, and only ``and or X N F G U W R M`` besides."""
+
+from __future__ import annotations
+
+from itertools import chain
+from typing import Final
+
+from tltlc.logic import formula as build
+from tltlc.logic.formula import FALSE, TRUE, Formula, Op
+
+_DUAL: Final[dict[str, Op]] = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
+
+_Signed = tuple[Formula, bool]
+"""A formula to be taken as it stands (True) or negated (False)."""
+
+
+def negation_normal_form(formula: Formula) -> Formula:
+    """The formula over literals, ``and``, ``or`` and the temporal operators, equal on every finite trace.
+
+    ``a -> b`` becomes ``!a | b`` and ``a <-> b`` becomes ``a & b | !a & !b``; negation turns each
+    operator into its dual (``!X a`` is ``N !a``).  Operands keep source order, repeated operands of
+    one ``and`` or ``or`` are dropped.  Each subformula is visited once for each sign and without
+    recursion, so that shared subformulas stay shared.
+    """
+    done: dict[_Signed, Formula] = {}
+    root = _strip((formula, True))
+    stack = [root]
+    while stack:
+        signed = stack[-1]
+        if signed in done:
+            stack.pop()
+            continue
+        op, operands = _expand(signed)
+        if op in ("and", "or"):
+            operands = _gather(op, operands)
+        missing = [operand for operand in operands if operand not in done]
+        if missing:
+            stack.extend(reversed(missing))
+            continue
+        stack.pop()
+        done[signed] = _combine(signed, op, tuple(done[operand] for operand in operands))
+    return done[root]
+
+
+def _strip(signed: _Signed) -> _Signed:
+    """The same without leading negations."""
+    node, positive = signed
+    while node.op == "not":
+        node, positive = node.args[0], not positive
+    return node, positive
+
+
+def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
+    """The operator that stands on top once the sign is pushed inwards, and its signed operands."""
+    node, positive = signed
+    op = node.op
+    if op == "implies":
+        left, right = node.args
+        return "or" if positive else "and", (_strip((left, not positive)), _strip((right, positive)))
+    if op == "iff":
+        left, right = node.args
+        agree = build.and_(left, right if positive else build.not_(right))
+        other = build.and_(build.not_(left), build.not_(right) if positive else right)
+        return "or", (_strip((agree, True)), _strip((other, True)))
+    if not positive:
+        op = {"and": "or", "or": "and"}.get(op, _DUAL.get(op, op))  # type: ignore[assignment]
+    return op, tuple(_strip((argument, positive)) for argument in node.args)
+
+
+def _gather(op: Op, operands: tuple[_Signed, ...]) -> tuple[_Signed, ...]:
+    """The operands with those of the same operator opened, each once, in order."""
+    gathered: list[_Signed] = []
+    seen: set[_Signed] = set()
+    stack = list(reversed(operands))
+    while stack:
+        signed = stack.pop()
+        if signed in seen:
+            continue
+        seen.add(signed)
+        inner_op, inner = _expand(signed)
+        if inner_op == op:
+            stack.extend(reversed(inner))
+        else:
+            gathered.append(signed)
+    return tuple(gathered)
+
+
+def _combine(signed: _Signed, op: Op, operands: tuple[Formula, ...]) -> Formula:
+    node, positive = signed
+    if op in ("and", "or"):
+        # An operand may have come down to one of the same operator, as (a & b) | (a & b) does.
+        parts = (operand.args if operand.op == op else (operand,) for operand in operands)
+        flat = dict.fromkeys(chain.from_iterable(parts))
+        return build.and_(*flat) if op == "and" else build.or_(*flat)
+    if op == "atom":
+        return node if positive else build.not_(node)
+    if op in ("true", "false"):
+        return TRUE if (op == "true") == positive else FALSE
+    return build.temporal(op, operands)
