@@ -1,0 +1,256 @@
+"""Hash-consed decision diagrams: the data structure under the whole construction.
+
+Two kinds of nodes live here, each an int, each canonical, so that ``==`` decides equality:
+
+*Obligations* are Boolean functions over temporal subformulas and atoms: binary decision diagrams
+whose variables are formulas.  Formulas that agree as such functions are one obligation, which is
+what keeps the construction from telling apart what is the same.
+
+*Transitions* are functions from a letter (the atoms that hold at a sample) to a leaf: the pair of
+the obligation that remains and whether the trace is accepted if this sample is its last.  Inner
+nodes test an atom, by index, in order.
+
+No operation enumerates letters; all are memoised.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+FALSE: Final = 0
+"""The obligation that nothing meets."""
+TRUE: Final = 1
+"""The obligation that everything meets."""
+
+REJECT: Final = 0
+"""The transition of ``false`` on every letter: (FALSE, not accepted)."""
+ACCEPT: Final = 1
+"""The transition of ``true`` on every letter: (TRUE, accepted)."""
+IMPOSSIBLE: Final = 2
+"""The leaf of letters that ``exclusive`` declarations rule out."""
+
+LEAF: Final = 1 << 40
+"""The ``atom`` of a leaf: greater than every index of an atom."""
+
+
+class OutOfNodes(Exception):
+    """Raised when the diagrams outgrow their limit: the formula blows up."""
+
+
+class Diagrams:
+    """A table of nodes and the operations on them.
+
+    ``atom[n]``, ``low[n]`` and ``high[n]`` describe transition ``n``; for a leaf, ``low`` is the
+    obligation and ``high`` 1 where the trace may end.  ``variable``, ``absent``, ``present``
+    describe obligations alike.  At most ``node_limit`` transitions are made, then
+    :class:`OutOfNodes` is raised.
+    """
+
+    __slots__ = (
+        "_nodes",
+        "_obligations",
+        "absent",
+        "atom",
+        "both",
+        "conjoin",
+        "disjoin",
+        "either",
+        "high",
+        "low",
+        "node",
+        "node_limit",
+        "present",
+        "variable",
+    )
+
+    def __init__(self, node_limit: int = 4_000_000) -> None:
+        self.node_limit = node_limit
+        self.variable: list[int] = [LEAF, LEAF]
+        self.absent: list[int] = [FALSE, TRUE]
+        self.present: list[int] = [FALSE, TRUE]
+        self._obligations: dict[tuple[int, int, int], int] = {}
+        self.atom: list[int] = [LEAF, LEAF, LEAF]
+        self.low: list[int] = [FALSE, TRUE, -1]
+        self.high: list[int] = [0, 1, 0]
+        self._nodes: dict[tuple[int, int, int], int] = {(LEAF, FALSE, 0): REJECT, (LEAF, TRUE, 1): ACCEPT}
+        self.node: Callable[[int, int, int], int] = self._node_maker()
+        self.both: Callable[[int, int], int] = self._obligation_operation(absorbing=FALSE, neutral=TRUE)
+        self.either: Callable[[int, int], int] = self._obligation_operation(absorbing=TRUE, neutral=FALSE)
+        self.conjoin: Callable[[int, int], int] = self._transition_operation(REJECT, ACCEPT, self.both, conjunction=True)
+        self.disjoin: Callable[[int, int], int] = self._transition_operation(
+            ACCEPT, REJECT, self.either, conjunction=False
+        )
+
+    # --- making nodes -------------------------------------------------------------------------
+
+    def obligation(self, variable: int, absent: int, present: int) -> int:
+        """The obligation ``present`` where the variable holds and ``absent`` where not."""
+        if absent == present:
+            return absent
+        key = (variable, absent, present)
+        found = self._obligations.get(key)
+        if found is None:
+            found = self._obligations[key] = len(self.variable)
+            self.variable.append(variable)
+            self.absent.append(absent)
+            self.present.append(present)
+        return found
+
+    def leaf(self, obligation: int, accepted: int) -> int:
+        """The transition to one obligation on every letter."""
+        key = (LEAF, obligation, accepted)
+        found = self._nodes.get(key)
+        return self._add(key) if found is None else found
+
+    def _add(self, key: tuple[int, int, int]) -> int:
+        number = len(self.atom)
+        if number >= self.node_limit:
+            raise OutOfNodes
+        self._nodes[key] = number
+        self.atom.append(key[0])
+        self.low.append(key[1])
+        self.high.append(key[2])
+        return number
+
+    # --- operations ---------------------------------------------------------------------------
+    # Each is a closure over the tables: attribute look-ups would cost a third of the run time.
+
+    def _node_maker(self) -> Callable[[int, int, int], int]:
+        nodes, add = self._nodes, self._add
+
+        def node(atom: int, low: int, high: int) -> int:
+            """The transition ``high`` on letters with the atom, ``low`` on the others."""
+            if low == high:
+                return low
+            key = (atom, low, high)
+            found = nodes.get(key)
+            return add(key) if found is None else found
+
+        return node
+
+    def _obligation_operation(self, absorbing: int, neutral: int) -> Callable[[int, int], int]:
+        variable, absent, present, make = self.variable, self.absent, self.present, self.obligation
+        memo: dict[tuple[int, int], int] = {}
+
+        def operate(x: int, y: int) -> int:
+            if x == y or y == neutral:
+                return x
+            if x == neutral:
+                return y
+            if x == absorbing or y == absorbing:
+                return absorbing
+            key = (x, y) if x < y else (y, x)
+            result = memo.get(key)
+            if result is None:
+                vx, vy = variable[x], variable[y]
+                if vx == vy:
+                    result = make(vx, operate(absent[x], absent[y]), operate(present[x], present[y]))
+                elif vx < vy:
+                    result = make(vx, operate(absent[x], y), operate(present[x], y))
+                else:
+                    result = make(vy, operate(x, absent[y]), operate(x, present[y]))
+                memo[key] = result
+            return result
+
+        return operate
+
+    def _transition_operation(
+        self, absorbing: int, neutral: int, combine: Callable[[int, int], int], *, conjunction: bool
+    ) -> Callable[[int, int], int]:
+        atom, low, high, nodes, add, leaf = self.atom, self.low, self.high, self._nodes, self._add, self.leaf
+        memo: dict[tuple[int, int], int] = {}
+
+        def operate(x: int, y: int) -> int:
+            if x == y or y == neutral:
+                return x
+            if x == neutral:
+                return y
+            if x == absorbing or y == absorbing:
+                return absorbing
+            key = (x, y) if x < y else (y, x)
+            result = memo.get(key)
+            if result is not None:
+                return result
+            ax, ay = atom[x], atom[y]
+            if ax == ay:
+                if ax == LEAF:
+                    accepted = high[x] & high[y] if conjunction else high[x] | high[y]
+                    result = memo[key] = leaf(combine(low[x], low[y]), accepted)
+                    return result
+                below, above = operate(low[x], low[y]), operate(high[x], high[y])
+            elif ax < ay:
+                below, above = operate(low[x], y), operate(high[x], y)
+            else:
+                ax = ay
+                below, above = operate(x, low[y]), operate(x, high[y])
+            if below == above:
+                result = below
+            else:
+                triple = (ax, below, above)
+                result = nodes.get(triple)
+                if result is None:
+                    result = add(triple)
+            memo[key] = result
+            return result
+
+        return operate
+
+    def constrain(self, transition: int, allowed: int) -> int:
+        """The transition on letters where ``allowed`` is ``ACCEPT``, ``IMPOSSIBLE`` on the others.
+
+        ``allowed`` is a Boolean function of the letter: a transition whose leaves are ``ACCEPT`` and ``REJECT``.
+        """
+        atom, low, high, node = self.atom, self.low, self.high, self.node
+        memo: dict[tuple[int, int], int] = {}
+
+        def operate(x: int, d: int) -> int:
+            if d == ACCEPT:
+                return x
+            if d == REJECT:
+                return IMPOSSIBLE
+            key = (x, d)
+            result = memo.get(key)
+            if result is None:
+                ax, ad = atom[x], atom[d]
+                if ax == ad:
+                    result = node(ax, operate(low[x], low[d]), operate(high[x], high[d]))
+                elif ax < ad:
+                    result = node(ax, operate(low[x], d), operate(high[x], d))
+                else:
+                    result = node(ad, operate(x, low[d]), operate(x, high[d]))
+                memo[key] = result
+            return result
+
+        return operate(transition, allowed)
+
+    def relabel(self, transition: int, leaf_map: Callable[[int], int], memo: dict[int, int]) -> int:
+        """The transition with every leaf replaced; ``memo`` may be shared between calls with the same map."""
+        atom, low, high, node = self.atom, self.low, self.high, self.node
+
+        def rebuild(n: int) -> int:
+            result = memo.get(n)
+            if result is None:
+                a = atom[n]
+                result = leaf_map(n) if a == LEAF else node(a, rebuild(low[n]), rebuild(high[n]))
+                memo[n] = result
+            return result
+
+        return rebuild(transition)
+
+    def leaves(self, transition: int) -> list[int]:
+        """The distinct leaves of a transition, left to right."""
+        atom, low, high = self.atom, self.low, self.high
+        found: list[int] = []
+        seen = {transition}
+        stack = [transition]
+        while stack:
+            n = stack.pop()
+            if atom[n] == LEAF:
+                found.append(n)
+                continue
+            for child in (high[n], low[n]):
+                if child not in seen:
+                    seen.add(child)
+                    stack.append(child)
+        return found

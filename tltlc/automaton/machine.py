@@ -1,0 +1,234 @@
+"""From a formula to its minimal machine: explore the obligations, then merge those of equal language.
+
+A machine is a deterministic automaton with acceptance on transitions: its states are obligations
+(what remains after the samples seen), and the leaf that a letter leads to says whether the trace may
+end with that letter.  Acceptance is put on states only at the end (:mod:`tltlc.automaton.build`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
+
+from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, Diagrams, OutOfNodes
+from tltlc.automaton.successors import Successors
+
+
+class OutOfStates(Exception):
+    """Raised when exploration needs more states than its budget."""
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """The minimal machine of an obligation.
+
+    ``transitions`` maps each state, an obligation that stands for all of equal language, to its
+    transition, whose leaves lead to such representatives; the first key is the initial state.
+    ``representative`` maps every obligation that was explored to the state that stands for it.
+    """
+
+    initial: int
+    transitions: dict[int, int]
+    representative: dict[int, int]
+
+
+def machine(successors: Successors, obligation: int, state_budget: int, allowed: int = ACCEPT) -> Machine:
+    """The minimal machine of an obligation over the letters that ``allowed`` (see ``Diagrams.constrain``) accepts.
+
+    Raises :class:`OutOfStates` where more than ``state_budget`` obligations are reached and
+    :class:`OutOfNodes` where their transitions outgrow the table.
+    """
+    try:
+        return minimise(successors, explore(successors, obligation, state_budget, allowed))
+    except RecursionError:
+        raise OutOfNodes from None
+
+
+def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
+    """The transition of every obligation that can be reached, in breadth-first order, the initial one first."""
+    diagrams = successors.diagrams
+    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    transition_of = successors.of_obligation
+    transitions: dict[int, int] = {}
+    seen = {initial}
+    queue = [initial]
+    # Transitions share nodes: a node met before has had its leaves queued before.
+    met = {IMPOSSIBLE}
+    for state in queue:
+        if len(queue) > state_budget:
+            raise OutOfStates
+        transition = transition_of(state)
+        if allowed != ACCEPT:
+            transition = diagrams.constrain(transition, allowed)
+        transitions[state] = transition
+        stack = [transition]
+        while stack:
+            node = stack.pop()
+            if node in met:
+                continue
+            met.add(node)
+            if atom[node] != LEAF:
+                stack.append(high[node])
+                stack.append(low[node])
+            elif low[node] not in seen:
+                seen.add(low[node])
+                queue.append(low[node])
+    return transitions
+
+
+def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
+    """Merge obligations of equal language by partition refinement.
+
+    A block splits where the transitions of its members, read up to blocks, differ.  The largest
+    part keeps the block's number, so only what leads into the smaller parts is looked at again:
+    each time that a state moves its block at least halves, as in Hopcroft's algorithm.
+    """
+    diagrams = successors.diagrams
+    atom, low, high, make_node, make_leaf = diagrams.atom, diagrams.low, diagrams.high, diagrams.node, diagrams.leaf
+    block = dict.fromkeys(transitions, 0)
+    members: list[list[int]] = [list(transitions)]
+    states_of: dict[int, list[int]] = {}
+    for state, transition in transitions.items():
+        states_of.setdefault(transition, []).append(state)
+    parents, leaves_of = _links(diagrams, states_of)
+
+    signature: dict[int, int] = {IMPOSSIBLE: IMPOSSIBLE}
+    # A node is made after its children, so that ascending numbers visit children first.
+    dirty = sorted(parents)
+    while dirty:
+        touched: set[int] = set()
+        while dirty:
+            node = heappop(dirty)
+            if atom[node] == LEAF:
+                new = make_leaf(block[low[node]], high[node]) if node != IMPOSSIBLE else IMPOSSIBLE
+            else:
+                new = make_node(atom[node], signature[low[node]], signature[high[node]])
+            while dirty and dirty[0] == node:
+                heappop(dirty)
+            old = signature.get(node)
+            if old != new:
+                signature[node] = new
+                touched.update(block[state] for state in states_of.get(node, ()))
+                if old is not None:
+                    for parent in parents[node]:
+                        heappush(dirty, parent)
+        for number in sorted(touched):
+            parts: dict[int, list[int]] = {}
+            for state in members[number]:
+                parts.setdefault(signature[transitions[state]], []).append(state)
+            if len(parts) == 1:
+                continue
+            largest = max(parts.values(), key=len)
+            members[number] = largest
+            for part in parts.values():
+                if part is not largest:
+                    for state in part:
+                        block[state] = len(members)
+                        dirty.extend(leaves_of.get(state, ()))
+                    members.append(part)
+        heapify(dirty)
+    return _quotient(successors, transitions, members)
+
+
+def _links(diagrams: Diagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
+    """The parents of every node under ``roots``, and the leaves that lead to each state."""
+    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    parents: dict[int, list[int]] = {root: [] for root in roots}
+    leaves_of: dict[int, list[int]] = {}
+    stack = list(parents)
+    while stack:
+        node = stack.pop()
+        if atom[node] == LEAF:
+            leaves_of.setdefault(low[node], []).append(node)
+            continue
+        for child in (low[node], high[node]):
+            known = parents.get(child)
+            if known is None:
+                parents[child] = [node]
+                stack.append(child)
+            else:
+                known.append(node)
+    return parents, leaves_of
+
+
+def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[list[int]]) -> Machine:
+    """The machine whose states are the blocks, each represented by its member that was reached first."""
+    initial = next(iter(transitions))
+    if len(blocks) == len(transitions):
+        return Machine(initial, transitions, {state: state for state in transitions})
+    diagrams = successors.diagrams
+    order = {state: position for position, state in enumerate(transitions)}
+    representative: dict[int, int] = {}
+    for group in blocks:
+        first = min(group, key=order.__getitem__)
+        representative.update(dict.fromkeys(group, first))
+    memo: dict[int, int] = {IMPOSSIBLE: IMPOSSIBLE}
+
+    def to_representative(leaf: int) -> int:
+        return diagrams.leaf(representative[diagrams.low[leaf]], diagrams.high[leaf])
+
+    return Machine(
+        initial=initial,
+        transitions={
+            state: diagrams.relabel(transition, to_representative, memo)
+            for state, transition in transitions.items()
+            if representative[state] == state
+        },
+        representative=representative,
+    )
+
+
+def equivalent(
+    successors: Successors, machine: Machine, left: int, right: int, pair_budget: int, allowed: int = ACCEPT
+) -> bool:
+    """Whether two obligations have equal languages; may answer False wrongly where ``pair_budget`` runs out.
+
+    The union-find form of Hopcroft and Karp's test (1971), started from what ``machine`` knows to be equal.
+    """
+    diagrams = successors.diagrams
+    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
+    representative = machine.representative
+    parent: dict[int, int] = {}
+
+    def find(state: int) -> int:
+        state = representative.get(state, state)
+        while state in parent:
+            state = parent[state]
+        return state
+
+    def transition_of(state: int) -> int:
+        known = machine.transitions.get(state)
+        if known is not None:
+            return known
+        transition = successors.of_obligation(state)
+        return transition if allowed == ACCEPT else diagrams.constrain(transition, allowed)
+
+    pending = [(left, right)]
+    while pending:
+        x, y = map(find, pending.pop())
+        if x == y:
+            continue
+        pair_budget -= 1
+        if pair_budget < 0:
+            return False
+        parent[y] = x
+        stack = [(transition_of(x), transition_of(y))]
+        visited = set(stack)
+        while stack:
+            m, n = stack.pop()
+            if m == n:
+                continue
+            am, an = atom[m], atom[n]
+            if am == an == LEAF:
+                if high[m] != high[n] or m == IMPOSSIBLE or n == IMPOSSIBLE:
+                    return False
+                pending.append((low[m], low[n]))
+                continue
+            lows = (low[m] if am <= an else m, low[n] if an <= am else n)
+            highs = (high[m] if am <= an else m, high[n] if an <= am else n)
+            for pair in (lows, highs):
+                if pair not in visited:
+                    visited.add(pair)
+                    stack.append(pair)
+    return True

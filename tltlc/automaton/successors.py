@@ -1,0 +1,148 @@
+"""One-step semantics: from a formula, or an obligation, to its transition.
+
+Each temporal operator has a one-line rule, its expansion law on finite traces (semantics, section 2):
+``F p = p | X F p``, ``G p = p & N G p``, ``p U q = q | p & X(p U q)``, ``p W q = q | p & N(p W q)``,
+``p R q = q & (p | N(p R q))``, ``p M q = q & (p | X(p M q))``.  ``X p`` leaves the obligation p and
+rejects where the trace ends, ``N p`` accepts there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tltlc.automaton.diagrams import ACCEPT, FALSE, REJECT, TRUE, Diagrams
+from tltlc.logic.formula import Formula
+
+
+class Successors:
+    """Transitions of formulas in negation normal form and of obligations, over one table of diagrams.
+
+    ``formulas[v]`` is the formula of the obligations' variable ``v``: an atom, or a formula whose
+    outermost operator is temporal.
+    """
+
+    __slots__ = ("_atom_index", "_of_formula", "_of_obligation", "_variables", "diagrams", "formulas")
+
+    def __init__(self, atoms: Sequence[str], diagrams: Diagrams) -> None:
+        self.diagrams = diagrams
+        self.formulas: list[Formula] = []
+        self._variables: dict[Formula, int] = {}
+        self._atom_index = {name: index for index, name in enumerate(atoms)}
+        self._of_formula: dict[Formula, int] = {}
+        self._of_obligation: dict[int, int] = {FALSE: REJECT, TRUE: ACCEPT}
+
+    def number_variables(self, formula: Formula) -> None:
+        """Number the temporal subformulas in source order, so that what belongs together is tested together.
+
+        Obligations of ``G(a -> F b) & G(c -> F d)`` then share their tails, three times fewer steps for six such parts.
+        """
+        for part in formula.walk():
+            if part.is_temporal:
+                self._variable(part)
+
+    def obligation(self, formula: Formula) -> int:
+        """The obligation of a formula: its Boolean function over atoms and temporal subformulas."""
+        op = formula.op
+        diagrams = self.diagrams
+        if op == "and":
+            result = TRUE
+            for argument in reversed(formula.args):
+                result = diagrams.both(self.obligation(argument), result)
+            return result
+        if op == "or":
+            result = FALSE
+            for argument in reversed(formula.args):
+                result = diagrams.either(self.obligation(argument), result)
+            return result
+        if op == "true":
+            return TRUE
+        if op == "false":
+            return FALSE
+        if op == "not":
+            return diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
+        itself = diagrams.obligation(self._variable(formula), FALSE, TRUE)
+        # `q` implies `p U q`, and `G p` implies `p`: said here where it costs no new variable, so that
+        # `p U q | q` and `p U q` are one obligation. Nests of n untils then reach n obligations, not 2^n.
+        last = formula.args[-1] if formula.args else formula
+        if last.is_temporal and op in "FUWGRM":
+            combine = diagrams.either if op in "FUW" else diagrams.both
+            return combine(itself, self.obligation(last))
+        return itself
+
+    def _variable(self, formula: Formula) -> int:
+        number = self._variables.get(formula)
+        if number is None:
+            number = self._variables[formula] = len(self.formulas)
+            self.formulas.append(formula)
+        return number
+
+    def of_obligation(self, obligation: int) -> int:
+        """The transition of an obligation."""
+        result = self._of_obligation.get(obligation)
+        if result is not None:
+            return result
+        diagrams = self.diagrams
+        formula = self.formulas[diagrams.variable[obligation]]
+        absent = self.of_obligation(diagrams.absent[obligation])
+        present = self.of_obligation(diagrams.present[obligation])
+        if formula.op == "atom":
+            holds = self.of_formula(formula)
+            fails = diagrams.node(self._atom_index[formula.name], ACCEPT, REJECT)
+            result = diagrams.disjoin(diagrams.conjoin(holds, present), diagrams.conjoin(fails, absent))
+        else:
+            # In negation normal form obligations grow with their temporal variables, so `absent` implies `present`.
+            result = diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
+        self._of_obligation[obligation] = result
+        return result
+
+    def of_formula(self, formula: Formula) -> int:
+        """The transition of a formula in negation normal form, operands first, without deep recursion."""
+        known = self._of_formula
+        result = known.get(formula)
+        if result is not None:
+            return result
+        stack = [formula]
+        while stack:
+            node = stack[-1]
+            if node in known:
+                stack.pop()
+                continue
+            # The operand of a next is an obligation of the following sample: nothing below it is needed now.
+            missing = [] if node.op in ("X", "N") else [a for a in node.args if a not in known]
+            if missing:
+                stack.extend(missing)
+            else:
+                stack.pop()
+                known[node] = self._expand(node)
+        return known[formula]
+
+    def _expand(self, formula: Formula) -> int:
+        op, args, known, diagrams = formula.op, formula.args, self._of_formula, self.diagrams
+        conjoin, disjoin = diagrams.conjoin, diagrams.disjoin
+        if op == "atom":
+            return diagrams.node(self._atom_index[formula.name], REJECT, ACCEPT)
+        if op == "not":
+            return diagrams.node(self._atom_index[args[0].name], ACCEPT, REJECT)
+        if op == "true":
+            return ACCEPT
+        if op == "false":
+            return REJECT
+        if op == "and" or op == "or":
+            operate = conjoin if op == "and" else disjoin
+            result = known[args[-1]]
+            for argument in reversed(args[:-1]):
+                result = operate(known[argument], result)
+            return result
+        if op == "X" or op == "N":
+            return diagrams.leaf(self.obligation(args[0]), int(op == "N"))
+        again = diagrams.leaf(self.obligation(formula), int(op in "GWR"))
+        if op == "F":
+            return disjoin(known[args[0]], again)
+        if op == "G":
+            return conjoin(known[args[0]], again)
+        left, right = known[args[0]], known[args[1]]
+        if op in "UW":
+            return disjoin(right, conjoin(left, again))
+        if op in "RM":
+            return conjoin(right, disjoin(left, again))
+        raise ValueError(f"not in negation normal form: {op}")
