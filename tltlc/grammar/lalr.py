@@ -1,0 +1,112 @@
+"""The LALR(1) machine: tokens in, tree out, by the tables that lark built."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tltlc.grammar.lexer import END, Token
+from tltlc.grammar.tables import Tables
+from tltlc.source import Span
+
+
+class Unexpected(Exception):
+    """The token at ``index`` fits nowhere; ``states`` is the stack of the machine in front of it."""
+
+    def __init__(self, index: int, states: list[int]) -> None:
+        super().__init__(index)
+        self.index = index
+        self.states = states
+
+
+def run(tables: Tables, start: str, tokens: Sequence[Token], builder: object) -> Any:
+    """What the builder makes of the tokens, read as a ``start``; raises Unexpected.
+
+    A reduction by a rule with the action ``name`` calls ``builder.make_name(span, *kept values)``.
+    """
+    actions, gotos = tables.actions, tables.gotos
+    rules = [
+        (rule.origin, rule.size, rule.action, rule.keep, getattr(builder, f"make_{rule.action}", None))
+        for rule in tables.rules
+    ]
+    accepting = tables.ends[start]
+    states = [tables.starts[start]]
+    values: list[Any] = []
+    begins: list[int] = []
+    end = 0
+    for index, token in enumerate(tokens):
+        kind = _kind(tables, states[-1], tokens, index)
+        while True:
+            action = actions[states[-1]].get(kind)
+            if action is None:
+                raise Unexpected(index, states)
+            if action >= 0:
+                states.append(action)
+                values.append(token)
+                begins.append(token.start)
+                end = token.end
+                break
+            origin, size, name, keep, make = rules[~action]
+            if size == 1 and not name:
+                states[-1] = gotos[states[-2]][origin]
+            else:
+                popped = values[len(values) - size :]
+                begin = begins[-size] if size else token.start
+                del values[len(values) - size :], begins[len(begins) - size :], states[len(states) - size :]
+                kept = _kept(popped, keep)
+                values.append(kept if make is None else make(Span(begin, max(begin, end)), *kept))
+                begins.append(begin)
+                states.append(gotos[states[-1]][origin])
+            if kind == END and states[-1] == accepting:
+                return values[-1]
+    raise AssertionError("the tokens do not end with $END")
+
+
+def accepted(tables: Tables, states: Sequence[int]) -> set[str]:
+    """The terminals that may stand where the machine with this stack of states is."""
+    return {terminal for terminal in tables.actions[states[-1]] if _accepts(tables, list(states), terminal)}
+
+
+def _accepts(tables: Tables, states: list[int], terminal: str) -> bool:
+    ends = tables.ends.values()
+    while True:
+        action = tables.actions[states[-1]].get(terminal)
+        if action is None:
+            return False
+        if action >= 0:
+            return True
+        rule = tables.rules[~action]
+        del states[len(states) - rule.size :]
+        states.append(tables.gotos[states[-1]][rule.origin])
+        if terminal == END and states[-1] in ends:
+            return True
+
+
+def _kind(tables: Tables, state: int, tokens: Sequence[Token], index: int) -> str:
+    """The type of a token in this state: words that are not reserved are names where a name can stand.
+
+    Where both can, the word counts if a number follows (``F within 20 steps p``).
+    """
+    token = tokens[index]
+    soft = tables.soft.get(token.text)
+    if soft is None or token.type == "STRING" or soft not in (row := tables.actions[state]):
+        return token.type
+    if token.type not in row or token.type == "UNIT" or tokens[index + 1].type == "NUMBER":
+        return soft
+    return token.type
+
+
+def _kept(values: list[Any], keep: tuple[int, ...]) -> list[Any]:
+    """The values that a rule keeps, with absent parts as None and lists spliced in."""
+    # A growing list is extended in place, or long lists would take quadratic time.
+    kept: list[Any] = []
+    for place, position in enumerate(keep):
+        if position >= 0:
+            kept.append(values[position])
+        elif position == -1:
+            kept.append(None)
+        elif place == 0:
+            kept = values[-2 - position]
+        else:
+            kept += values[-2 - position]
+    return kept

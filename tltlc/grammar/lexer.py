@@ -1,0 +1,97 @@
+"""Tokens of a .tltl text, by the terminals of the grammar."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import NamedTuple
+
+from tltlc.grammar.tables import Tables, load
+from tltlc.grammar.tree import Comment
+from tltlc.source import Span
+
+END = "$END"
+BAD = "BAD"
+"""The type of a token that the language does not know: a strange sign, an unfinished text."""
+
+
+class Token(NamedTuple):
+    """A terminal and the half-open range of offsets that it covers."""
+
+    type: str
+    text: str
+    start: int
+    end: int
+
+    @property
+    def span(self) -> Span:
+        return Span(self.start, self.end)
+
+
+class Tokens(NamedTuple):
+    """A text in tokens, the last of type ``$END``; comments apart.
+
+    ``docs`` maps the offset of a token to the documentation comment right before it.
+    """
+
+    tokens: list[Token]
+    comments: list[Comment]
+    docs: dict[int, str]
+
+
+def tokenize(text: str) -> Tokens:
+    """The tokens of a text; never fails, what it cannot read is a ``BAD`` token."""
+    tables = load()
+    words, signs = tables.words, tables.signs
+    tokens: list[Token] = []
+    comments: list[Comment] = []
+    docs: dict[int, str] = {}
+    doc: list[str] = []
+    for match in _pattern().finditer(text):
+        kind = match.lastgroup or BAD
+        if kind == "SPACE":
+            continue
+        start, end = match.span()
+        piece = match.group()
+        if kind == "COMMENT":
+            comments.append(Comment(piece.rstrip(), Span(start, start + len(piece.rstrip()))))
+            if piece.startswith("///"):
+                doc.append(piece[3:].strip())
+            continue
+        if doc:
+            docs[start] = "\n".join(doc)
+            doc = []
+        if kind == "NAME":
+            tokens.append(Token(words.get(piece, kind), piece, start, end))
+        elif kind == "SIGN":
+            tokens.append(Token(signs[piece], piece, start, end))
+        elif kind == "UNIT":
+            number_end, unit_start = match.end("NUMBER"), match.start("UNIT")
+            tokens.append(Token("NUMBER", match["NUMBER"], start, number_end))
+            tokens.append(Token("UNIT", match["UNIT"], unit_start, end))
+        else:
+            tokens.append(Token(kind, piece, start, end))
+    tokens.append(Token(END, "", len(text), len(text)))
+    return Tokens(tokens, comments, docs)
+
+
+@lru_cache(maxsize=1)
+def _pattern() -> re.Pattern[str]:
+    """One pattern for all tokens; the name of the group that matched last is the token's type."""
+    tables: Tables = load()
+    patterns = tables.patterns
+    signs = "|".join(re.escape(sign) for sign in sorted(tables.signs, key=len, reverse=True))
+    # Signs that count as letters (𝒰) end a name; other letters beyond ASCII make the whole word bad.
+    letters = "".join(sign for sign in tables.signs if sign.isalnum())
+    units = "|".join(re.escape(unit) + ("" if unit == "%" else r"(?![\w]|\.[A-Za-z_])") for unit in tables.units)
+    return re.compile(
+        rf"(?P<SPACE>{patterns['SPACE']}|\A\ufeff)"
+        rf"|(?P<NAME>{patterns['NAME']}(?![^\W{letters}]))"
+        rf"|(?P<NUMBER>{patterns['NUMBER']})(?:[ \t]*(?P<UNIT>{units}))?"
+        rf"|(?P<COMMENT>{patterns['COMMENT']})"
+        rf"|(?P<STRING>{patterns['STRING']})"
+        rf"|(?P<BAD>==|!=|/\*|\"[^\"\n]*|[^\W0-9{letters}]\w*)"
+        rf"|(?P<SIGN>{signs})"
+        r"|.",
+        re.DOTALL,
+    )

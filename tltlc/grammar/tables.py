@@ -1,0 +1,206 @@
+"""The LALR(1) tables of the grammar: built by lark, shipped with the package, read without lark.
+
+Importing lark costs as much as four bare Python starts, so the tables travel as ``tables.json`` in a
+format of our own and a parse needs none of it.  A grammar that was edited since is noticed by its
+checksum and built in memory; ``python -m tltlc.grammar.tables`` writes the file anew.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import zlib
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+GRAMMAR = Path(__file__).with_name("tltl.lark")
+TABLES = Path(__file__).with_name("tables.json")
+STARTS = ("module", "declaration", "clause", "test_item", "expression")
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """What a reduction does: pop ``size`` values, hand those of ``keep`` to the builder's method ``action``.
+
+    ``keep`` holds positions among the popped values, -1 for an absent optional part, ``-2 - i`` for a list at
+    position i whose items are spliced in.  ``action`` is empty where the one kept value passes through, and
+    ``*`` where the kept values form a list.
+    """
+
+    origin: str
+    size: int
+    action: str
+    keep: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Tables:
+    """Parser and lexer tables.
+
+    ``actions[state]`` maps a terminal to the next state (shift) or to ``~rule`` (reduce), ``gotos[state]`` a
+    nonterminal to the next state.  ``words`` and ``signs`` map each spelling to its terminal, ``soft`` those
+    words that are names where a name can stand.
+    """
+
+    rules: tuple[Rule, ...]
+    actions: tuple[dict[str, int], ...]
+    gotos: tuple[dict[str, int], ...]
+    starts: dict[str, int]
+    ends: dict[str, int]
+    words: dict[str, str]
+    signs: dict[str, str]
+    soft: dict[str, str]
+    units: tuple[str, ...]
+    patterns: dict[str, str]
+
+
+@lru_cache(maxsize=1)
+def load() -> Tables:
+    """The tables of the grammar as it is now: from the shipped file where that fits, else built with lark."""
+    grammar = GRAMMAR.read_bytes()
+    try:
+        data = json.loads(TABLES.read_bytes())
+        fits = data["checksum"] == zlib.crc32(grammar)
+    except (OSError, ValueError, KeyError, TypeError):
+        fits = False
+    return _from_json(data if fits else build(grammar))
+
+
+def build(grammar: bytes) -> dict[str, Any]:
+    """The tables as plain data for JSON; raises lark's GrammarError where the grammar has a conflict."""
+    from lark import Lark
+    from lark.lexer import Lexer
+
+    class NoLexer(Lexer):
+        """Stands in for lark's own lexer, which the tables do not need."""
+
+        def __init__(self, _conf: object) -> None: ...
+
+        def lex(self, *_args: object) -> Any: ...
+
+    lark: Any = Lark(grammar.decode(), parser="lalr", lexer=NoLexer, start=list(STARTS), strict=True)
+    table = lark.parser.parser._parse_table
+    states = _breadth_first(table)
+    rules: dict[Any, int] = {}
+    actions: list[dict[str, int]] = []
+    gotos: list[dict[str, int]] = []
+    for state in states:
+        actions.append({})
+        gotos.append({})
+        for symbol, (action, argument) in sorted(table.states[state].items()):
+            if str(action) == "Reduce":
+                actions[-1][symbol] = ~rules.setdefault(argument, len(rules))
+            elif symbol.isupper():
+                actions[-1][symbol] = states[argument]
+            else:
+                gotos[-1][symbol] = states[argument]
+    return {
+        "checksum": zlib.crc32(grammar),
+        "rules": [[rule.origin.name, len(rule.expansion), *_action(rule)] for rule in rules],
+        "rows": (rows := _distinct(actions)),
+        "actions": [rows.index(row) for row in actions],
+        "gotos": gotos,
+        "starts": {start: states[table.start_states[start]] for start in STARTS},
+        "ends": {start: states[table.end_states[start]] for start in STARTS},
+        **_spellings(lark.terminals),
+    }
+
+
+def _breadth_first(table: Any) -> dict[int, int]:
+    """New numbers for lark's states, breadth-first by symbol: the same grammar always gives the same file."""
+    order = {table.start_states[start]: number for number, start in enumerate(STARTS)}
+    queue = list(order)
+    for state in queue:
+        for _, (action, target) in sorted(table.states[state].items(), key=lambda item: item[0]):
+            if str(action) == "Shift" and target not in order:
+                order[target] = len(order)
+                queue.append(target)
+    return order
+
+
+def _action(rule: Any) -> tuple[str, list[int]]:
+    """The builder's method for a lark rule and what to keep of its values (see :class:`Rule`)."""
+    absent = [len(run) for run in "".join(str(int(b)) for b in rule.options.empty_indices).split("0")]
+    if not rule.options.empty_indices:
+        absent = [0] * (len(rule.expansion) + 1)
+    keep: list[int] = []
+    for position, symbol in enumerate(rule.expansion):
+        keep += [-1] * absent[position]
+        if not (symbol.is_term and symbol.filter_out):
+            spliced = not symbol.is_term and symbol.name.startswith("_")
+            keep.append(-2 - position if spliced else position)
+    keep += [-1] * absent[-1]
+    if rule.origin.name.startswith("_"):
+        return "*", keep
+    if rule.options.expand1 and not rule.alias and len(keep) == 1 and keep[0] >= 0:
+        return "", keep
+    return str(rule.alias or rule.origin.name), keep
+
+
+def _distinct(rows: list[dict[str, int]]) -> list[dict[str, int]]:
+    """The rows without repetition, in order."""
+    found: list[dict[str, int]] = []
+    for row in rows:
+        if row not in found:
+            found.append(row)
+    return found
+
+
+def _spellings(terminals: Any) -> dict[str, Any]:
+    """The spellings of all terminals that are lists of fixed texts, and the patterns of the others."""
+    words: dict[str, str] = {}
+    signs: dict[str, str] = {}
+    soft: dict[str, str] = {}
+    units: list[str] = []
+    patterns: dict[str, str] = {}
+    for terminal in sorted(terminals, key=lambda terminal: terminal.name):
+        texts = _texts(terminal.pattern)
+        if texts is None:
+            patterns[terminal.name] = terminal.pattern.value
+        elif terminal.name == "UNIT":
+            units = sorted(texts, key=lambda text: (-len(text), text))
+        else:
+            for text in texts:
+                word = re.fullmatch("[A-Za-z_]+", text)
+                kind = signs if not word else soft if terminal.priority < 0 else words
+                kind[text] = terminal.name
+    return {"words": words, "signs": signs, "soft": soft, "units": units, "patterns": patterns}
+
+
+def _texts(pattern: Any) -> list[str] | None:
+    """The fixed texts that a terminal's pattern lists, or None where it is a regular expression proper."""
+    if pattern.type == "str":
+        return [pattern.value]
+    listed = re.fullmatch(r"\(\?:(.*)\)", pattern.value, re.DOTALL)
+    if not listed:
+        return None
+    parts = re.split(r"(?<!\\)\|", listed[1])
+    texts = [re.sub(r"\\(.)", r"\1", part) for part in parts]
+    return texts if [re.escape(text) for text in texts] == parts else None
+
+
+def _from_json(data: dict[str, Any]) -> Tables:
+    return Tables(
+        rules=tuple(Rule(origin, size, action, tuple(keep)) for origin, size, action, keep in data["rules"]),
+        actions=tuple(data["rows"][row] for row in data["actions"]),
+        gotos=tuple(data["gotos"]),
+        starts=data["starts"],
+        ends=data["ends"],
+        words=data["words"],
+        signs=data["signs"],
+        soft=data["soft"],
+        units=tuple(data["units"]),
+        patterns=data["patterns"],
+    )
+
+
+def main() -> None:
+    """Write the tables of the present grammar beside it."""
+    text = json.dumps(build(GRAMMAR.read_bytes()), ensure_ascii=False, separators=(",", ":"))
+    TABLES.write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
