@@ -1,0 +1,164 @@
+"""What the schema cannot say of an artefact: that its parts agree with each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from tltlc.automaton.fspa import Fspa, Verdict
+from tltlc.backends.artefact.guards import guard_problems
+from tltlc.backends.artefact.place import Path
+from tltlc.expression import Condition, Const, Expression, Param, Signal, When
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A contradiction and the place of the value that is blamed for it."""
+
+    path: Path
+    message: str
+
+
+def problems(fspa: Fspa) -> Iterator[Problem]:
+    """Every contradiction; later checks are left out where they would rest on values already found wrong.
+
+    The guards of a state (exactly one is true of every sample) are decided exactly, but only for
+    automata that are small enough for it: see :mod:`tltlc.backends.artefact.guards`.
+    """
+    for check in (_names, _values, _indices, _numbering, _distances, _guards):
+        found = False
+        for problem in check(fspa):
+            found = True
+            yield problem
+        if found:
+            return
+
+
+def _names(fspa: Fspa) -> Iterator[Problem]:
+    """Names are unique, and expressions speak of the declared ones."""
+    declared = {"signals": fspa.signals, "params": fspa.params, "atoms": fspa.atoms}
+    known: dict[str, set[str]] = {}
+    for kind, items in declared.items():
+        known[kind] = set()
+        for index, item in enumerate(items):
+            if item.name in known[kind]:
+                yield Problem((kind, index, "name"), f"two {kind} are named `{item.name}`")
+            known[kind].add(item.name)
+    for index, atom in enumerate(fspa.atoms):
+        for node in _nodes(atom.expression):
+            if isinstance(node, Signal) and node.name not in known["signals"]:
+                yield Problem(("atoms", index, "expression"), f"there is no signal `{node.name}`")
+            elif isinstance(node, Param) and node.name not in known["params"]:
+                yield Problem(("atoms", index, "expression"), f"there is no param `{node.name}`")
+
+
+def _nodes(expression: Expression | Condition) -> Iterator[Expression | Condition]:
+    """Every node of an expression, without recursion."""
+    stack = [expression]
+    while stack:
+        node = stack.pop()
+        yield node
+        if isinstance(node, When):
+            for condition, value in node.cases:
+                stack += (condition, value)
+            stack.append(node.otherwise)
+        elif not isinstance(node, (Const, Signal, Param)):
+            stack.extend(node.args)
+
+
+def _values(fspa: Fspa) -> Iterator[Problem]:
+    """Ranges are not empty, and params lie in theirs."""
+    for index, signal in enumerate(fspa.signals):
+        if signal.low is not None and signal.high is not None and signal.low > signal.high:
+            yield Problem(("signals", index, "range"), f"the range of `{signal.name}` is empty")
+    for index, param in enumerate(fspa.params):
+        low = param.value if param.low is None else param.low
+        high = param.value if param.high is None else param.high
+        if not low <= param.value <= high:
+            yield Problem(("params", index, "value"), f"the value of `{param.name}` lies outside its range")
+
+
+def _indices(fspa: Fspa) -> Iterator[Problem]:
+    """Every index names something, states stand in order, edges are sorted and at most one joins a pair."""
+    states, atoms = len(fspa.states), len(fspa.atoms)
+    for index, state in enumerate(fspa.states):
+        if state.id != index:
+            yield Problem(("states", index, "id"), f"state {index} has the id {state.id}")
+    for index, group in enumerate(fspa.exclusive):
+        if any(atom >= atoms for atom in group):
+            yield Problem(("exclusive", index), f"there are only {atoms} atoms")
+    previous = (-1, -1)
+    for index, edge in enumerate(fspa.edges):
+        for end, state_index in (("source", edge.source), ("target", edge.target)):
+            if state_index >= states:
+                yield Problem(("edges", index, end), f"there is no state {state_index}")
+        if (edge.source, edge.target) == previous:
+            yield Problem(("edges", index), f"two edges lead from state {edge.source} to state {edge.target}")
+        elif (edge.source, edge.target) < previous:
+            yield Problem(("edges", index), "the edges are not sorted by source and target")
+        previous = (edge.source, edge.target)
+        for prime in edge.guard.primes:
+            if any(atom >= atoms for atom, _ in prime):
+                yield Problem(("edges", index, "guard", "primes"), f"there are only {atoms} atoms")
+
+
+def _numbering(fspa: Fspa) -> Iterator[Problem]:
+    """States are numbered breadth-first: each is first met from a state before it, in that state's turn."""
+    parents = [len(fspa.states)] * len(fspa.states)
+    for edge in fspa.edges:
+        parents[edge.target] = min(parents[edge.target], edge.source)
+    turn = 0
+    for state in range(1, len(fspa.states)):
+        if parents[state] >= state:
+            yield Problem(("states", state), f"state {state} cannot be reached from a state before it")
+        elif parents[state] < turn:
+            yield Problem(("states", state), "the states are not numbered breadth-first")
+        else:
+            turn = parents[state]
+
+
+def _distances(fspa: Fspa) -> Iterator[Problem]:
+    """Distances, verdicts and the size of the spec are what the edges make them."""
+    accepting = [state.id for state in fspa.states if state.accepting]
+    to_goal = _steps_to(fspa, accepting)
+    to_failure = _steps_to(fspa, (state.id for state in fspa.states if not state.accepting))
+    for state in fspa.states:
+        distance = to_goal.get(state.id)
+        if state.distance != distance:
+            yield Problem(("states", state.id, "distance"), f"the distance of state {state.id} is {_said(distance)}")
+        verdict = _verdict(state.accepting, distance, to_failure.get(state.id))
+        if state.verdict != verdict:
+            yield Problem(("states", state.id, "verdict"), f"the verdict of state {state.id} is `{verdict}`")
+    size = max(to_goal.values(), default=0)
+    if fspa.spec_size != size:
+        yield Problem(("spec_size",), f"spec_size is {size}")
+
+
+def _steps_to(fspa: Fspa, goals: Iterable[int]) -> dict[int, int]:
+    """The least number of transitions from each state to one of ``goals``, by backward breadth-first search."""
+    into: list[list[int]] = [[] for _ in fspa.states]
+    for edge in fspa.edges:
+        into[edge.target].append(edge.source)
+    steps = dict.fromkeys(goals, 0)
+    queue = list(steps)
+    for state in queue:
+        for source in into[state]:
+            if source not in steps:
+                steps[source] = steps[state] + 1
+                queue.append(source)
+    return steps
+
+
+def _verdict(accepting: bool, to_goal: int | None, to_failure: int | None) -> Verdict:
+    if accepting:
+        return "satisfied" if to_failure is None else "holding"
+    return "violated" if to_goal is None else "pending"
+
+
+def _said(distance: int | None) -> str:
+    return "null: it is a trap" if distance is None else str(distance)
+
+
+def _guards(fspa: Fspa) -> Iterator[Problem]:
+    for path, message in guard_problems(fspa):
+        yield Problem(path, message)

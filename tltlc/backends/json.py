@@ -1,0 +1,124 @@
+"""The JSON artefact: what monitors, training and every other tool load."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Files, Options, Target
+from tltlc.backends.artefact.decode import decode
+from tltlc.backends.artefact.encode import encode
+from tltlc.backends.artefact.errors import JsonSchemaValueException
+from tltlc.backends.artefact.layout import layout
+from tltlc.backends.artefact.place import Path, path_of, span_of
+from tltlc.backends.artefact.validator import validate
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.source import SourceFile, Span
+
+TARGET = Target("json", "the automaton as JSON, for every tool that loads one", (".fspa.json",))
+
+VERSION = 1
+MOST_PROBLEMS = 5
+
+
+def emit(fspa: Fspa, options: Options) -> Files:
+    """``NAME.fspa.json``, checked against the schema.
+
+    Raises:
+        ValueError: the automaton cannot be said in the format (a bug of the construction).
+    """
+    document = encode(fspa)
+    validate(document)
+    return {f"{fspa.name}.fspa.json": layout(document)}
+
+
+def read(text: str, name: str) -> Fspa:
+    """The automaton that an artefact holds; messages speak of the artefact as ``name``.
+
+    Raises:
+        TltlError: TLT0601 not an artefact, TLT0602 another version, TLT0603 against the schema,
+            TLT0604 it contradicts itself, TLT0605 a kind of automaton that cannot be read yet.
+    """
+    from tltlc.backends.artefact.consistency import problems
+
+    source = SourceFile(name, text)
+    try:
+        fspa = decode(_document(source))
+        found = []
+        for problem in problems(fspa):
+            found.append(_problem(source, "TLT0604", problem.message, problem.path))
+            if len(found) == MOST_PROBLEMS:
+                break
+    except RecursionError:
+        raise TltlError([Diagnostic("TLT0601", f"`{name}` is nested too deeply")]) from None
+    if found:
+        raise TltlError(found)
+    return fspa
+
+
+def _document(source: SourceFile) -> dict[str, Any]:
+    """The parsed text, once it is known to be an artefact of this version and to fit the schema."""
+    import json
+
+    try:
+        document = json.loads(source.text, parse_constant=_no_constant)
+    except json.JSONDecodeError as error:
+        where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _lower_first(error.msg))
+        raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,))]) from None
+    except _NoNumber as error:
+        raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON: {error} is no number")]) from None
+    except ValueError:
+        # Python refuses to convert whole numbers of thousands of digits.
+        raise TltlError([Diagnostic("TLT0601", f"a number in `{source.name}` has too many digits")]) from None
+    if not isinstance(document, dict) or document.get("format") != "fspa":
+        help = "an artefact is what `tltlc compile` writes: NAME.fspa.json"
+        raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is JSON, but not an artefact", help=help)])
+    version = document.get("version")
+    if isinstance(version, bool) or version != VERSION:
+        raise TltlError([_other_version(source, version)])
+    try:
+        validate(document)
+    except JsonSchemaValueException as error:
+        raise TltlError([_broken_schema(source, error)]) from None
+    if document["semantics"] == "infinite" or "acceptance" in document:
+        title = "automata over infinite traces cannot be read yet"
+        raise TltlError([_problem(source, "TLT0605", title, ("semantics",), help=None)])
+    return document
+
+
+class _NoNumber(Exception):
+    """``NaN`` or ``Infinity``, which Python would read."""
+
+
+def _no_constant(constant: str) -> None:
+    raise _NoNumber(constant)
+
+
+def _lower_first(text: str) -> str:
+    return text[:1].lower() + text[1:]
+
+
+def _other_version(source: SourceFile, version: object) -> Diagnostic:
+    if not isinstance(version, int) or isinstance(version, bool):
+        return _problem(source, "TLT0602", "this artefact does not say its version", ("version",))
+    title = f"this artefact has version {version}, and only version {VERSION} can be read"
+    help = "use a newer tltlc" if version > VERSION else "compile the spec again"
+    return _problem(source, "TLT0602", title, ("version",), help)
+
+
+def _broken_schema(source: SourceFile, error: JsonSchemaValueException) -> Diagnostic:
+    path = path_of(error.place)
+    place = f"`{error.place.removeprefix('data').removeprefix('.')}`" if path else "the artefact"
+    remark = str(error).removeprefix(error.place).strip()
+    if error.rule == "required":
+        remark = "lacks " + remark.removeprefix("must contain ").removesuffix(" properties").strip("[]")
+    return _problem(source, "TLT0603", f"{place} {remark}", path)
+
+
+def _problem(
+    source: SourceFile, code: str, title: str, path: Path, help: str | None = "compile the spec again"
+) -> Diagnostic:
+    span = span_of(source.text, path)
+    line_end = source.text.find("\n", span.start, span.end)
+    first_line = span if line_end < 0 else Span(span.start, line_end)
+    return Diagnostic(code, title, (Label(source, first_line),), help)
