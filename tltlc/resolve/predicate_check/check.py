@@ -1,0 +1,143 @@
+"""Checks a predicate: is its value within the declared range, and is it continuous between ``when`` cases?
+
+Every answer is one of three: proved (no finding), wrong at a concrete point, or unproved.  The
+means, cheapest first: interval arithmetic, a search for a wrong point, exact signs and subdivision,
+remembered answers, sympy.  Only the last imports it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import inf
+from typing import Literal
+
+from tltlc.expression import Expression, Signal
+from tltlc.resolve import spec
+from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases, condition_operands, variables
+from tltlc.resolve.predicate_check.proof import proves_within
+from tltlc.resolve.predicate_check.region import Box, Region, Variable
+
+FindingKind = Literal["range_wrong", "range_unproved", "discontinuous", "continuity_unproved"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What is wrong with a predicate, or could not be shown.
+
+    ``witness`` gives the value of each signal and param at the point that ``message`` speaks of; it is
+    empty where the kind ends in ``unproved``.
+    """
+
+    kind: FindingKind
+    message: str
+    witness: Mapping[str, float] = field(default_factory=dict)
+
+
+def check_predicate(
+    expression: Expression,
+    signals: Mapping[str, spec.Signal],
+    params: Mapping[str, spec.Param],
+    low: float,
+    high: float,
+) -> tuple[Finding, ...]:
+    """The findings on a predicate whose declared range is ``[low, high]``, for all signal and param values.
+
+    ``signals`` and ``params`` hold at least those that the expression reads, by name; an end of a range
+    that is None is open.  At most one finding on the range and one on continuity.  Never raises.
+    """
+    box, bools = _box(expression, signals, params)
+    predicate = Predicate(expression, box, bools, low, high)
+    try:
+        found = (_check_range(predicate), _check_continuity(predicate))
+    except (TooManyCasesError, RecursionError):
+        found = (Finding("range_unproved", "the expression is too large to check"), None)
+    return tuple(finding for finding in found if finding is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Predicate:
+    """What is checked: the value, where its variables range, which of them are bools, the declared range."""
+
+    expression: Expression
+    box: Box
+    bools: frozenset[Variable]
+    low: float
+    high: float
+
+
+def _check_range(predicate: Predicate) -> Finding | None:
+    whole = Region(predicate.box, {})
+    low, high = predicate.low, predicate.high
+    tasks = [(case, low, high) for case in cases(predicate.expression)]
+    tasks += [(operand, -inf, inf) for operand in condition_operands(predicate.expression)]
+    doubtful = []
+    for case, least, most in tasks:
+        region = whole.where(case.constraints)
+        if region is not None and not proves_within(case.value, region, least, most):
+            doubtful.append(case)
+    if not doubtful:
+        return None
+    from tltlc.resolve.predicate_check.witness import find_outside
+
+    witness = find_outside(predicate.expression, predicate.box, predicate.bools, low, high)
+    if witness is not None:
+        values = _by_name(witness.point)
+        what = witness.reason if witness.value is None else f"is {_number(witness.value)}"
+        return Finding("range_wrong", f"{_where(values)}the value {what}", values)
+    return Finding("range_unproved", f"could not prove that the value stays in [{_number(low)}, {_number(high)}]")
+
+
+def _check_continuity(predicate: Predicate) -> Finding | None:
+    all_cases = cases(predicate.expression)
+    if len(all_cases) < 2:
+        return None
+    from tltlc.resolve.predicate_check import continuity
+
+    whole = Region(predicate.box, {})
+    doubtful = [
+        meeting
+        for meeting in continuity.meetings(all_cases, whole, predicate.bools)
+        if not continuity.proves_agreement(meeting)
+    ]
+    if not doubtful:
+        return None
+    jump = continuity.find_jump(all_cases, predicate.expression, predicate.box, predicate.bools)
+    if jump is not None:
+        values = _by_name(jump.point)
+        message = f"{_where(values)}the value jumps from {_number(jump.before)} to {_number(jump.after)}"
+        return Finding("discontinuous", message, values)
+    return Finding("continuity_unproved", "could not prove that the value is continuous between its `when` cases")
+
+
+def _box(
+    expression: Expression, signals: Mapping[str, spec.Signal], params: Mapping[str, spec.Param]
+) -> tuple[Box, frozenset[Variable]]:
+    """The ranges of the variables that the expression reads, and those variables that are bools."""
+    box: dict[Variable, tuple[float, float]] = {}
+    bools = set()
+    for variable in variables(expression):
+        declared = signals[variable.name] if isinstance(variable, Signal) else params[variable.name]
+        if declared.type == "bool":
+            bools.add(variable)
+            box[variable] = (0.0, 1.0)
+        else:
+            least = -inf if declared.low is None else float(declared.low)
+            most = inf if declared.high is None else float(declared.high)
+            box[variable] = (least, most)
+    return box, frozenset(bools)
+
+
+def _by_name(point: Mapping[Variable, float]) -> dict[str, float]:
+    return {variable.name: value for variable, value in point.items()}
+
+
+def _where(values: Mapping[str, float]) -> str:
+    """``with distance = 3, far = 2 ``, or nothing where there are no variables."""
+    if not values:
+        return ""
+    return "with " + ", ".join(f"{name} = {_number(value)}" for name, value in values.items()) + " "
+
+
+def _number(value: float) -> str:
+    return f"{value:.6g}"

@@ -1,0 +1,180 @@
+"""Interval arithmetic on the real line, rounded outwards.
+
+An interval is a pair ``(low, high)`` with ``low <= high``; an infinite end means that there is no
+bound on that side, the values themselves are finite.  Every function returns an interval that
+contains each value the operation can take on members of its arguments; zeros stay exact, so signs
+survive rounding.
+"""
+
+from __future__ import annotations
+
+from math import exp, inf, isinf, nextafter, sqrt, tanh
+
+Interval = tuple[float, float]
+
+EVERYTHING: Interval = (-inf, inf)
+LARGEST_EXPONENT = 709.0  # exp overflows a little above
+_LARGEST_POWER = 64
+
+
+class UndefinedError(Exception):
+    """The operation has no value for some members of its arguments; the text says what may go wrong."""
+
+
+def add(a: Interval, b: Interval) -> Interval:
+    """Sum."""
+    return _sum(a[0], b[0], -inf), _sum(a[1], b[1], inf)
+
+
+def negate(a: Interval) -> Interval:
+    """``-a``."""
+    return -a[1], -a[0]
+
+
+def subtract(a: Interval, b: Interval) -> Interval:
+    """Difference."""
+    return add(a, negate(b))
+
+
+def multiply(a: Interval, b: Interval) -> Interval:
+    """Product, for independent factors."""
+    corners = [(x, y) for x in a for y in b]
+    return min(_product(x, y, -inf) for x, y in corners), max(_product(x, y, inf) for x, y in corners)
+
+
+def divide(a: Interval, b: Interval, *, nonzero: bool = False) -> Interval:
+    """Quotient; ``nonzero`` promises that the divisor is not 0 although its interval may end there.
+
+    Raises UndefinedError where the divisor may be 0.
+    """
+    if b[0] < 0 < b[1] or b == (0.0, 0.0) or (0.0 in b and not nonzero):
+        raise UndefinedError("divides by zero")
+    corners = [(x, y) for x in a for y in _signed_ends(b)]
+    return min(_quotient(x, y, -inf) for x, y in corners), max(_quotient(x, y, inf) for x, y in corners)
+
+
+def power(a: Interval, b: Interval) -> Interval:
+    """``a ^ b``; raises UndefinedError for roots of negatives and for 0 to a negative power."""
+    if b[0] == b[1] and b[0] == int(b[0]) and abs(b[0]) <= _LARGEST_POWER:
+        return _integer_power(a, int(b[0]))
+    if a[0] < 0:
+        raise UndefinedError("takes the root of a negative number")
+    if a[0] == 0 and b[0] <= 0:
+        raise UndefinedError("raises zero to a negative power")
+    corners = [_real_power(x, y) for x in a for y in b]
+    return max(0.0, _outwards(min(corners), -inf)), _outwards(max(corners), inf)
+
+
+def root(a: Interval) -> Interval:
+    """Square root; raises UndefinedError where the argument may be negative."""
+    if a[0] < 0:
+        raise UndefinedError("takes the root of a negative number")
+    return _root(a[0], -inf), _root(a[1], inf)
+
+
+def exponential(a: Interval) -> Interval:
+    """``exp``; raises UndefinedError where the value may be too large for a number."""
+    if a[1] > LARGEST_EXPONENT:
+        raise UndefinedError("is too large to compute")
+    return max(0.0, _outwards(exp(a[0]), -inf)), _outwards(exp(a[1]), inf)
+
+
+def hyperbolic_tangent(a: Interval) -> Interval:
+    """``tanh``."""
+    return max(-1.0, _outwards(tanh(a[0]), -inf)), min(1.0, _outwards(tanh(a[1]), inf))
+
+
+def absolute(a: Interval) -> Interval:
+    """``abs``."""
+    if a[0] >= 0:
+        return a
+    return (-a[1], -a[0]) if a[1] <= 0 else (0.0, max(-a[0], a[1]))
+
+
+def smaller(a: Interval, b: Interval) -> Interval:
+    """``min``."""
+    return min(a[0], b[0]), min(a[1], b[1])
+
+
+def larger(a: Interval, b: Interval) -> Interval:
+    """``max``."""
+    return max(a[0], b[0]), max(a[1], b[1])
+
+
+def meet(a: Interval, b: Interval) -> Interval | None:
+    """The intersection, or None if it is empty."""
+    low, high = max(a[0], b[0]), min(a[1], b[1])
+    return (low, high) if low <= high else None
+
+
+def _integer_power(a: Interval, n: int) -> Interval:
+    if n == 0:
+        return 1.0, 1.0
+    if n < 0:
+        return divide((1.0, 1.0), _integer_power(a, -n))
+    low, high = absolute(a) if n % 2 == 0 else a
+    return _outward_power(low, n, -inf), _outward_power(high, n, inf)
+
+
+def _outward_power(x: float, n: int, towards: float) -> float:
+    if n == 1 or x in (0.0, 1.0, -1.0):
+        return x**n
+    negative = x < 0 and n % 2 == 1
+    return _outwards(_real_power(abs(x), float(n)) * (-1.0 if negative else 1.0), towards, negative)
+
+
+def _real_power(x: float, y: float) -> float:
+    if x == 1.0:
+        return 1.0
+    try:
+        return float(x**y)
+    except OverflowError:
+        return inf
+    except ZeroDivisionError:
+        return inf
+
+
+def _root(x: float, towards: float) -> float:
+    value = sqrt(x)
+    return value if value * value == x and value == int(min(value, 1e6)) else max(0.0, _outwards(value, towards))
+
+
+def _sum(x: float, y: float, towards: float) -> float:
+    total = x + y
+    if total - x == y and total - y == x:
+        return total
+    return _outwards(total, towards)
+
+
+def _product(x: float, y: float, towards: float) -> float:
+    if x == 0 or y == 0:
+        return 0.0
+    if abs(x) == 1 or abs(y) == 1:
+        return x * y
+    return _outwards(x * y, towards, (x < 0) != (y < 0))
+
+
+def _quotient(x: float, y: float, towards: float) -> float:
+    if x == 0 or isinf(y):
+        return 0.0  # with both infinite, the other corners give the infinite end
+    if abs(y) == 1:
+        return x * y
+    if x == y:
+        return 1.0
+    negative = (x < 0) != (y < 0)
+    if abs(y) < 1e-300:
+        return -inf if negative else inf
+    return _outwards(x / y, towards, negative)
+
+
+def _signed_ends(b: Interval) -> Interval:
+    """The ends of an interval without 0 inside, an end at 0 replaced by the tiniest number of its sign."""
+    return (b[0] or 5e-324), (b[1] or -5e-324)
+
+
+def _outwards(x: float, towards: float, negative: bool | None = None) -> float:
+    """Two steps outwards, as library functions may err by one, but not past 0 where the sign is known."""
+    value = nextafter(nextafter(x, towards), towards)
+    if negative is not None and (value > 0) == negative:
+        return 0.0
+    return value

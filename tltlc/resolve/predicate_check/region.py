@@ -1,0 +1,207 @@
+"""Regions of signal and param values, and the bounds that an expression has on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from math import inf
+
+from tltlc.expression import Const, Expression, Op, Param, Signal
+from tltlc.resolve.predicate_check import interval
+from tltlc.resolve.predicate_check.cases import Constraint
+from tltlc.resolve.predicate_check.interval import EVERYTHING, Interval, UndefinedError
+
+Variable = Signal | Param
+Box = Mapping[Variable, Interval]
+
+_ROUNDS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """The points of a box where some expressions lie within known bounds.
+
+    ``nonzero`` expressions are not 0 anywhere.  A region may be empty without knowing it.
+    """
+
+    box: Box
+    known: Mapping[Expression, Interval]
+    nonzero: frozenset[Expression] = frozenset()
+
+    def where(self, constraints: Iterable[Constraint]) -> Region | None:
+        """The part where the constraints hold, its box narrowed, or None if that is surely empty."""
+        known, nonzero = dict(self.known), set(self.nonzero)
+        for constraint in constraints:
+            difference = constraint.difference
+            known[difference] = interval.meet(known.get(difference, EVERYTHING), (0.0, inf)) or (0.0, 0.0)
+            if isinstance(difference, Op) and difference.op == "-":
+                mirrored = Op("-", difference.args[::-1])
+                known[mirrored] = interval.negate(known[difference])
+                if constraint.strict:
+                    nonzero.add(mirrored)
+            if constraint.strict:
+                nonzero.add(difference)
+        return Region(self.box, known, frozenset(nonzero)).narrowed()
+
+    def narrowed(self) -> Region | None:
+        """The same points in a box as small as the known bounds allow, or None if they exclude each other."""
+        box = dict(self.box)
+        for _ in range(_ROUNDS if self.known else 0):
+            before = dict(box)
+            try:
+                for expression, bounds in self.known.items():
+                    found = _narrow(expression, bounds, box)
+                    if expression in self.nonzero and found == (0.0, 0.0):
+                        return None
+            except _EmptyError:
+                return None
+            if box == before:
+                break
+        return replace(self, box=box)
+
+    def halves(self) -> tuple[Region, Region] | None:
+        """The region cut in two across its relatively longest side, or None if no side can be cut."""
+        widest = max(self.box, key=lambda variable: _length(self.box[variable]), default=None)
+        if widest is None or _length(self.box[widest]) < 1e-9:
+            return None
+        low, high = self.box[widest]
+        middle = _middle(low, high)
+        lower = replace(self, box={**self.box, widest: (low, middle)})
+        return lower, replace(self, box={**self.box, widest: (middle, high)})
+
+
+def bound(expression: Expression, region: Region) -> Interval:
+    """An interval that contains every value of an expression without ``when`` on a region.
+
+    Raises UndefinedError where the expression may have no value somewhere in the region.
+    """
+    value = _bound(expression, region)
+    known = region.known.get(expression)
+    return (interval.meet(value, known) or known) if known else value
+
+
+def _bound(expression: Expression, region: Region) -> Interval:
+    if isinstance(expression, Const):
+        return expression.value, expression.value
+    if isinstance(expression, (Signal, Param)):
+        return region.box[expression]
+    assert isinstance(expression, Op), "cases have no `when`"
+    args = [bound(arg, region) for arg in expression.args]
+    if expression.op == "/":
+        quotient = interval.divide(args[0], args[1], nonzero=expression.args[1] in region.nonzero)
+        return (1.0, 1.0) if expression.args[0] == expression.args[1] else quotient
+    if expression.op == "-" and expression.args[0] == expression.args[1]:
+        return 0.0, 0.0
+    if expression.op == "*" and expression.args[0] == expression.args[1]:
+        return interval.power(args[0], (2.0, 2.0))
+    return _apply(expression.op, args)
+
+
+def _apply(op: str, args: list[Interval]) -> Interval:
+    first = args[0]
+    if op in _UNARY:
+        return _UNARY[op](first)
+    if op == "clamp":
+        return interval.larger(args[1], interval.smaller(first, args[2]))
+    function = _BINARY[op]
+    for other in args[1:]:
+        first = function(first, other)
+    return first
+
+
+_UNARY = {
+    "neg": interval.negate,
+    "abs": interval.absolute,
+    "sqrt": interval.root,
+    "exp": interval.exponential,
+    "tanh": interval.hyperbolic_tangent,
+}
+_BINARY = {
+    "+": interval.add,
+    "-": interval.subtract,
+    "*": interval.multiply,
+    "/": interval.divide,
+    "^": interval.power,
+    "min": interval.smaller,
+    "max": interval.larger,
+}
+
+
+class _EmptyError(Exception):
+    """No point of the box satisfies the constraints."""
+
+
+def _narrow(expression: Expression, target: Interval, box: dict[Variable, Interval]) -> Interval:
+    """Shrink the box to where the expression can lie in ``target``; returns what is left of ``target``.
+
+    Forward evaluation, then each operator's inverse on the way back (the contractor HC4).
+    """
+    left = interval.meet(_loose_bound(expression, box), target)
+    if left is None:
+        raise _EmptyError
+    if isinstance(expression, (Signal, Param)):
+        box[expression] = left
+    elif isinstance(expression, Op):
+        _narrow_args(expression, left, box)
+    return left
+
+
+def _narrow_args(expression: Op, value: Interval, box: dict[Variable, Interval]) -> None:
+    op, args = expression.op, expression.args
+    if op == "neg":
+        _narrow(args[0], interval.negate(value), box)
+    elif op in ("+", "-") and len(args) == 2:
+        a, b = (_loose_bound(arg, box) for arg in args)
+        _narrow(args[0], (interval.subtract if op == "+" else interval.add)(value, b), box)
+        a = _loose_bound(args[0], box)
+        _narrow(args[1], interval.subtract(value, a) if op == "+" else interval.subtract(a, value), box)
+    elif op == "*" and len(args) == 2:
+        for one, other in ((args[0], args[1]), (args[1], args[0])):
+            divisor = _loose_bound(other, box)
+            if divisor[0] > 0 or divisor[1] < 0:
+                _narrow(one, interval.divide(value, divisor), box)
+    elif op == "/":
+        _narrow(args[0], interval.multiply(value, _loose_bound(args[1], box)), box)
+    elif op in ("min", "max"):
+        for arg in args:
+            _narrow(arg, (value[0], inf) if op == "min" else (-inf, value[1]), box)
+    elif op == "abs":
+        inner = _loose_bound(args[0], box)
+        side = value if inner[0] >= 0 else interval.negate(value) if inner[1] <= 0 else (-value[1], value[1])
+        _narrow(args[0], side, box)
+    elif op == "sqrt":
+        _narrow(args[0], interval.power((max(0.0, value[0]), max(0.0, value[1])), (2.0, 2.0)), box)
+    elif op == "^" and args[1] == Const(2.0):
+        high = interval.root((0.0, max(0.0, value[1])))[1]
+        inner = _loose_bound(args[0], box)
+        low = interval.root((max(0.0, value[0]),) * 2)[0] if inner[0] >= 0 else -high
+        _narrow(args[0], (low, high), box)
+
+
+def _loose_bound(expression: Expression, box: Box) -> Interval:
+    try:
+        return bound(expression, Region(box, {}))
+    except UndefinedError:
+        return EVERYTHING
+
+
+def _length(side: Interval) -> float:
+    """How much a cut across a side may help: logarithmic for sides far from 0, 100 where infinite."""
+    low, high = side
+    if high - low == inf:
+        return 100.0
+    return (high - low) / (1.0 + min(abs(low), abs(high)))
+
+
+def _middle(low: float, high: float) -> float:
+    if low == -inf and high == inf:
+        return 0.0
+    if high == inf:
+        return max(1.0, 4.0 * low) if low >= 0 else 0.0
+    if low == -inf:
+        return min(-1.0, 4.0 * high) if high <= 0 else 0.0
+    if low > 0 and high > 4 * low:
+        return float((low * high) ** 0.5)
+    if high < 0 and low < 4 * high:
+        return -float((low * high) ** 0.5)
+    return low + (high - low) / 2

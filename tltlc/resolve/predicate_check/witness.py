@@ -1,0 +1,163 @@
+"""Searches for points that show a wrong range; deterministic and of bounded work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice, permutations, product
+from math import inf, isfinite, prod
+
+from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression_eval import evaluate
+from tltlc.resolve.predicate_check.interval import Interval
+from tltlc.resolve.predicate_check.region import Box, Variable
+
+Point = Mapping[Variable, float]
+
+CLEARLY = 1e-6  # how far outside a value must be to be called so
+_LARGEST_GRID = 500
+_SCATTERED = 300
+_CLIMBING_ROUNDS = 40
+_SPREAD = (1.0, 3.0, 10.0, 100.0, 1e6)  # distances from the closed end of a range without bound
+
+
+@dataclass(frozen=True, slots=True)
+class Witness:
+    """A point, and the value there or the reason why there is none."""
+
+    point: Point
+    value: float | None
+    reason: str = ""
+
+
+def value_at(expression: Expression, point: Point) -> Witness:
+    """The value of an expression at a point, or what goes wrong there."""
+    signals = {variable.name: value for variable, value in point.items() if isinstance(variable, Signal)}
+    params = {variable.name: value for variable, value in point.items() if isinstance(variable, Param)}
+    try:
+        value = evaluate(expression, signals, params)
+    except ZeroDivisionError:
+        return Witness(point, None, "divides by zero")
+    except OverflowError:
+        return Witness(point, None, "is too large to compute")
+    except ValueError:
+        return Witness(point, None, "takes the root of a negative number")
+    return Witness(point, value) if isfinite(value) else Witness(point, None, "is too large to compute")
+
+
+def find_outside(
+    expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float
+) -> Witness | None:
+    """A point of the box where the value is missing or clearly outside ``[low, high]``, or None.
+
+    Simple points come first; a later point replaces an earlier one only if it is much worse.
+    ``bools`` are the variables that are 0 or 1 and nothing between.
+    """
+
+    def excess(witness: Witness) -> float:
+        return inf if witness.value is None else max(low - witness.value, witness.value - high)
+
+    best: Witness | None = None
+    for point in points(expression, box, bools):
+        here = value_at(expression, point)
+        if best is None or excess(here) > max(excess(best), 1.5 * excess(best)):
+            best = here
+        if best.value is None:
+            return best
+    if best is not None and excess(best) <= CLEARLY:
+        best = _climb(best, excess, expression, box, bools)
+    return best if best is not None and excess(best) > CLEARLY else None
+
+
+def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iterator[Point]:
+    """Corners and a grid as far as they are few, points where two variables are equal, scattered points."""
+    names = list(box)
+    extra = tuple(dict.fromkeys(_constants(expression)))
+    axes = [_axis(box[name], name in bools, extra) for name in names]
+    grid = [dict(zip(names, values, strict=True)) for values in _grid(axes)]
+    yield from grid
+    for one, other in islice(permutations(names, 2), 20):
+        for point in grid[:20]:
+            if box[one][0] <= point[other] <= box[one][1] and one not in bools:
+                yield {**point, one: point[other]}
+    for number in range(1, _SCATTERED + 1 if names else 1):
+        yield {
+            name: _at(box[name], _fraction(number, position), name in bools) for position, name in enumerate(names)
+        }
+
+
+def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
+    """The finest grid of at most _LARGEST_GRID points, or as many corners."""
+    depth = 2
+    while depth < 12 and prod(min(len(axis), depth + 1) for axis in axes) <= _LARGEST_GRID:
+        depth += 1
+    return islice(product(*(axis[:depth] for axis in axes)), _LARGEST_GRID)
+
+
+def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[float, ...]:
+    """Values worth trying for one variable, the simplest first."""
+    low, high = side
+    if is_bool:
+        return low, high
+    ends = [end for end in side if isfinite(end)]
+    inner = [low + (high - low) / 2] if len(ends) == 2 and isfinite(high - low) else [0.0]
+    spread = [low + step for step in _SPREAD] + [high - step for step in _SPREAD]
+    candidates = [*ends, *inner, *extra, 0.0, 1.0, -1.0, *(_SPREAD if not ends else spread)]
+    if not ends:
+        candidates += [-step for step in _SPREAD]
+    return tuple(dict.fromkeys(x + 0.0 for x in candidates if isfinite(x) and low <= x <= high))
+
+
+def _constants(node: Expression | Condition) -> Iterator[float]:
+    if isinstance(node, Const):
+        yield node.value
+    elif isinstance(node, (Op, Condition)):
+        for arg in node.args:
+            yield from _constants(arg)
+    elif isinstance(node, When):
+        for condition, value in node.cases:
+            yield from _constants(condition)
+            yield from _constants(value)
+        yield from _constants(node.otherwise)
+
+
+def _fraction(number: int, position: int) -> float:
+    """A number in (0, 1): term ``number`` of an additive sequence, a different one per position."""
+    stride: float = 0.6180339887498949 ** (1 + position / 3)
+    return (0.5 + number * stride) % 1.0
+
+
+def _at(side: Interval, fraction: float, is_bool: bool) -> float:
+    """The value that lies at a fraction of the way through a range, open ends drawn near."""
+    low, high = side
+    if is_bool:
+        return low if fraction < 0.5 else high
+    if isfinite(high - low):
+        return min(max(low + fraction * (high - low), low), high)
+    if isfinite(low) and high == inf:
+        return low + fraction / (1.0 - fraction)
+    if isfinite(high) and low == -inf:
+        return high - fraction / (1.0 - fraction)
+    centred = 2.0 * fraction - 1.0
+    return min(max(2.0 * centred / (1.0 - abs(centred) + 1e-9), low), high)
+
+
+def _climb(
+    start: Witness, excess: Callable[[Witness], float], expression: Expression, box: Box, bools: frozenset[Variable]
+) -> Witness:
+    """A local maximum of the excess, by steps along the axes that shrink."""
+    best = start
+    steps = {v: (high - low) / 8 if isfinite(high - low) else 1.0 for v, (low, high) in box.items() if v not in bools}
+    for _ in range(_CLIMBING_ROUNDS):
+        for variable, step in steps.items():
+            low, high = box[variable]
+            old = best.point[variable]
+            found = False
+            for value in (min(old + step, high), max(old - step, low)):
+                here = value_at(expression, {**best.point, variable: value})
+                if excess(here) > excess(best):
+                    best, found = here, True
+            steps[variable] = step * (1.0 if found else 0.5)
+        if best.value is None:
+            break
+    return best
