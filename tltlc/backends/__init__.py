@@ -96,5 +96,5 @@ def _unknown(name: str) -> Diagnostic:
 
     known = targets()
     near = get_close_matches(name, known, n=1)
-    help = f"did you mean `{near[0]}`?" if near else f"there are: {', '.join(known)}"
-    return Diagnostic("TLT0710", f"there is no target `{name}`", help=help)
+    way_out = f"did you mean `{near[0]}`?" if near else f"there are: {', '.join(known)}"
+    return Diagnostic("TLT0710", f"there is no target `{name}`", help=way_out)

@@ -19,6 +19,7 @@ TARGET = Target("json", "the automaton as JSON, for every tool that loads one", 
 
 VERSION = 1
 MOST_PROBLEMS = 5
+RECOMPILE = "compile the spec again"
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -65,14 +66,14 @@ def _document(source: SourceFile) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _lower_first(error.msg))
         raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,))]) from None
-    except _NoNumber as error:
+    except _NoNumberError as error:
         raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON: {error} is no number")]) from None
     except ValueError:
         # Python refuses to convert whole numbers of thousands of digits.
         raise TltlError([Diagnostic("TLT0601", f"a number in `{source.name}` has too many digits")]) from None
     if not isinstance(document, dict) or document.get("format") != "fspa":
-        help = "an artefact is what `tltlc compile` writes: NAME.fspa.json"
-        raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is JSON, but not an artefact", help=help)])
+        title = f"`{source.name}` is JSON, but not an artefact"
+        raise TltlError([Diagnostic("TLT0601", title, help="`tltlc compile` writes artefacts: NAME.fspa.json")])
     version = document.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise TltlError([_other_version(source, version)])
@@ -82,16 +83,16 @@ def _document(source: SourceFile) -> dict[str, Any]:
         raise TltlError([_broken_schema(source, error)]) from None
     if document["semantics"] == "infinite" or "acceptance" in document:
         title = "automata over infinite traces cannot be read yet"
-        raise TltlError([_problem(source, "TLT0605", title, ("semantics",), help=None)])
+        raise TltlError([_problem(source, "TLT0605", title, ("semantics",), way_out=None)])
     return document
 
 
-class _NoNumber(Exception):
+class _NoNumberError(Exception):
     """``NaN`` or ``Infinity``, which Python would read."""
 
 
 def _no_constant(constant: str) -> None:
-    raise _NoNumber(constant)
+    raise _NoNumberError(constant)
 
 
 def _lower_first(text: str) -> str:
@@ -102,8 +103,7 @@ def _other_version(source: SourceFile, version: object) -> Diagnostic:
     if not isinstance(version, int) or isinstance(version, bool):
         return _problem(source, "TLT0602", "this artefact does not say its version", ("version",))
     title = f"this artefact has version {version}, and only version {VERSION} can be read"
-    help = "use a newer tltlc" if version > VERSION else "compile the spec again"
-    return _problem(source, "TLT0602", title, ("version",), help)
+    return _problem(source, "TLT0602", title, ("version",), "use a newer tltlc" if version > VERSION else RECOMPILE)
 
 
 def _broken_schema(source: SourceFile, error: JsonSchemaValueException) -> Diagnostic:
@@ -115,10 +115,8 @@ def _broken_schema(source: SourceFile, error: JsonSchemaValueException) -> Diagn
     return _problem(source, "TLT0603", f"{place} {remark}", path)
 
 
-def _problem(
-    source: SourceFile, code: str, title: str, path: Path, help: str | None = "compile the spec again"
-) -> Diagnostic:
+def _problem(source: SourceFile, code: str, title: str, path: Path, way_out: str | None = RECOMPILE) -> Diagnostic:
     span = span_of(source.text, path)
     line_end = source.text.find("\n", span.start, span.end)
     first_line = span if line_end < 0 else Span(span.start, line_end)
-    return Diagnostic(code, title, (Label(source, first_line),), help)
+    return Diagnostic(code, title, (Label(source, first_line),), way_out)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Union
 
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.backends.artefact.guards import guard_problems
 from tltlc.backends.artefact.place import Path
 from tltlc.expression import Condition, Const, Expression, Param, Signal, When
+from tltlc.resolve import spec
+
+Declared = Union[spec.Signal, spec.Param, spec.Atom]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +40,7 @@ def problems(fspa: Fspa) -> Iterator[Problem]:
 
 def _names(fspa: Fspa) -> Iterator[Problem]:
     """Names are unique, and expressions speak of the declared ones."""
-    declared = {"signals": fspa.signals, "params": fspa.params, "atoms": fspa.atoms}
+    declared: dict[str, Sequence[Declared]] = {"signals": fspa.signals, "params": fspa.params, "atoms": fspa.atoms}
     known: dict[str, set[str]] = {}
     for kind, items in declared.items():
         known[kind] = set()

@@ -19,6 +19,9 @@ HEADER = '''"""Validates artefacts. Generated from fspa.schema.json by generate.
 # fmt: off
 '''
 
+PLAIN_HEAD = "(data, custom_formats={}, name_prefix=None):"
+TYPED_HEAD = "(data: object, custom_formats: object = {}, name_prefix: object = None) -> object:"
+
 RECURSIVE = ("#/definitions/expression", "#/definitions/condition")
 
 
@@ -49,6 +52,7 @@ def _slim(line: str) -> str:
     """Drops what is not needed here: the value and the schema quoted in a ``raise``, decimals, many errors at once."""
     line = re.sub(r", value=.*?, name=(.*?), definition=.*, rule='(\w+)'\)$", r", \1, '\2')", line)
     line = line.replace("(JsonSchemaValueException, JsonSchemaValuesException)", "JsonSchemaValueException")
+    line = line.replace(PLAIN_HEAD, TYPED_HEAD)
     return line.replace(", Decimal", "").replace("str(data_keys)", "str(sorted(data_keys))").rstrip()
 
 

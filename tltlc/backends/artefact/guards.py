@@ -19,7 +19,7 @@ WORK_LIMIT = 200_000
 """Cube operations after which the rest is left unchecked (about a fifth of a second)."""
 
 
-class _Spent(Exception):
+class _SpentError(Exception):
     """The work limit is reached."""
 
 
@@ -32,7 +32,7 @@ class _Work:
     def spend(self, amount: int = 1) -> None:
         self.left -= amount
         if self.left < 0:
-            raise _Spent
+            raise _SpentError
 
 
 def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
@@ -62,7 +62,7 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
             if not _covers_all([cube for index in edges for cube in cubes[index]] + pairs, work):
                 yield ("states", state), f"some samples lead nowhere from state {state}"
                 return
-    except _Spent:
+    except _SpentError:
         return
 
 
@@ -84,15 +84,16 @@ def _guard_problem(
     A set of cubes is the set of all primes of its sum iff none lies in another and each consensus of
     two lies in one of them (Quine 1955).
     """
-    for prime, cube in zip(primes, cubes):
+    for prime, cube in zip(primes, cubes, strict=True):
         if len({atom for atom, _ in prime}) < len(prime):
             return "an implicant names an atom twice"
         if any(_lies_in(cube, pair) for pair in pairs):
             return "an implicant asks for two exclusive atoms at once"
-    whole = [*cubes, *(pair for pair in pairs if not any(_lies_in(pair, cube) for cube in cubes))]
+    uncovered = {pair for pair in pairs if not any(_lies_in(pair, cube) for cube in cubes)}
+    whole = [*cubes, *sorted(uncovered)]
     for one, other in combinations(whole, 2):
         work.spend()
-        if one != other and (_lies_in(one, other) or _lies_in(other, one)) or one == other and one in cubes:
+        if _lies_in(one, other) or _lies_in(other, one):
             return "an implicant is contained in another"
         consensus = _consensus(one, other)
         if consensus is not None:

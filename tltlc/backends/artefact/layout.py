@@ -37,7 +37,7 @@ def _lines(value: Any, indent: int, used: int, encode: Any) -> str:
     step = indent + 2
     if isinstance(value, dict):
         keys = [encode(key) + ": " for key in value]
-        items = [key + _lines(item, step, len(key), encode) for key, item in zip(keys, value.values())]
+        items = [key + _lines(item, step, len(key), encode) for key, item in zip(keys, value.values(), strict=True)]
     else:
         items = [_lines(item, step, 0, encode) for item in value]
     start, end = ("{", "}") if isinstance(value, dict) else ("[", "]")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from json.decoder import JSONDecoder, scanstring
+from json import JSONDecoder
 from typing import Union
 
 from tltlc.source import Span
@@ -43,7 +43,7 @@ def _value_start(decoder: JSONDecoder, text: str, start: int, step: str | int) -
     while text[position] not in "}]":
         key: str | int = index
         if is_object:
-            key, position = scanstring(text, position + 1)
+            key, position = decoder.raw_decode(text, position)
             position = _skip(text, _skip(text, position) + 1)
         if key == step:
             found = position  # of equal keys the last one counts, as for the parser

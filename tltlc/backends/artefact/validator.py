@@ -12,7 +12,7 @@ REGEX_PATTERNS = {
 
 NoneType = type(None)
 
-def validate(data, custom_formats={}, name_prefix=None):
+def validate(data: object, custom_formats: object = {}, name_prefix: object = None) -> object:
     if not isinstance(data, (dict)):
         raise JsonSchemaValueException("" + (name_prefix or "data") + " must be object", "" + (name_prefix or "data") + "", 'type')
     data_is_dict = isinstance(data, dict)
@@ -535,7 +535,7 @@ def validate(data, custom_formats={}, name_prefix=None):
                                                     raise JsonSchemaValueException("" + (name_prefix or "data") + ".acceptance.pairs[{data__acceptance__pairs_x}].inf[{data__acceptance__pairs_item__inf_x}]".format(**locals()) + " must be bigger than or equal to 0", "" + (name_prefix or "data") + ".acceptance.pairs[{data__acceptance__pairs_x}].inf[{data__acceptance__pairs_item__inf_x}]".format(**locals()) + "", 'minimum')
     return data
 
-def validate___definitions_expression(data, custom_formats={}, name_prefix=None):
+def validate___definitions_expression(data: object, custom_formats: object = {}, name_prefix: object = None) -> object:
     if not isinstance(data, (dict)):
         raise JsonSchemaValueException("" + (name_prefix or "data") + " must be object", "" + (name_prefix or "data") + "", 'type')
     try:
@@ -773,7 +773,7 @@ def validate___definitions_expression(data, custom_formats={}, name_prefix=None)
             raise JsonSchemaValueException("" + (name_prefix or "data") + " must not contain "+str(sorted(data_keys))+" properties", "" + (name_prefix or "data") + "", 'additionalProperties')
     return data
 
-def validate___definitions_condition(data, custom_formats={}, name_prefix=None):
+def validate___definitions_condition(data: object, custom_formats: object = {}, name_prefix: object = None) -> object:
     if not isinstance(data, (dict)):
         raise JsonSchemaValueException("" + (name_prefix or "data") + " must be object", "" + (name_prefix or "data") + "", 'type')
     data_is_dict = isinstance(data, dict)
