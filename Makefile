@@ -1,0 +1,52 @@
+# One target per thing a person does here; stamps in .venv make a second run quick.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+.PHONY: demo test lint format generate bench clean
+
+# Compile and draw the Cover and Hide spec, then run its generated monitor over a recorded trace.
+demo: $(VENV)/.installed
+	$(BIN)/tltlc compile examples/cover_and_hide.tltl -o demo -t json,dot,python,svg
+	$(BIN)/python demo/cover_and_hide_monitor.py examples/cover_and_hide.csv > demo/cover_and_hide_run.csv
+	@echo "The last step of the recorded trace, as the generated monitor saw it:"
+	@head -n 1 demo/cover_and_hide_run.csv
+	@tail -n 1 demo/cover_and_hide_run.csv
+	@echo "Written: the artefact demo/cover_and_hide.fspa.json, its picture demo/cover_and_hide.svg,"
+	@echo "the monitor demo/cover_and_hide_monitor.py and every step of the trace, demo/cover_and_hide_run.csv."
+
+test: lint
+	$(BIN)/python -m pytest -q -n 2
+
+lint: $(VENV)/.installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(VENV)/.installed-dev
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+# Rewrite the files that are made from others and kept in the repository.
+generate: $(VENV)/.installed-dev
+	$(BIN)/python -m tltlc.backends.artefact.generate
+	$(BIN)/tltlc render examples/cover_and_hide.tltl -o docs/images/cover_and_hide.svg
+
+bench: $(VENV)/.installed-dev
+	$(BIN)/python -m benchmarks
+
+clean:
+	rm -rf $(VENV) demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+
+$(VENV)/bin/python:
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(PIP) install -c constraints.txt -e .
+	@touch $@
+
+$(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(PIP) install -c constraints.txt -e '.[dev]'
+	@touch $@ $(VENV)/.installed

@@ -1,0 +1,55 @@
+"""The compiler of .tltl specifications to finite state predicate automata (FSPA): its public names.
+
+>>> import tltlc
+>>> fspa, = tltlc.compile_text('''
+...     signal exit_reached: bool
+...     signal health in [0, 1]
+...     spec escape = F exit_reached & G health > 0
+... ''')
+>>> [state.label.ascii for state in fspa.states]
+['F exit_reached & G health > 0', 'G health > 0', 'false']
+
+Importing this package loads nothing else: each name below is loaded when it is first used.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tltlc.automaton.fspa import Fspa as Fspa
+    from tltlc.diagnostics.diagnostic import Diagnostic as Diagnostic
+    from tltlc.diagnostics.diagnostic import TltlError as TltlError
+    from tltlc.logic.formula import Formula as Formula
+    from tltlc.pipeline import compile_file as compile_file
+    from tltlc.pipeline import compile_text as compile_text
+    from tltlc.pipeline import load as load
+
+__version__ = "0.1.0"
+
+__all__ = ["Diagnostic", "Formula", "Fspa", "TltlError", "__version__", "compile_file", "compile_text", "load"]
+
+_HOMES = {
+    "Diagnostic": "tltlc.diagnostics.diagnostic",
+    "Formula": "tltlc.logic.formula",
+    "Fspa": "tltlc.automaton.fspa",
+    "TltlError": "tltlc.diagnostics.diagnostic",
+    "compile_file": "tltlc.pipeline",
+    "compile_text": "tltlc.pipeline",
+    "load": "tltlc.pipeline",
+}
+
+
+def __getattr__(name: str) -> object:
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module 'tltlc' has no attribute {name!r}")
+    from importlib import import_module
+
+    value: object = getattr(import_module(home), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,72 @@
+"""Reading source files: every way in which a file can fail to be a text becomes a diagnostic."""
+
+from __future__ import annotations
+
+import os
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.source import SourceFile, Span
+
+MAX_SOURCE_BYTES: Final = 1 << 20
+"""Greatest size of a source file: one mebibyte."""
+
+MAX_ARTEFACT_BYTES: Final = 1 << 28
+"""Greatest size of an artefact, well above that of an automaton with the default state budget."""
+
+_BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
+
+
+def read_source(
+    path: str | os.PathLike[str], name: str | None = None, *, max_bytes: int = MAX_SOURCE_BYTES
+) -> SourceFile:
+    """The text of a file; ``name`` is what messages call it, by default its path.
+
+    Errors (:class:`TltlError`): TLT0001 where the system cannot read it, and those of :func:`decode`.
+    """
+    shown = name if name is not None else os.fspath(path)
+    try:
+        with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
+            data = file.read(max_bytes + 1)
+    except (OSError, ValueError) as error:
+        raise TltlError([Diagnostic("TLT0001", f"cannot read `{shown}`: {_reason(error)}")]) from None
+    return decode(data, shown, max_bytes=max_bytes)
+
+
+def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> SourceFile:
+    """The text that the bytes of a file hold: UTF-8, with or without a byte order mark.
+
+    Errors (:class:`TltlError`): TLT0002 not UTF-8, TLT0003 binary, TLT0004 larger than ``max_bytes``.
+    """
+    if len(data) > max_bytes:
+        title = f"`{name}` is larger than {max_bytes >> 20} MiB"
+        raise TltlError([Diagnostic("TLT0004", title, help="split it: a file may `import` others")])
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise TltlError([Diagnostic("TLT0002", f"`{name}` is UTF-16 text", help="save it as UTF-8")])
+    if b"\0" in data:
+        raise TltlError([Diagnostic("TLT0003", f"`{name}` is a binary file", help="name a text file")])
+    try:
+        return SourceFile(name, data.removeprefix(_BYTE_ORDER_MARK).decode())
+    except UnicodeDecodeError as error:
+        raise _not_utf8(error.object, name, error.start) from None
+
+
+def _not_utf8(data: bytes, name: str, start: int) -> TltlError:
+    """The error for the first bad byte, shown in a text where every bad byte is replaced."""
+    source = SourceFile(name, data.decode(errors="replace"))
+    offset = len(data[:start].decode())
+    label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is no UTF-8")
+    return TltlError([Diagnostic("TLT0002", f"`{name}` is not UTF-8 text", (label,), help="save it as UTF-8")])
+
+
+def _reason(error: OSError | ValueError) -> str:
+    """Why the system refused, in plain words."""
+    if isinstance(error, FileNotFoundError):
+        return "there is no such file"
+    if isinstance(error, IsADirectoryError):
+        return "it is a folder"
+    if isinstance(error, PermissionError):
+        return "permission denied"
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror[0].lower() + error.strerror[1:]
+    return "its name is not one that the system allows"

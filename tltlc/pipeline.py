@@ -1,0 +1,173 @@
+"""From source text to automata: parse, resolve, build, each stage once and in order.
+
+A stage runs to its end and reports everything that it found; the next one starts only when there
+was no error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from tltlc.automaton.build import build
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.grammar.parser import parse
+from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
+
+if TYPE_CHECKING:
+    import os
+    from pathlib import Path
+
+    from tltlc.automaton.fspa import Fspa
+    from tltlc.resolve.spec import Program, Spec
+
+DEFAULT_STATE_BUDGET = 50_000
+
+
+@dataclass(frozen=True, slots=True)
+class CompileOptions:
+    """How to compile.
+
+    ``library_dirs`` are searched for imports after the file's own folder; ``params`` override the
+    values of params, as written (``{"level_size": "30 m"}``); ``state_budget`` is the greatest number
+    of states that a construction may explore; ``specs`` are the names to build, none for all.
+    """
+
+    library_dirs: tuple[Path, ...] = ()
+    params: Mapping[str, str] = field(default_factory=dict)
+    state_budget: int = DEFAULT_STATE_BUDGET
+    specs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Compiled:
+    """A compiled file: its ``automata`` in the order of its specs, and ``diagnostics`` that are no errors."""
+
+    program: Program
+    automata: tuple[Fspa, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+
+def compile_source(source: SourceFile, options: CompileOptions | None = None) -> Compiled:
+    """Compile every spec of a source text, or those that the options name.
+
+    Errors: :class:`TltlError` with everything that was found up to the end of the stage that failed;
+    TLT0710 where the options name a spec that is not there.
+    """
+    options = options or CompileOptions()
+    module, found = parse(source)
+    _stop_at_errors(found)
+    program, resolved = resolve(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
+    found += resolved
+    _stop_at_errors(found)
+    automata: list[Fspa] = []
+    for spec in pick_specs(program.specs, options.specs, source.name):
+        try:
+            fspa = build(spec, state_budget=options.state_budget)
+        except TltlError as error:
+            found += error.diagnostics
+        else:
+            automata.append(fspa)
+            found += _verdict_warnings(spec, fspa)
+    _stop_at_errors(found)
+    return Compiled(program, tuple(automata), found)
+
+
+def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tuple[Spec, ...]:
+    """The specs of these names in the order of the file, all for no names.
+
+    Errors: TLT0710 for a name that is none of them.
+    """
+    known = [spec.name for spec in specs]
+    for name in names:
+        if name not in known:
+            raise TltlError([unknown_spec(name, known, file)])
+    return tuple(spec for spec in specs if not names or spec.name in names)
+
+
+def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
+    """The message for a name that is no spec of the file."""
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, known, n=1)
+    listed = ", ".join(f"`{other}`" for other in known[:10]) + (", …" if len(known) > 10 else "")
+    way_out = f"did you mean `{close[0]}`?" if close else f"it holds {listed}" if known else "it holds no spec"
+    return Diagnostic("TLT0710", f"`{file}` has no spec `{name}`", help=way_out)
+
+
+def compile_text(text: str, name: str = "<text>", options: CompileOptions | None = None) -> tuple[Fspa, ...]:
+    """The automata of the specs of a text, in order.
+
+    ``name`` is what messages call the text; imports are looked up in the folder of that path, too.
+    Errors: :class:`TltlError`.
+
+    >>> import tltlc
+    >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
+    >>> fspa.name, len(fspa.states), fspa.judge
+    ('hide', 2, 'limit')
+    >>> tltlc.compile_text("spec hide = G !seem  signal seen: bool")
+    Traceback (most recent call last):
+    ...
+    tltlc.diagnostics.diagnostic.TltlError: TLT0201: no predicate `seem` here
+    """
+    return compile_source(SourceFile(name, text), options).automata
+
+
+def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = None) -> tuple[Fspa, ...]:
+    """The automata of the specs of a file, in order.
+
+    Errors: :class:`TltlError`, with code TLT0001 to TLT0004 where the file is no readable text.
+
+    >>> import tltlc
+    >>> fspa, = tltlc.compile_file("examples/cover_and_hide.tltl")
+    >>> fspa.spec_size
+    3
+    """
+    return compile_source(read_source(path), options).automata
+
+
+def load(path: str | os.PathLike[str]) -> Fspa:
+    """The automaton that an artefact ``NAME.fspa.json`` holds.
+
+    Errors: :class:`TltlError` where the file cannot be read, is no artefact, or contradicts itself.
+
+    >>> import tltlc, tempfile, pathlib
+    >>> from tltlc.backends import emit
+    >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
+    >>> (name, text), = emit("json", fspa).items()
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, name)
+    ...     _ = path.write_bytes(text.encode() if isinstance(text, str) else text)
+    ...     tltlc.load(path) == fspa
+    True
+    """
+    return read_artefact(read_source(path, max_bytes=MAX_ARTEFACT_BYTES))
+
+
+def read_artefact(source: SourceFile) -> Fspa:
+    """The automaton in the text of an artefact; errors as for :func:`load`."""
+    from tltlc.backends.json import read
+
+    return read(source.text, source.name)
+
+
+def _stop_at_errors(diagnostics: tuple[Diagnostic, ...]) -> None:
+    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
+        raise TltlError(diagnostics)
+
+
+def _verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
+    """Warnings for a spec that is decided before anything has happened."""
+    label = (Label(spec.source, spec.name_span),)
+    verdict = fspa.states[0].verdict
+    if verdict == "violated":
+        title, code = f"no trace satisfies `{spec.name}`", "TLT0410"
+    elif verdict == "satisfied":
+        title, code = f"every trace satisfies `{spec.name}`", "TLT0411"
+    else:
+        return ()
+    return (Diagnostic(code, title, label, severity="warning"),)
