@@ -7,6 +7,7 @@ from typing import Final
 
 from tltlc.logic import formula as build
 from tltlc.logic.formula import FALSE, TRUE, Formula
+from tltlc.logic.implication import DUAL
 from tltlc.logic.notation import ASCII, Notation, write
 
 _PHRASE: Final = Notation(
@@ -16,7 +17,6 @@ _PHRASE: Final = Notation(
     space_before_bracket=True,
     brackets_between_infix=True,
 )
-_DUAL: Final = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
 
 _PLAIN, _LIST, _SCOPED = 0, 1, 2
 """How far a clause may be misread beside another: not at all; it has inner commas; it must stand apart."""
@@ -261,8 +261,8 @@ def _negated(node: Formula) -> Formula:
             return build.and_(args[0], build.not_(args[1]))
         case "iff":
             return build.iff(args[0], build.not_(args[1]))
-        case op if op in _DUAL:
-            return build.temporal(_DUAL[op], tuple(build.not_(part) for part in args))  # type: ignore[arg-type]
+        case op if op in DUAL:
+            return build.temporal(DUAL[op], tuple(build.not_(part) for part in args))
         case _:
             return build.not_(node)
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from itertools import chain
-from typing import Final
 
 from tltlc.logic import formula as build
 from tltlc.logic.formula import FALSE, TRUE, Formula, Op
-
-_DUAL: Final[dict[str, Op]] = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
+from tltlc.logic.implication import DUAL
 
 _Signed = tuple[Formula, bool]
 """A formula to be taken as it stands (True) or negated (False)."""
@@ -63,7 +61,7 @@ def _expand(signed: _Signed) -> tuple[Op, tuple[_Signed, ...]]:
         other = build.and_(build.not_(left), build.not_(right) if positive else right)
         return "or", (_strip((agree, True)), _strip((other, True)))
     if not positive:
-        op = {"and": "or", "or": "and"}.get(op, _DUAL.get(op, op))  # type: ignore[assignment]
+        op = {"and": "or", "or": "and"}.get(op, DUAL.get(op, op))  # type: ignore[assignment]
     return op, tuple(_strip((argument, positive)) for argument in node.args)
 
 

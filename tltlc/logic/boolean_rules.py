@@ -1,0 +1,147 @@
+"""Rewrites of ``not``, ``and``, ``or``, ``implies`` and ``iff``; the laws stand in :mod:`tltlc.logic.rewrite`.
+
+Each function takes a formula and returns an equal one that is no longer, or the very same object
+where it has nothing to say.  Operands keep their order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+from tltlc.logic import formula as build
+from tltlc.logic.formula import FALSE, TRUE, Formula
+from tltlc.logic.implication import complement, syntactically_implies
+
+_MOST_OPERANDS: Final = 40
+"""Rules that compare each operand with each other look at no longer ``and`` or ``or``."""
+
+
+def join(op: str, operands: Iterable[Formula]) -> Formula:
+    """``and`` or ``or`` of the operands."""
+    return build.and_(*operands) if op == "and" else build.or_(*operands)
+
+
+def constants(node: Formula) -> Formula:
+    """Take ``true`` and ``false`` out of ``and`` and ``or``."""
+    neutral, zero = (TRUE, FALSE) if node.op == "and" else (FALSE, TRUE)
+    if zero in node.args:
+        return zero
+    return join(node.op, (part for part in node.args if part is not neutral)) if neutral in node.args else node
+
+
+def repeated(node: Formula) -> Formula:
+    """Keep the first of equal operands."""
+    distinct = dict.fromkeys(node.args)
+    return node if len(distinct) == len(node.args) else join(node.op, distinct)
+
+
+def complementary(node: Formula) -> Formula:
+    """Find an operand beside its negation."""
+    operands = set(node.args)
+    if any(complement(part) in operands for part in node.args):
+        return FALSE if node.op == "and" else TRUE
+    return node
+
+
+def absorbed(node: Formula) -> Formula:
+    """Drop from ``and`` what another operand implies, from ``or`` what implies another; of two equal ones the later."""
+    if len(node.args) > _MOST_OPERANDS:
+        return node
+    kept = list(node.args)
+    for part in reversed(node.args):
+        others = [other for other in kept if other is not part]
+        if any(_makes_idle(node.op, other, part) for other in others):
+            kept = others
+    return node if len(kept) == len(node.args) else join(node.op, kept)
+
+
+def _makes_idle(op: str, other: Formula, part: Formula) -> bool:
+    return syntactically_implies(other, part) if op == "and" else syntactically_implies(part, other)
+
+
+def resolved(node: Formula) -> Formula:
+    """Inside an operand, drop what the other operands rule out."""
+    if len(node.args) > _MOST_OPERANDS:
+        return node
+    inner_op = "or" if node.op == "and" else "and"
+    for index, part in enumerate(node.args):
+        others = node.args[:index] + node.args[index + 1 :]
+        if part.op == inner_op:
+            left = [inner for inner in part.args if not any(_ruled_out(node.op, other, inner) for other in others)]
+            if len(left) < len(part.args):
+                return join(node.op, (*node.args[:index], join(inner_op, left), *node.args[index + 1 :]))
+        elif part.op == "implies" and node.op == "and" and any(syntactically_implies(x, part.args[0]) for x in others):
+            return join("and", (*node.args[:index], part.args[1], *node.args[index + 1 :]))
+    return node
+
+
+def _ruled_out(op: str, other: Formula, inner: Formula) -> bool:
+    if op == "and":
+        return syntactically_implies(other, complement(inner))
+    return syntactically_implies(complement(other), inner)
+
+
+def factored(node: Formula) -> Formula:
+    """Take out of all operands what they share."""
+    inner_op = "or" if node.op == "and" else "and"
+    if any(part.op != inner_op for part in node.args):
+        return node
+    shared = set(node.args[0].args).intersection(*(part.args for part in node.args[1:]))
+    if not shared:
+        return node
+    rests = join(node.op, [join(inner_op, (x for x in part.args if x not in shared)) for part in node.args])
+    # The rest stands where the first operand had its first part that is not shared.
+    first = dict.fromkeys(x if x in shared else rests for x in node.args[0].args)
+    return join(inner_op, first if rests in first else (*first, rests))
+
+
+def negated(node: Formula) -> Formula:
+    """Push ``not`` inwards where that is no longer."""
+    (inner,) = node.args
+    match inner.op:
+        case "true" | "false" | "not":
+            return complement(inner)
+        case "implies":
+            return build.and_(inner.args[0], _opposite(inner.args[1]))
+        case "iff" if "not" in (inner.args[0].op, inner.args[1].op):
+            left, right = inner.args
+            return build.iff(left.args[0], right) if left.op == "not" else build.iff(left, right.args[0])
+        case "and" | "or" if 2 * sum(part.op == "not" for part in inner.args) >= len(inner.args):
+            return join("or" if inner.op == "and" else "and", map(_opposite, inner.args))
+        case _:
+            return node
+
+
+def implications(node: Formula) -> Formula:
+    """Shorten ``a -> b``."""
+    left, right = node.args
+    if left is TRUE:
+        return right
+    if right is FALSE:
+        return _opposite(left)
+    if syntactically_implies(left, right):
+        return TRUE
+    return build.or_(left.args[0], right) if left.op == "not" else node
+
+
+def equivalences(node: Formula) -> Formula:
+    """Shorten ``a <-> b``."""
+    left, right = node.args
+    if left is right:
+        return TRUE
+    if complement(left) is right or complement(right) is left:
+        return FALSE
+    for constant, other in ((left, right), (right, left)):
+        if constant is TRUE:
+            return other
+        if constant is FALSE:
+            return _opposite(other)
+    if left.op == "not" and right.op == "not":
+        return build.iff(left.args[0], right.args[0])
+    return node
+
+
+def _opposite(node: Formula) -> Formula:
+    """The negation, longer by one operator at most."""
+    return node.args[0] if node.op == "not" else build.not_(node)

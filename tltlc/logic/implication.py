@@ -1,0 +1,168 @@
+"""Cheap, sound answers about formulas on finite traces; each may say "not known" where a proof would be long."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Final
+
+from tltlc.logic import formula as build
+from tltlc.logic.formula import FALSE, TRUE, Formula, Op
+
+DUAL: Final[dict[Op, Op]] = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
+"""Negation turns the one into the other and goes to the operands: ``!X a`` is ``N !a``."""
+
+_MOST_PAIRS: Final = 400
+_DEEPEST: Final = 40
+_COMPLEMENT_DEPTH: Final = 3
+_LAST_DEPTH: Final = 6
+
+_Shows = Callable[[Formula, Formula], bool]
+
+
+def syntactically_implies(premise: Formula, conclusion: Formula) -> bool:
+    """Whether the form of the two shows that ``conclusion`` holds wherever ``premise`` does, on every finite trace.
+
+    False means "not shown".  Looks at no more than 400 pairs of subformulas.
+    """
+    return _implies(premise, conclusion, {}, 0)
+
+
+@lru_cache(maxsize=8192)
+def complement(formula: Formula, depth: int = _COMPLEMENT_DEPTH) -> Formula:
+    """The negation, pushed inwards through at most ``depth`` operators, without double negations."""
+    if formula.op == "not":
+        return formula.args[0]
+    if formula is TRUE or formula is FALSE:
+        return FALSE if formula is TRUE else TRUE
+    if not depth or formula.op in ("atom", "iff"):
+        return build.not_(formula)
+    if formula.op == "implies":
+        return build.and_(formula.args[0], complement(formula.args[1], depth - 1))
+    args = tuple(complement(argument, depth - 1) for argument in formula.args)
+    if formula.op == "and":
+        return build.or_(*args)
+    return build.and_(*args) if formula.op == "or" else build.temporal(DUAL[formula.op], args)
+
+
+def value_at_last(formula: Formula, depth: int = _LAST_DEPTH) -> bool | None:
+    """The truth of the formula at the last sample of any trace, or None where it depends on atoms or is not known."""
+    op = formula.op
+    if op in ("true", "N"):
+        return True
+    if op in ("false", "X"):
+        return False
+    if op == "atom" or not depth:
+        return None
+    values = [value_at_last(argument, depth - 1) for argument in formula.args]
+    match op:
+        case "not":
+            return None if values[0] is None else not values[0]
+        case "F" | "G":
+            return values[0]
+        case "U" | "R":
+            return values[1]
+        case "and" | "M":
+            return _all(values)
+        case "or" | "W":
+            return _any(values)
+        case "implies":
+            return _any([None if values[0] is None else not values[0], values[1]])
+        case _:
+            return None if None in values else values[0] == values[1]
+
+
+def _all(values: list[bool | None]) -> bool | None:
+    if False in values:
+        return False
+    return None if None in values else True
+
+
+def _any(values: list[bool | None]) -> bool | None:
+    if True in values:
+        return True
+    return None if None in values else False
+
+
+def _implies(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
+    if p is q or p is FALSE or q is TRUE:
+        return True
+    found = known.get((p, q))
+    if found is None:
+        if depth > _DEEPEST or len(known) > _MOST_PAIRS:
+            return False
+        known[p, q] = False  # what leads back here is not shown
+        found = known[p, q] = _shown(p, q, known, depth + 1)
+    return found
+
+
+def _shown(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
+    """One step of a proof; each line is a law of finite traces."""
+
+    def shows(premise: Formula, conclusion: Formula) -> bool:
+        return _implies(premise, conclusion, known, depth)
+
+    a, b = p.args, q.args
+    if q.op == "and":
+        return all(shows(p, part) for part in b)
+    if p.op == "or":
+        return all(shows(part, q) for part in a)
+    if p.op == "implies":
+        return shows(a[1], q) and shows(complement(a[0]), q)
+    return (
+        (p.op == "and" and any(shows(part, q) for part in a))
+        or (q.op == "or" and any(shows(p, part) for part in b))
+        or (q.op == "implies" and (shows(p, b[1]) or shows(p, complement(b[0]))))
+        or (p.op == "not" and q.op == "not" and shows(b[0], a[0]))
+        or (p.is_temporal and _premise_weakened(p, q, shows))
+        or (q.is_temporal and _conclusion_strengthened(p, q, shows))
+        or (p.is_temporal and q.is_temporal and _both_temporal(p, q, shows))
+    )
+
+
+def _premise_weakened(p: Formula, q: Formula, shows: _Shows) -> bool:
+    """Proofs from something weaker than the temporal premise: ``G a`` gives ``a``, ``a U b`` gives ``a | b``, …"""
+    a = p.args
+    match p.op:
+        case "G":
+            return shows(a[0], q)
+        case "U" | "W":
+            return (shows(a[0], q) and shows(a[1], q)) or (p.op == "U" and q.op == "F" and shows(a[1], q))
+        case "R" | "M":
+            return shows(a[1], q) or (p.op == "M" and q.op == "F" and shows(a[0], q))
+        case "F" | "X":
+            return q.op == "F" and shows(a[0], q)
+        case _:
+            return False
+
+
+def _conclusion_strengthened(p: Formula, q: Formula, shows: _Shows) -> bool:
+    """Proofs of something stronger than the temporal conclusion: ``a`` gives ``F a``, ``b`` gives ``a U b``, …"""
+    b = q.args
+    match q.op:
+        case "F":
+            return shows(p, b[0])
+        case "U" | "W":
+            return shows(p, b[1]) or (q.op == "W" and p.op == "G" and shows(p, b[0]))
+        case "R" | "M":
+            return shows(p, b[1]) and (shows(p, b[0]) or (q.op == "R" and p.op == "G"))
+        case "G" | "N":
+            return p.op == "G" and shows(p, b[0])
+        case _:
+            return False
+
+
+def _both_temporal(p: Formula, q: Formula, shows: _Shows) -> bool:
+    """Monotony, and ``F G a`` = ``G F a``: both say ``a`` at the last sample."""
+    a, b = p.args, q.args
+    if (p.op, q.op) in _NOT_WEAKER and all(shows(x, y) for x, y in zip(a, b, strict=True)):
+        return True
+    if (p.op, a[0].op) in _LAST and (q.op, b[0].op) in _LAST:
+        return shows(a[0].args[0], b[0].args[0])
+    return False
+
+
+_NOT_WEAKER: Final = frozenset(
+    [*((op, op) for op in DUAL), ("X", "N"), ("G", "F"), ("U", "W"), ("M", "R")],
+)
+_LAST: Final = (("F", "G"), ("G", "F"))

@@ -1,0 +1,186 @@
+"""Named rewrites that shorten formulas over finite traces, and the simplifier that applies them.
+
+On a finite trace ``X`` is false and ``N`` true at the last sample, so ``X true`` means "not the last
+sample", and both ``F G a`` and ``G F a`` mean "``a`` at the last sample".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final
+
+from tltlc.logic import boolean_rules, temporal_rules
+from tltlc.logic.formula import Formula, Op, rebuild
+
+_MOST_PASSES: Final = 12
+_MOST_STEPS: Final = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Rewrite:
+    """A rewrite of formulas whose outermost operator is in ``ops``.
+
+    ``apply`` returns an equal formula, with no more atoms, constants and operators than before, or
+    the same object where the law does not match.  ``law`` holds equations ``left = right`` between
+    ``;``: instances of what it does.
+    """
+
+    name: str
+    ops: tuple[Op, ...]
+    law: str
+    apply: Callable[[Formula], Formula]
+
+
+_AND_OR: Final[tuple[Op, ...]] = ("and", "or")
+
+REWRITES: Final = (
+    Rewrite(
+        "negation",
+        ("not",),
+        "!true = false; !!a = a; !(a -> b) = a & !b; !(!a & b) = a | !b; !(!a <-> b) = a <-> b",
+        boolean_rules.negated,
+    ),
+    Rewrite(
+        "temporal negation",
+        ("not",),
+        "!X a = N !a; !N a = X !a; !F a = G !a; !G !a = F a; !(!a U b) = a R !b; !(!a W b) = a M !b",
+        temporal_rules.negated,
+    ),
+    Rewrite(
+        "constants", _AND_OR, "a & true = a; a & false = false; a | true = true; a | false = a", boolean_rules.constants
+    ),
+    Rewrite("idempotence", _AND_OR, "a & a = a; a | b | a = a | b", boolean_rules.repeated),
+    Rewrite(
+        "complement", _AND_OR, "a & !a = false; F a | G !a = true; a & b & !a = false", boolean_rules.complementary
+    ),
+    Rewrite("absorption", _AND_OR, "a & (a | b) = a; F a & F(a & b) = F(a & b); G a | a = a", boolean_rules.absorbed),
+    Rewrite(
+        "resolution", _AND_OR, "a & (!a | b) = a & b; a & (a -> b) = a & b; a | !a & b = a | b", boolean_rules.resolved
+    ),
+    Rewrite(
+        "factor",
+        _AND_OR,
+        "F a & G c | F b & G c = (F a | F b) & G c; (a | b) & (a | c) = a | b & c",
+        boolean_rules.factored,
+    ),
+    Rewrite(
+        "last sample",
+        _AND_OR,
+        "F G a & F G b = F G (a & b); G F a | F G b = G F (a | b)",
+        temporal_rules.merged_at_last,
+    ),
+    Rewrite(
+        "distribution",
+        _AND_OR,
+        "G a & G b = G(a & b); F a | F b = F(a | b); X a & N b = X(a & b); X a | N b = N(a | b); X a & X b = X(a & b)",
+        temporal_rules.merged,
+    ),
+    Rewrite(
+        "expansion",
+        _AND_OR,
+        "a | X F a = F a; a & N G a = G a; b | a & X(a U b) = a U b; b & (a | N(a R b)) = a R b",
+        temporal_rules.folded,
+    ),
+    Rewrite(
+        "weak and strong",
+        _AND_OR,
+        "a U b | G a = a W b; a M b | G b = a R b; a W b & F b = a U b; a R b & F a = a M b",
+        temporal_rules.strengthened,
+    ),
+    Rewrite(
+        "implication",
+        ("implies",),
+        "true -> a = a; a -> false = !a; a -> a | b = true; !a -> b = a | b",
+        boolean_rules.implications,
+    ),
+    Rewrite(
+        "equivalence",
+        ("iff",),
+        "a <-> a = true; a <-> !a = false; true <-> a = a; a <-> false = !a; !a <-> !b = a <-> b",
+        boolean_rules.equivalences,
+    ),
+    Rewrite(
+        "constant operand",
+        ("X", "N", "F", "G"),
+        "F true = true; F false = false; G true = true; G false = false; X false = false; N true = true",
+        temporal_rules.constant_operand,
+    ),
+    Rewrite(
+        "trace end",
+        ("F", "G"),
+        "F N a = true; G X a = false; F(a | N b) = true; G(b & F X a) = false",
+        temporal_rules.decided_at_last,
+    ),
+    Rewrite(
+        "nesting",
+        ("F", "G"),
+        "F F a = F a; F(a U b) = F b; F(a M b) = F(a & b); F G F a = G F a; F X a = X F a; F(a | F b) = F(a | b); "
+        "G G a = G a; G(a R b) = G b; G(a W b) = G(a | b); G F G a = F G a; G N a = N G a; G(a & (c R b)) = G(a & b)",
+        temporal_rules.nested,
+    ),
+    Rewrite(
+        "until",
+        ("U", "W"),
+        "a U true = true; a U false = false; false U a = a; true U a = F a; !a U a = F a; a U (a U b) = a U b; "
+        "a U F b = F b; a W true = true; a W false = G a; false W a = a; true W a = true; !a W a = true; (a W b) W b = a W b",
+        temporal_rules.untils,
+    ),
+    Rewrite(
+        "release",
+        ("R", "M"),
+        "a R true = true; a R false = false; true R a = a; false R a = G a; !a R a = G a; a R (a R b) = a R b; "
+        "a R G b = G b; a M true = F a; a M false = false; true M a = a; false M a = false; !a M a = false; (a M b) M b = a M b",
+        temporal_rules.releases,
+    ),
+)
+"""The rewrites, in the order in which they are tried."""
+
+_BY_OP: Final[dict[str, tuple[Rewrite, ...]]] = {
+    op: tuple(rewrite for rewrite in REWRITES if op in rewrite.ops)
+    for op in ("not", "and", "or", "implies", "iff", "X", "N", "F", "G", "U", "W", "R", "M")
+}
+
+
+def simplify(formula: Formula) -> Formula:
+    """A formula that is equal on every finite trace and no longer (see :func:`size`), operands in the same order.
+
+    Passes from the leaves to the root are repeated until nothing changes, 12 times at most.
+    """
+    for _ in range(_MOST_PASSES):
+        simpler = _one_pass(formula)
+        if simpler is formula:
+            break
+        formula = simpler
+    return formula
+
+
+def size(formula: Formula) -> int:
+    """How many atoms, constants and operators are printed for the formula; ``a & b & c`` counts five."""
+    sizes: dict[Formula, int] = {}
+    for node in formula.bottom_up():
+        operators = len(node.args) - 1 if node.op in _AND_OR else 1
+        sizes[node] = operators + sum(sizes[argument] for argument in node.args)
+    return sizes[formula]
+
+
+def _one_pass(formula: Formula) -> Formula:
+    done: dict[Formula, Formula] = {}
+    for node in formula.bottom_up():
+        done[node] = _at_root(rebuild(node, tuple(done[argument] for argument in node.args)))
+    return done[formula]
+
+
+@lru_cache(maxsize=16384)
+def _at_root(node: Formula) -> Formula:
+    """Apply rewrites to the outermost operator until none matches."""
+    for _ in range(_MOST_STEPS):
+        for rewrite in _BY_OP.get(node.op, ()):
+            rewritten = rewrite.apply(node)
+            if rewritten is not node:
+                node = rewritten
+                break
+        else:
+            break
+    return node

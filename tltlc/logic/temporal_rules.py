@@ -1,0 +1,183 @@
+"""Rewrites of the temporal operators over finite traces; the laws stand in :mod:`tltlc.logic.rewrite`.
+
+Each function takes a formula and returns an equal one that is no longer, or the very same object
+where it has nothing to say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+
+from tltlc.logic import formula as build
+from tltlc.logic.boolean_rules import join
+from tltlc.logic.formula import FALSE, TRUE, Formula, Op
+from tltlc.logic.implication import DUAL, complement, syntactically_implies, value_at_last
+
+
+def negated(node: Formula) -> Formula:
+    """Push ``not`` through a temporal operator where that is no longer."""
+    (inner,) = node.args
+    if not inner.is_temporal or (len(inner.args) == 2 and all(part.op != "not" for part in inner.args)):
+        return node
+    args = tuple(part.args[0] if part.op == "not" else build.not_(part) for part in inner.args)
+    return build.temporal(DUAL[inner.op], args)
+
+
+def constant_operand(node: Formula) -> Formula:
+    """``X F G N`` of a constant; ``X true`` and ``N false`` stay, they speak of the trace's end."""
+    (inner,) = node.args
+    kept = {"X": FALSE, "N": TRUE}.get(node.op, inner)
+    return inner if inner is kept and inner in (TRUE, FALSE) else node
+
+
+def decided_at_last(node: Formula) -> Formula:
+    """``F`` of what is true, ``G`` of what is false at the last sample of any trace."""
+    value = value_at_last(node.args[0])
+    if value is None or value != (node.op == "F"):
+        return node
+    return TRUE if value else FALSE
+
+
+def nested(node: Formula) -> Formula:
+    """``F`` and ``G`` over temporal operators that say less below them."""
+    (inner,) = node.args
+    until, strong = ("U", "M") if node.op == "F" else ("R", "W")
+    if inner.op == node.op:
+        return inner
+    if inner.op == until:
+        return build.temporal(node.op, (inner.args[1],))
+    if inner.op == strong:
+        return build.temporal(node.op, (join("and" if node.op == "F" else "or", inner.args),))
+    if inner.op == DUAL[node.op] and inner.args[0].op == node.op:
+        return inner
+    if inner.op == ("X" if node.op == "F" else "N"):
+        return build.temporal(inner.op, (build.temporal(node.op, inner.args),))
+    if inner.op == ("or" if node.op == "F" else "and"):
+        parts = [part.args[-1] if part.op in (node.op, until) else part for part in inner.args]
+        return build.temporal(node.op, (join(inner.op, parts),)) if parts != list(inner.args) else node
+    return node
+
+
+def untils(node: Formula) -> Formula:
+    """``U W``: constants, and operands of which one implies the other or its negation."""
+    left, right = node.args
+    strong = node.op == "U"
+    if syntactically_implies(left, right) or right is TRUE:
+        return right
+    if right is FALSE:
+        return FALSE if strong else build.always(left)
+    if syntactically_implies(complement(left), right):
+        return build.eventually(right) if strong else TRUE
+    if right.op == node.op and right.args[0] is left:
+        return right
+    if left.op == node.op and left.args[1] is right:
+        return left
+    return right if strong and right.op == "F" else node
+
+
+def releases(node: Formula) -> Formula:
+    """``R M``: constants, and operands of which one implies the other or its negation."""
+    left, right = node.args
+    weak = node.op == "R"
+    if syntactically_implies(right, left) or right is FALSE:
+        return right
+    if right is TRUE:
+        return TRUE if weak else build.eventually(left)
+    if syntactically_implies(left, complement(right)):
+        return build.always(right) if weak else FALSE
+    if right.op == node.op and right.args[0] is left:
+        return right
+    if left.op == node.op and left.args[1] is right:
+        return left
+    return right if weak and right.op == "G" else node
+
+
+def merged(node: Formula) -> Formula:
+    """Gather operands that begin with the same temporal operator; ``X a & N b`` counts as ``X``, ``X a | N b`` as ``N``."""
+    distributes: Op
+    decides: Op
+    distributes, decides = ("G", "X") if node.op == "and" else ("F", "N")
+    for ops in (("X", "N"), (distributes,)):
+        found = [index for index, part in enumerate(node.args) if part.op in ops]
+        if len(found) < 2:
+            continue
+        parts = [node.args[index] for index in found]
+        op = decides if any(part.op == decides for part in parts) else parts[0].op
+        together = build.temporal(op, (join(node.op, (part.args[0] for part in parts)),))
+        return _replaced(node, found, together)
+    return node
+
+
+def merged_at_last(node: Formula) -> Formula:
+    """Gather operands that speak of the last sample only."""
+    found = [i for i, part in enumerate(node.args) if part.op in ("F", "G") and part.args[0].op == DUAL[part.op]]
+    if len(found) < 2:
+        return node
+    first = node.args[found[0]]
+    body = join(node.op, (node.args[index].args[0].args[0] for index in found))
+    return _replaced(node, found, build.temporal(first.op, (build.temporal(first.args[0].op, (body,)),)))
+
+
+def folded(node: Formula) -> Formula:
+    """Put back together what ``F G U W R M`` say of this sample and of the rest of the trace."""
+    inner_op = "or" if node.op == "and" else "and"
+    for index, part in enumerate(node.args):
+        if part.op in ("X", "N"):
+            whole = part.args[0]
+            now = whole.args[0] if (node.op, part.op, whole.op) in (("or", "X", "F"), ("and", "N", "G")) else None
+        elif part.op == inner_op:
+            whole, now = _expansion(node.op, part)
+        else:
+            continue
+        if now is None:
+            continue
+        found = _positions(node, now)
+        if found is not None:
+            return _replaced(node, sorted({*found, index}), whole)
+    return node
+
+
+_EXPANDED = {("or", "X"): "U", ("or", "N"): "W", ("and", "X"): "M", ("and", "N"): "R"}
+
+
+def _expansion(op: str, part: Formula) -> tuple[Formula, Formula | None]:
+    """For ``a & X(a U b)`` in an ``or``, and its kin: ``a U b`` and ``b``; the second is None where there is none."""
+    for index, step in enumerate(part.args):
+        if step.op in ("X", "N") and step.args[0].op == _EXPANDED[op, step.op]:
+            whole = step.args[0]
+            if join(part.op, part.args[:index] + part.args[index + 1 :]) is whole.args[0]:
+                return whole, whole.args[1]
+    return part, None
+
+
+def strengthened(node: Formula) -> Formula:
+    """Make one operator of ``a U b | G a`` and its kin."""
+    weak = node.op == "or"
+    kin: dict[str, tuple[str, int, Callable[[Formula, Formula], Formula]]] = (
+        {"U": ("G", 0, build.weak_until), "M": ("G", 1, build.release)}
+        if weak
+        else {"W": ("F", 1, build.until), "R": ("F", 0, build.strong_release)}
+    )
+    for index, part in enumerate(node.args):
+        if part.op in kin:
+            companion, operand, make = kin[part.op]
+            beside = build.temporal("G" if companion == "G" else "F", (part.args[operand],))
+            if beside in node.args:
+                return _replaced(node, sorted((index, node.args.index(beside))), make(*part.args))
+    return node
+
+
+def _positions(node: Formula, part: Formula) -> list[int] | None:
+    """Where ``part``, or each operand of it, stands among the operands; None where it does not."""
+    if part in node.args:
+        return [node.args.index(part)]
+    if part.op == node.op and all(inner in node.args for inner in part.args):
+        return [node.args.index(inner) for inner in part.args]
+    return None
+
+
+def _replaced(node: Formula, positions: Collection[int], new: Formula) -> Formula:
+    """The operands with ``new`` at the first of the positions and nothing at the others."""
+    first = min(positions)
+    parts = (new if i == first else part for i, part in enumerate(node.args) if i == first or i not in positions)
+    return join(node.op, parts)
