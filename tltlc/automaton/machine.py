@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from heapq import heapify, heappop, heappush
 
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, Diagrams, OutOfNodes
 from tltlc.automaton.successors import Successors
@@ -85,7 +84,7 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
     each time that a state moves its block at least halves, as in Hopcroft's algorithm.
     """
     diagrams = successors.diagrams
-    atom, low, high, make_node, make_leaf = diagrams.atom, diagrams.low, diagrams.high, diagrams.node, diagrams.leaf
+    atom, low, high = diagrams.atom, diagrams.low, diagrams.high
     block = dict.fromkeys(transitions, 0)
     members: list[list[int]] = [list(transitions)]
     states_of: dict[int, list[int]] = {}
@@ -93,26 +92,29 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
         states_of.setdefault(transition, []).append(state)
     parents, leaves_of = _links(diagrams, states_of)
 
-    signature: dict[int, int] = {IMPOSSIBLE: IMPOSSIBLE}
-    # A node is made after its children, so that ascending numbers visit children first.
-    dirty = sorted(parents)
-    while dirty:
+    # The signature of a node is its diagram with leaves read up to blocks: negative for a leaf, else
+    # the number of a triple (atom, signature, signature).
+    signature: dict[int, int] = {}
+    triples: dict[tuple[int, int, int], int] = {}
+    changed = sorted(parents)
+    while changed:
         touched: set[int] = set()
-        while dirty:
-            node = heappop(dirty)
+        # A node is made after its children, so that ascending numbers visit children first.
+        for node in changed:
             if atom[node] == LEAF:
-                new = make_leaf(block[low[node]], high[node]) if node != IMPOSSIBLE else IMPOSSIBLE
+                new = -1 if node == IMPOSSIBLE else -2 - 2 * block[low[node]] - high[node]
             else:
-                new = make_node(atom[node], signature[low[node]], signature[high[node]])
-            while dirty and dirty[0] == node:
-                heappop(dirty)
-            old = signature.get(node)
-            if old != new:
+                below, above = signature[low[node]], signature[high[node]]
+                if below == above:
+                    new = below
+                else:
+                    triple = (atom[node], below, above)
+                    new = triples.setdefault(triple, len(triples))
+            if signature.get(node) != new:
                 signature[node] = new
-                touched.update(block[state] for state in states_of.get(node, ()))
-                if old is not None:
-                    for parent in parents[node]:
-                        heappush(dirty, parent)
+                for state in states_of.get(node, ()):
+                    touched.add(block[state])
+        moved: list[int] = []
         for number in sorted(touched):
             parts: dict[int, list[int]] = {}
             for state in members[number]:
@@ -125,10 +127,22 @@ def minimise(successors: Successors, transitions: dict[int, int]) -> Machine:
                 if part is not largest:
                     for state in part:
                         block[state] = len(members)
-                        dirty.extend(leaves_of.get(state, ()))
+                        moved += leaves_of.get(state, ())
                     members.append(part)
-        heapify(dirty)
+        changed = sorted(_ancestors(moved, parents))
     return _quotient(successors, transitions, members)
+
+
+def _ancestors(nodes: list[int], parents: dict[int, list[int]]) -> set[int]:
+    """The nodes and all above them."""
+    found = set(nodes)
+    stack = list(found)
+    while stack:
+        for parent in parents[stack.pop()]:
+            if parent not in found:
+                found.add(parent)
+                stack.append(parent)
+    return found
 
 
 def _links(diagrams: Diagrams, roots: Iterable[int]) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
@@ -181,10 +195,10 @@ def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[
 
 def equivalent(
     successors: Successors, machine: Machine, left: int, right: int, pair_budget: int, allowed: int = ACCEPT
-) -> bool:
-    """Whether two obligations have equal languages; may answer False wrongly where ``pair_budget`` runs out.
+) -> tuple[bool, int]:
+    """Whether two obligations are proved to have equal languages, and how many pairs of states that took.
 
-    The union-find form of Hopcroft and Karp's test (1971), started from what ``machine`` knows to be equal.
+    False where they differ, and where ``pair_budget`` runs out before the proof.  The union-find form of Hopcroft and Karp's test (1971), started from what ``machine`` knows to be equal.
     """
     diagrams = successors.diagrams
     atom, low, high = diagrams.atom, diagrams.low, diagrams.high
@@ -204,14 +218,15 @@ def equivalent(
         transition = successors.of_obligation(state)
         return transition if allowed == ACCEPT else diagrams.constrain(transition, allowed)
 
+    used = 0
     pending = [(left, right)]
     while pending:
         x, y = map(find, pending.pop())
         if x == y:
             continue
-        pair_budget -= 1
-        if pair_budget < 0:
-            return False
+        used += 1
+        if used > pair_budget:
+            return False, used
         parent[y] = x
         stack = [(transition_of(x), transition_of(y))]
         visited = set(stack)
@@ -222,7 +237,7 @@ def equivalent(
             am, an = atom[m], atom[n]
             if am == an == LEAF:
                 if high[m] != high[n] or m == IMPOSSIBLE or n == IMPOSSIBLE:
-                    return False
+                    return False, used
                 pending.append((low[m], low[n]))
                 continue
             lows = (low[m] if am <= an else m, low[n] if an <= am else n)
@@ -231,4 +246,4 @@ def equivalent(
                 if pair not in visited:
                     visited.add(pair)
                     stack.append(pair)
-    return True
+    return True, used

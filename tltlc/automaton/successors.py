@@ -18,17 +18,29 @@ class Successors:
     """Transitions of formulas in negation normal form and of obligations, over one table of diagrams.
 
     ``formulas[v]`` is the formula of the obligations' variable ``v``: an atom, or a formula whose
-    outermost operator is temporal.
+    outermost operator is temporal; None where the variable is a state of a machine that was built
+    apart, which ``stands_for[v]`` gives back as an obligation.
     """
 
-    __slots__ = ("_atom_index", "_of_formula", "_of_obligation", "_variables", "diagrams", "formulas")
+    __slots__ = (
+        "_atom_index",
+        "_of_formula",
+        "_of_obligation",
+        "_of_state",
+        "_variables",
+        "diagrams",
+        "formulas",
+        "stands_for",
+    )
 
     def __init__(self, atoms: Sequence[str], diagrams: Diagrams) -> None:
         self.diagrams = diagrams
-        self.formulas: list[Formula] = []
+        self.formulas: list[Formula | None] = []
+        self.stands_for: dict[int, int] = {}
         self._variables: dict[Formula, int] = {}
         self._atom_index = {name: index for index, name in enumerate(atoms)}
         self._of_formula: dict[Formula, int] = {}
+        self._of_state: dict[int, int] = {}
         self._of_obligation: dict[int, int] = {FALSE: REJECT, TRUE: ACCEPT}
 
     def number_variables(self, formula: Formula) -> None:
@@ -76,16 +88,30 @@ class Successors:
             self.formulas.append(formula)
         return number
 
+    def new_state(self, stands_for: int) -> int:
+        """An obligation for a state of a machine that was built apart; :meth:`define_state` must follow."""
+        variable = len(self.formulas)
+        self.formulas.append(None)
+        self.stands_for[variable] = stands_for
+        return self.diagrams.obligation(variable, FALSE, TRUE)
+
+    def define_state(self, state: int, transition: int) -> None:
+        """Give an obligation made by :meth:`new_state` its transition."""
+        self._of_state[self.diagrams.variable[state]] = transition
+
     def of_obligation(self, obligation: int) -> int:
         """The transition of an obligation."""
         result = self._of_obligation.get(obligation)
         if result is not None:
             return result
         diagrams = self.diagrams
-        formula = self.formulas[diagrams.variable[obligation]]
+        variable = diagrams.variable[obligation]
+        formula = self.formulas[variable]
         absent = self.of_obligation(diagrams.absent[obligation])
         present = self.of_obligation(diagrams.present[obligation])
-        if formula.op == "atom":
+        if formula is None:
+            result = diagrams.disjoin(absent, diagrams.conjoin(self._of_state[variable], present))
+        elif formula.op == "atom":
             holds = self.of_formula(formula)
             fails = diagrams.node(self._atom_index[formula.name], ACCEPT, REJECT)
             result = diagrams.disjoin(diagrams.conjoin(holds, present), diagrams.conjoin(fails, absent))

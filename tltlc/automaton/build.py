@@ -1,0 +1,279 @@
+"""From a resolved specification to its automaton: the stages of this package in order.
+
+formula -> normal form -> minimal machine -> states with acceptance -> distances, verdicts, guards,
+labels -> :class:`~tltlc.automaton.fspa.Fspa`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+from tltlc.automaton.blowup import blow_up, recursion_room
+from tltlc.automaton.composition import minimal_machine as compose
+from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfNodes
+from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
+from tltlc.automaton.guards import Guards, TooManyPrimes
+from tltlc.automaton.labels import Labels, length
+from tltlc.automaton.machine import Machine, OutOfStates
+from tltlc.automaton.successors import Successors
+from tltlc.expression import Signal as SignalValue
+from tltlc.logic.formula import Formula, rebuild
+from tltlc.logic.normal_form import negation_normal_form
+from tltlc.logic.printer import ascii_text, english_text, unicode_text
+from tltlc.logic.rewrite import simplify
+from tltlc.resolve.spec import Atom, Judge, Signal, Spec
+from tltlc.source import SourceFile, Span
+
+DEFAULT_STATE_BUDGET = 50_000
+
+
+def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
+    """The minimal complete automaton of a specification over finite traces (semantics, section 3).
+
+    Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where more than ``state_budget``
+    states are needed on the way, TLT0502 where a guard has too many prime implicants; both name the
+    part of the spec that is to blame.
+    """
+    with recursion_room():
+        try:
+            return _build(spec, state_budget)
+        except (OutOfStates, OutOfNodes, TooManyPrimes, RecursionError) as reason:
+            raise blow_up(spec, reason, state_budget) from None
+
+
+def minimal_machine(
+    formula: Formula, atoms: Sequence[str], state_budget: int, exclusive: Iterable[Sequence[int]] = ()
+) -> tuple[Successors, Machine, int]:
+    """The minimal machine of a formula, with the tables it lives in and the letters that ``exclusive`` allows."""
+    normal = negation_normal_form(formula)
+    diagrams = Diagrams()
+    successors = Successors(atoms, diagrams)
+    successors.number_variables(normal)
+    allowed = _allowed_letters(diagrams, exclusive)
+    return successors, compose(successors, normal, state_budget, allowed), allowed
+
+
+def _build(spec: Spec, state_budget: int) -> Fspa:
+    names = [atom.name for atom in spec.atoms]
+    successors, minimal, allowed = minimal_machine(spec.formula, names, state_budget, spec.exclusive)
+    diagrams = successors.diagrams
+    targets = _states(minimal, diagrams)
+    distance = _distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
+    order = _breadth_first(next(iter(targets)), targets, distance)
+    verdicts = _verdicts(targets, distance, accepting=lambda leaf: diagrams.high[leaf] == 1)
+    labels = _labels(spec.formula, successors, minimal, order, allowed)
+
+    states = tuple(
+        State(
+            id=number,
+            label=labels[leaf],
+            accepting=diagrams.high[leaf] == 1,
+            verdict=verdicts[leaf],
+            distance=distance[leaf],
+        )
+        for number, leaf in enumerate(order)
+    )
+    finite = [d for d in distance.values() if d is not None]
+    return Fspa(
+        name=spec.name,
+        doc=spec.doc,
+        formula=_text(spec.formula),
+        level=spec.level,
+        limit_steps=spec.limit_steps,
+        judge=spec.judge or default_judge(spec.formula),
+        semantics=spec.semantics,
+        tags=spec.tags,
+        clock_s=spec.clock_s,
+        signals=spec.signals,
+        params=spec.params,
+        atoms=spec.atoms,
+        exclusive=spec.exclusive,
+        states=states,
+        edges=_edges(order, minimal, Guards(diagrams, allowed), diagrams, names),
+        spec_size=max(finite, default=0),
+    )
+
+
+def default_judge(formula: Formula) -> Judge:
+    """``limit`` where the formula is true of "nothing yet", else ``goal`` (semantics, section 4)."""
+    normal = negation_normal_form(formula)
+    value: dict[Formula, bool] = {}
+    for node in reversed(list(normal.walk())):
+        value[node] = _of_nothing_yet(node, value)
+    return "limit" if value[normal] else "goal"
+
+
+def _of_nothing_yet(node: Formula, value: dict[Formula, bool]) -> bool:
+    if node.op == "and":
+        return all(value[argument] for argument in node.args)
+    if node.op == "or":
+        return any(value[argument] for argument in node.args)
+    return node.op not in ("false", "F", "U", "M", "X")
+
+
+def _allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> int:
+    """The letters with at most one atom of each group, as a transition to ``ACCEPT`` or ``REJECT``."""
+    allowed = ACCEPT
+    for group in exclusive:
+        none, at_most_one = ACCEPT, ACCEPT
+        for atom in sorted(group, reverse=True):
+            at_most_one = diagrams.node(atom, at_most_one, none)
+            none = diagrams.node(atom, none, REJECT)
+        allowed = diagrams.conjoin(allowed, at_most_one)
+    return allowed
+
+
+# --- states ---------------------------------------------------------------------------------------
+# A state is a leaf: what remains, and whether the trace may end here.
+
+
+def _states(minimal: Machine, diagrams: Diagrams) -> dict[int, list[int]]:
+    """The successors of every state, the initial one first.
+
+    No trace is empty, so the initial state may accept or not: it is shared with a state that is
+    reached, the rejecting one where both are.
+    """
+    reached = {leaf for transition in minimal.transitions.values() for leaf in diagrams.leaves(transition)}
+    initial = diagrams.leaf(minimal.initial, 0)
+    if initial not in reached and diagrams.leaf(minimal.initial, 1) in reached:
+        initial = diagrams.leaf(minimal.initial, 1)
+    targets: dict[int, list[int]] = {}
+    queue = [initial]
+    for leaf in queue:
+        if leaf not in targets:
+            transition = minimal.transitions[diagrams.low[leaf]]
+            targets[leaf] = [target for target in diagrams.leaves(transition) if target != IMPOSSIBLE]
+            queue.extend(targets[leaf])
+    return targets
+
+
+def _distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
+    """The least number of transitions to an accepting state, None for traps: backward breadth-first search."""
+    sources: dict[int, list[int]] = {state: [] for state in targets}
+    for state, successors in targets.items():
+        for target in successors:
+            sources[target].append(state)
+    distance: dict[int, int | None] = dict.fromkeys(targets)
+    queue = [state for state in targets if accepting(state)]
+    for state in queue:
+        distance[state] = 0
+    for state in queue:
+        for source in sources[state]:
+            if distance[source] is None:
+                distance[source] = (distance[state] or 0) + 1
+                queue.append(source)
+    return distance
+
+
+def _breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
+    """The states breadth-first; of several successors those nearer to acceptance first, traps last."""
+    position = {state: index for index, state in enumerate(targets)}
+
+    def rank(state: int) -> tuple[bool, int, int]:
+        d = distance[state]
+        return d is None, d or 0, position[state]
+
+    order = [initial]
+    seen = {initial}
+    for state in order:
+        for target in sorted(targets[state], key=rank):
+            if target not in seen:
+                seen.add(target)
+                order.append(target)
+    return order
+
+
+def _verdicts(
+    targets: Mapping[int, list[int]], distance: Mapping[int, int | None], accepting: Callable[[int], bool]
+) -> dict[int, Verdict]:
+    """``satisfied`` where no rejecting state is in reach, ``violated`` where no accepting one is."""
+    to_rejection = _distances(targets, lambda state: not accepting(state))
+
+    def verdict(state: int) -> Verdict:
+        if distance[state] is None:
+            return "violated"
+        if to_rejection[state] is None:
+            return "satisfied"
+        return "holding" if accepting(state) else "pending"
+
+    return {state: verdict(state) for state in targets}
+
+
+def _edges(
+    order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Diagrams, names: Sequence[str]
+) -> tuple[Edge, ...]:
+    number = {leaf: index for index, leaf in enumerate(order)}
+    made: dict[int, Guard] = {}
+    edges: list[Edge] = []
+    for source, leaf in enumerate(order):
+        for target, guard in guards.by_leaf(minimal.transitions[diagrams.low[leaf]]).items():
+            if guard not in made:
+                made[guard] = Guard(ascii_text(guards.formula(guard, names)), guards.primes(guard))
+            edges.append(Edge(source, number[target], made[guard]))
+    return tuple(sorted(edges, key=lambda edge: (edge.source, edge.target)))
+
+
+# --- texts ----------------------------------------------------------------------------------------
+
+
+def _labels(
+    source: Formula, successors: Successors, minimal: Machine, order: Sequence[int], allowed: int
+) -> dict[int, Text]:
+    """The label of every state, with the operators of the source (``a -> b``, not ``!a | b``)."""
+    diagrams = successors.diagrams
+    labels = Labels(successors, minimal, negation_normal_form(source), allowed)
+    in_source = {negation_normal_form(part): part for part in source.walk() if part.op in ("implies", "iff")}
+    formulas = {state: _restored(labels.label(state), in_source) for state in minimal.transitions}
+    own = simplify(source)
+    if length(own) <= length(formulas[minimal.initial]):
+        formulas[minimal.initial] = own
+    texts = {state: _text(formula) for state, formula in formulas.items()}
+    return {leaf: _at_the_end(texts[diagrams.low[leaf]], diagrams.high[leaf] == 1) for leaf in order}
+
+
+def _restored(formula: Formula, in_source: Mapping[Formula, Formula]) -> Formula:
+    """The formula with every part that the source wrote with ``->`` or ``<->`` written so again."""
+    known = in_source.get(formula)
+    if known is not None:
+        return known
+    return rebuild(formula, tuple(_restored(argument, in_source) for argument in formula.args))
+
+
+def _text(formula: Formula) -> Text:
+    return Text(ascii_text(formula), unicode_text(formula), english_text(formula))
+
+
+def _at_the_end(label: Text, accepting: bool) -> Text:
+    """The label, where acceptance hangs on whether the trace ends here: ``X`` and ``N`` leave such states."""
+    if label.ascii == "true" and not accepting:
+        return Text(label.ascii, label.unicode, "The trace must go on for one more step.")
+    if label.ascii == "false" and accepting:
+        return Text(label.ascii, label.unicode, "The trace must end here.")
+    return label
+
+
+# --- specs without a file -------------------------------------------------------------------------
+
+
+def spec_from_formula(formula: Formula, name: str = "spec", exclusive: Iterable[Iterable[str]] = ()) -> Spec:
+    """A spec over free atoms: each is a signal of the same name in [-1, 1], and its own robustness."""
+    groups = [tuple(group) for group in exclusive]
+    names = tuple(dict.fromkeys((*formula.atoms(), *(atom for group in groups for atom in group))))
+    return Spec(
+        name=name,
+        doc="",
+        formula=formula,
+        parts=(),
+        atoms=tuple(Atom(atom, SignalValue(atom)) for atom in names),
+        signals=tuple(Signal(atom, "number", -1.0, 1.0) for atom in names),
+        params=(),
+        exclusive=tuple(tuple(names.index(atom) for atom in group) for group in groups),
+        level=None,
+        limit_steps=None,
+        judge=None,
+        semantics="finite",
+        tags=(),
+        clock_s=None,
+        source=SourceFile("<formula>", ascii_text(formula)),
+        name_span=Span(0, 0),
+    )

@@ -1,0 +1,77 @@
+"""Large conjunctions and disjunctions part by part: build each, minimise, multiply the smallest two, and so on.
+
+Exploring a formula as a whole meets every combination of what its parts may still ask for, also
+those that minimisation would merge at once.  Specifications of game play are small enough for that;
+random conjunctions of dozens of clauses are not.
+"""
+
+from __future__ import annotations
+
+from heapq import heapify, heappop, heappush
+
+from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, REJECT, TRUE, OutOfNodes
+from tltlc.automaton.machine import Machine, OutOfStates, machine
+from tltlc.automaton.successors import Successors
+from tltlc.logic.formula import Formula
+
+WHOLE_NODES = 20_000
+"""Nodes that exploration as a whole may make before the parts are tried: a few hundredths of a second."""
+
+
+def minimal_machine(successors: Successors, formula: Formula, state_budget: int, allowed: int = ACCEPT) -> Machine:
+    """The minimal machine of a formula in negation normal form, as a whole where that is cheap, else by parts.
+
+    Raises as :func:`tltlc.automaton.machine.machine` does.
+    """
+    diagrams = successors.diagrams
+    whole = successors.obligation(formula)
+    if formula.op not in ("and", "or"):
+        return machine(successors, whole, state_budget, allowed)
+    node_limit = diagrams.node_limit
+    diagrams.node_limit = min(node_limit, len(diagrams.atom) + WHOLE_NODES)
+    try:
+        return machine(successors, whole, state_budget, allowed)
+    except (OutOfStates, OutOfNodes):
+        pass
+    finally:
+        diagrams.node_limit = node_limit
+    return _by_parts(successors, formula, state_budget, allowed)
+
+
+def _by_parts(successors: Successors, formula: Formula, state_budget: int, allowed: int) -> Machine:
+    join = successors.diagrams.both if formula.op == "and" else successors.diagrams.either
+    machines = [minimal_machine(successors, part, state_budget, allowed) for part in formula.args]
+    # The running number breaks ties, so that the order is the same everywhere.
+    heap = [(len(made.transitions), number, made) for number, made in enumerate(machines)]
+    heapify(heap)
+    number = len(heap)
+    while len(heap) > 1:
+        (_, _, left), (_, _, right) = heappop(heap), heappop(heap)
+        product = join(_embedded(successors, left), _embedded(successors, right))
+        made = machine(successors, product, state_budget, allowed)
+        heappush(heap, (len(made.transitions), number, made))
+        number += 1
+    return heap[0][2]
+
+
+def _embedded(successors: Successors, made: Machine) -> int:
+    """An obligation for the machine's initial state: each state becomes a variable with a known transition."""
+    diagrams = successors.diagrams
+    obligations: dict[int, int] = {}
+    for state, transition in made.transitions.items():
+        if transition in (diagrams.leaf(state, 0), diagrams.leaf(state, 1)):
+            obligations[state] = TRUE if transition == diagrams.leaf(state, 1) else FALSE
+        else:
+            obligations[state] = successors.new_state(state)
+    memo = {IMPOSSIBLE: REJECT}
+    for state, transition in made.transitions.items():
+        if obligations[state] not in (FALSE, TRUE):
+            successors.define_state(
+                obligations[state],
+                diagrams.relabel(
+                    transition,
+                    lambda leaf: diagrams.leaf(obligations[diagrams.low[leaf]], diagrams.high[leaf]),
+                    memo,
+                ),
+            )
+    return obligations[made.initial]

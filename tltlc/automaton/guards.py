@@ -1,0 +1,176 @@
+"""Guards: Boolean functions of the atoms, as all their prime implicants and as a short text.
+
+A guard is a transition whose leaves are ``ACCEPT`` and ``REJECT`` (:mod:`tltlc.automaton.diagrams`).
+A literal is the int ``2 * atom + polarity``, a cube an ascending tuple of literals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, REJECT, Diagrams
+from tltlc.automaton.fspa import Implicant
+from tltlc.logic import formula as build
+from tltlc.logic.formula import Formula
+
+Cube = tuple[int, ...]
+
+PRIME_LIMIT = 10_000
+
+
+class TooManyPrimes(Exception):
+    """Raised when a guard has more than :data:`PRIME_LIMIT` prime implicants."""
+
+
+class Guards:
+    """Guards over one table of diagrams, under the letters that ``allowed`` accepts."""
+
+    __slots__ = ("_allowed", "_by_leaf", "_diagrams", "_primes")
+
+    def __init__(self, diagrams: Diagrams, allowed: int = ACCEPT) -> None:
+        self._diagrams = diagrams
+        self._allowed = allowed
+        self._by_leaf: dict[int, dict[int, int]] = {}
+        self._primes: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
+
+    def by_leaf(self, transition: int) -> dict[int, int]:
+        """The guard of each leaf of a transition, ``IMPOSSIBLE`` left out."""
+        found = self._split(transition)
+        return {leaf: guard for leaf, guard in found.items() if leaf != IMPOSSIBLE}
+
+    def _split(self, transition: int) -> dict[int, int]:
+        found = self._by_leaf.get(transition)
+        if found is None:
+            diagrams = self._diagrams
+            atom = diagrams.atom[transition]
+            if atom == LEAF:
+                found = {transition: ACCEPT}
+            else:
+                below, above = self._split(diagrams.low[transition]), self._split(diagrams.high[transition])
+                found = {
+                    leaf: diagrams.node(atom, below.get(leaf, REJECT), above.get(leaf, REJECT))
+                    for leaf in (*below, *(leaf for leaf in above if leaf not in below))
+                }
+            self._by_leaf[transition] = found
+        return found
+
+    def primes(self, guard: int) -> tuple[Implicant, ...]:
+        """All prime implicants, shortest first, then by atom (semantics, section 3).
+
+        Under ``exclusive`` D: those of ``guard or not D`` that are not contained in ``not D``.  Raises
+        :class:`TooManyPrimes`.
+        """
+        if self._allowed == ACCEPT:
+            cubes = self._all_primes(guard)
+        else:
+            cubes = tuple(cube for cube in self._all_primes(self._upper(guard)) if self._possible(cube))
+        ordered = sorted(cubes, key=lambda cube: (len(cube), [(literal >> 1, -literal) for literal in cube]))
+        return tuple(tuple((literal >> 1, bool(literal & 1)) for literal in cube) for cube in ordered)
+
+    def formula(self, guard: int, names: Sequence[str]) -> Formula:
+        """A short formula of the guard: an irredundant sum of products, or product of sums where that is shorter.
+
+        Letters that ``exclusive`` rules out are free, they go where the formula gets shorter.
+        """
+        products = self._irredundant(guard, self._upper(guard))
+        outside = self._negation(self._upper(guard))
+        sums = self._irredundant(outside, self._negation(guard))
+        if sum(map(len, sums)) < sum(map(len, products)):
+            negated = [tuple(literal ^ 1 for literal in cube) for cube in sums]
+            return build.and_(*(build.or_(*_literals(cube, names)) for cube in sorted(negated)))
+        return build.or_(*(build.and_(*_literals(cube, names)) for cube in sorted(products)))
+
+    # --- Boolean functions --------------------------------------------------------------------
+
+    def _upper(self, guard: int) -> int:
+        """``guard or not D``."""
+        if self._allowed == ACCEPT:
+            return guard
+        return self._diagrams.disjoin(guard, self._negation(self._allowed))
+
+    def _negation(self, guard: int) -> int:
+        return self._diagrams.relabel(guard, lambda leaf: REJECT if leaf == ACCEPT else ACCEPT, {})
+
+    def _possible(self, cube: Cube) -> bool:
+        """Whether some allowed letter meets the cube."""
+        diagrams = self._diagrams
+        rest = self._allowed
+        wanted = {literal >> 1: literal & 1 for literal in cube}
+        stack, seen = [rest], {rest}
+        while stack:
+            node = stack.pop()
+            if node == ACCEPT:
+                return True
+            if node == REJECT:
+                continue
+            polarity = wanted.get(diagrams.atom[node])
+            for value, child in ((0, diagrams.low[node]), (1, diagrams.high[node])):
+                if polarity in (None, value) and child not in seen:
+                    seen.add(child)
+                    stack.append(child)
+        return False
+
+    def _all_primes(self, function: int) -> tuple[Cube, ...]:
+        """Every prime implicant: those of both cofactors' conjunction, and with a literal those of one alone."""
+        known = self._primes.get(function)
+        if known is None:
+            diagrams = self._diagrams
+            atom, low, high = diagrams.atom[function], diagrams.low[function], diagrams.high[function]
+            shared = self._all_primes(diagrams.conjoin(low, high))
+            common = set(shared)
+            known = (
+                *(((2 * atom + 1), *cube) for cube in self._all_primes(high) if cube not in common),
+                *(((2 * atom), *cube) for cube in self._all_primes(low) if cube not in common),
+                *shared,
+            )
+            if len(known) > PRIME_LIMIT:
+                raise TooManyPrimes
+            self._primes[function] = known
+        return known
+
+    def _irredundant(self, lower: int, upper: int) -> list[Cube]:
+        """An irredundant sum of products between two functions (Minato 1993)."""
+        memo: dict[tuple[int, int], tuple[list[Cube], int]] = {}
+        diagrams = self._diagrams
+        conjoin, disjoin = diagrams.conjoin, diagrams.disjoin
+
+        def cover(low: int, high: int) -> tuple[list[Cube], int]:
+            if low == REJECT:
+                return [], REJECT
+            if high == ACCEPT:
+                return [()], ACCEPT
+            key = (low, high)
+            found = memo.get(key)
+            if found is None:
+                atom = min(diagrams.atom[low], diagrams.atom[high])
+                low0, low1 = _cofactors(diagrams, low, atom)
+                high0, high1 = _cofactors(diagrams, high, atom)
+                cubes0, covered0 = cover(conjoin(low0, self._negation(high1)), high0)
+                cubes1, covered1 = cover(conjoin(low1, self._negation(high0)), high1)
+                rest = disjoin(conjoin(low0, self._negation(covered0)), conjoin(low1, self._negation(covered1)))
+                cubes2, covered2 = cover(rest, conjoin(high0, high1))
+                cubes = [
+                    *((2 * atom + 1, *cube) for cube in cubes1),
+                    *((2 * atom, *cube) for cube in cubes0),
+                    *cubes2,
+                ]
+                found = memo[key] = (
+                    cubes,
+                    disjoin(diagrams.node(atom, covered0, covered1), covered2),
+                )
+            return found
+
+        return cover(lower, upper)[0]
+
+
+def _cofactors(diagrams: Diagrams, function: int, atom: int) -> tuple[int, int]:
+    if diagrams.atom[function] != atom:
+        return function, function
+    return diagrams.low[function], diagrams.high[function]
+
+
+def _literals(cube: Cube, names: Sequence[str]) -> list[Formula]:
+    return [
+        build.atom(names[literal >> 1]) if literal & 1 else build.not_(build.atom(names[literal >> 1]))
+        for literal in sorted(cube)
+    ]

@@ -1,0 +1,201 @@
+"""What remains to be done in a state, as a formula as short as can be proved.
+
+An obligation is written back as a formula (common factors first, operands in source order), the
+named rewrites shorten it, and then every operand of an ``and`` or ``or`` is tried: it goes where
+the automaton itself proves that the language stays the same without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from tltlc.automaton.diagrams import ACCEPT, FALSE, TRUE
+from tltlc.automaton.machine import Machine, equivalent
+from tltlc.automaton.successors import Successors
+from tltlc.logic import formula as build
+from tltlc.logic.formula import Formula
+from tltlc.logic.rewrite import simplify
+
+_TERM_LIMIT = 64
+"""Sums of products with more terms are written as nested case distinctions instead."""
+
+_CANDIDATES = 3
+"""How many obligations of a state are written out and shortened; the shortest result wins."""
+
+_Term = frozenset[tuple[int, bool]]
+
+
+class Labels:
+    """The labels of one machine's states.
+
+    ``work`` bounds the pairs of states that all proofs together may look at; when it is spent, labels
+    stay as they are.  A count and not a clock, so that equal input gives equal output.
+    """
+
+    __slots__ = ("_allowed", "_machine", "_members", "_position", "_successors", "_work")
+
+    def __init__(
+        self, successors: Successors, machine: Machine, source: Formula, allowed: int = ACCEPT, work: int = 50_000
+    ) -> None:
+        self._successors = successors
+        self._machine = machine
+        self._allowed = allowed
+        self._work = work
+        self._position = {part: index for index, part in enumerate(source.walk())}
+        self._members: dict[int, list[int]] = {}
+        for obligation, state in machine.representative.items():
+            self._members.setdefault(state, []).append(obligation)
+
+    def label(self, state: int) -> Formula:
+        """The shortest label found for a state of the machine, in negation normal form."""
+        written = sorted((self.written(obligation) for obligation in self._members[state]), key=length)
+        return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=length)
+
+    def written(self, obligation: int) -> Formula:
+        """The formula of an obligation, common factors first, operands in source order."""
+        return self._ordered(obligation)[1]
+
+    # --- writing an obligation out ------------------------------------------------------------
+
+    def _ordered(self, obligation: int) -> tuple[int, Formula]:
+        """The place of the formula's first part in the source, and the formula of the obligation."""
+        if obligation == FALSE:
+            return 0, build.FALSE
+        if obligation == TRUE:
+            return 0, build.TRUE
+        for absorbing, join in ((FALSE, build.and_), (TRUE, build.or_)):
+            factors, rest = self._factors(obligation, absorbing)
+            if factors:
+                operands = [self._literal(*factor) for factor in factors]
+                if rest not in (FALSE, TRUE):
+                    operands.append(self._ordered(rest))
+                return _joined(join, operands)
+        terms = self._terms(obligation)
+        if terms is not None:
+            return _joined(
+                build.or_, [_joined(build.and_, [self._literal(*literal) for literal in term]) for term in terms]
+            )
+        diagrams = self._successors.diagrams
+        test = self._literal(diagrams.variable[obligation], True)
+        present = _joined(build.and_, [test, self._ordered(diagrams.present[obligation])])
+        return _joined(build.or_, [present, self._ordered(diagrams.absent[obligation])])
+
+    def _factors(self, obligation: int, absorbing: int) -> tuple[list[tuple[int, bool]], int]:
+        """The literals without (for TRUE: with) which the obligation is ``absorbing``, and what is left of it."""
+        factors: list[tuple[int, bool]] = []
+        wanted = absorbing == FALSE
+        for variable in self._support(obligation):
+            for polarity in (True, False):
+                if self._restricted(obligation, variable, polarity != wanted) == absorbing:
+                    factors.append((variable, polarity))
+                    obligation = self._restricted(obligation, variable, polarity == wanted)
+                    break
+        return factors, obligation
+
+    def _support(self, obligation: int) -> list[int]:
+        diagrams = self._successors.diagrams
+        seen, stack = {FALSE, TRUE, obligation}, [obligation]
+        variables: set[int] = set()
+        while stack:
+            node = stack.pop()
+            if node in (FALSE, TRUE):
+                continue
+            variables.add(diagrams.variable[node])
+            for child in (diagrams.absent[node], diagrams.present[node]):
+                if child not in seen:
+                    seen.add(child)
+                    stack.append(child)
+        return sorted(variables)
+
+    def _restricted(self, obligation: int, variable: int, value: bool) -> int:
+        """The obligation where a variable is known to hold or not."""
+        diagrams = self._successors.diagrams
+        memo: dict[int, int] = {}
+
+        def restrict(node: int) -> int:
+            tested = diagrams.variable[node]
+            if tested > variable:
+                return node
+            if tested == variable:
+                return diagrams.present[node] if value else diagrams.absent[node]
+            result = memo.get(node)
+            if result is None:
+                absent, present = restrict(diagrams.absent[node]), restrict(diagrams.present[node])
+                result = memo[node] = diagrams.obligation(tested, absent, present)
+            return result
+
+        return restrict(obligation)
+
+    def _terms(self, obligation: int) -> list[_Term] | None:
+        """A sum of products of the obligation, or None where it has too many terms."""
+        if obligation == FALSE:
+            return []
+        if obligation == TRUE:
+            return [frozenset()]
+        diagrams = self._successors.diagrams
+        variable = diagrams.variable[obligation]
+        absent, present = diagrams.absent[obligation], diagrams.present[obligation]
+        # A temporal variable only ever helps: where it is absent the rest holds without it.
+        shared = diagrams.both(absent, present)
+        parts = [self._terms(shared), self._terms(absent), self._terms(present)]
+        if any(part is None or len(part) > _TERM_LIMIT for part in parts):
+            return None
+        common, without, alone = (part or [] for part in parts)
+        return [
+            *(term | {(variable, True)} for term in alone if not any(other <= term for other in common)),
+            *(term | {(variable, False)} for term in without if not any(other <= term for other in common)),
+            *common,
+        ]
+
+    def _literal(self, variable: int, polarity: bool) -> tuple[int, Formula]:
+        formula = self._successors.formulas[variable]
+        if formula is None:
+            return self._ordered(self._successors.stands_for[variable])
+        place = self._position.get(formula, len(self._position) + variable)
+        return place, formula if polarity else build.not_(formula)
+
+    # --- shortening ---------------------------------------------------------------------------
+
+    def _shortened(self, formula: Formula, state: int) -> Formula:
+        formula = simplify(formula)
+        tried: set[Formula] = set()
+        progress = True
+        while progress and self._work > 0:
+            progress = False
+            for shorter in sorted({simplify(f): None for f in _with_one_operand_less(formula)}, key=length):
+                if shorter in tried or length(shorter) >= length(formula):
+                    continue
+                tried.add(shorter)
+                if self._proved(shorter, state):
+                    formula, progress = shorter, True
+                    break
+        return formula
+
+    def _proved(self, formula: Formula, state: int) -> bool:
+        budget = min(self._work, 4 * len(self._machine.transitions) + 16)
+        obligation = self._successors.obligation(formula)
+        answer, used = equivalent(self._successors, self._machine, obligation, state, budget, self._allowed)
+        self._work -= used
+        return answer
+
+
+def length(formula: Formula) -> int:
+    """The number of nodes of the formula as it is written, shared parts counted each time."""
+    return 1 + sum(length(argument) for argument in formula.args)
+
+
+def _joined(join: Callable[..., Formula], operands: list[tuple[int, Formula]]) -> tuple[int, Formula]:
+    operands.sort(key=lambda operand: operand[0])
+    return operands[0][0] if operands else 0, join(*(formula for _, formula in operands))
+
+
+def _with_one_operand_less(formula: Formula) -> Iterator[Formula]:
+    """The formula with one operand of one ``and`` or ``or`` in it left out, for each such operand."""
+    args = formula.args
+    if formula.op in ("and", "or"):
+        for index in range(len(args)):
+            yield build.rebuild(formula, args[:index] + args[index + 1 :])
+    for index, argument in enumerate(args):
+        if argument.op != "atom":
+            for smaller in _with_one_operand_less(argument):
+                yield build.rebuild(formula, (*args[:index], smaller, *args[index + 1 :]))
