@@ -1,0 +1,101 @@
+"""The automaton as a Graphviz graph, drawn like Fig. 3 of the paper."""
+
+from __future__ import annotations
+
+from tltlc.automaton.fspa import Edge, Fspa, State, Verdict
+from tltlc.backends import Files, Options, Target
+from tltlc.backends.drawing.texts import Guards, label, visible, wrapped
+
+TARGET = Target("dot", "a graph for Graphviz", (".dot",))
+
+LINES: dict[Verdict, str] = {
+    "satisfied": "#15803d",
+    "holding": "#16a34a",
+    "pending": "#475569",
+    "violated": "#dc2626",
+}
+"""Colour of the outline and of the corner mark by verdict; the interior is a pale shade of it."""
+
+FILLS: dict[Verdict, str] = {
+    "satisfied": "#dcfce7",
+    "holding": "#f0fdf4",
+    "pending": "#f8fafc",
+    "violated": "#fef2f2",
+}
+
+LABEL_WIDTH, GUARD_WIDTH = 30, 22
+
+HEAD = """\
+    graph [rankdir="LR", bgcolor="white", pad="0.2", nodesep="0.45", ranksep="0.7", tooltip=" "];
+    node [shape="box", style="rounded,filled", margin="0.04,0.04", penwidth="1.4", fontname="Helvetica,Arial,sans-serif", fontsize="13", fontcolor="#0f172a"];
+    edge [color="#64748b", arrowsize="0.75", fontname="Helvetica,Arial,sans-serif", fontsize="11", fontcolor="#334155"];
+    start [shape="point", style="filled", width="0.09", color="#475569", tooltip="start"];"""  # noqa: E501
+
+
+def emit(fspa: Fspa, options: Options) -> Files:
+    """``NAME.dot``."""
+    return {f"{fspa.name}.dot": graph(fspa, options)}
+
+
+def graph(fspa: Fspa, options: Options, guards: bool = True) -> str:
+    """The DOT text; without ``guards``, edges carry none and states only their number: a sketch for tangled graphs.
+
+    Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting
+    states are green with a double outline, traps red.
+    """
+    texts = Guards(fspa, options.notation)
+    lines = [f"digraph {_quoted(fspa.name)} {{", HEAD, f"    label={_title(fspa)}; labelloc=t; labeljust=l;"]
+    lines += [_node(state, label(state.label, options.notation), guards) for state in fspa.states]
+    lines.append("    start -> 0;")
+    lines += [_edge(fspa, edge, texts.text(edge.guard.text), guards) for edge in fspa.edges]
+    return "\n".join([*lines, "}", ""])
+
+
+def _title(fspa: Fspa) -> str:
+    name = f'<B>{_html(fspa.name)}</B><BR ALIGN="LEFT"/>'
+    doc = "".join(f'{_html(line)}<BR ALIGN="LEFT"/>' for line in wrapped(fspa.doc, 100, 3)) if fspa.doc.strip() else ""
+    return f'<<FONT FACE="Helvetica,Arial,sans-serif" POINT-SIZE="13" COLOR="#0f172a">{name}{doc}</FONT>>'
+
+
+def _node(state: State, text: str, full: bool) -> str:
+    line, fill = LINES[state.verdict], FILLS[state.verdict]
+    distance = "∞" if state.distance is None else str(state.distance)
+    body = "<BR/>".join(map(_html, wrapped(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
+    mark = f'<FONT COLOR="white" POINT-SIZE="10"><B> {distance} </B></FONT>'
+    # A cell gets its share of the width that the label asks for: one column of twelve keeps the mark small.
+    html = (
+        f'<<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="1"><TR><TD COLSPAN="11"></TD>'
+        f'<TD BGCOLOR="{line}" STYLE="ROUNDED">{mark}</TD></TR>'
+        f'<TR><TD COLSPAN="12" CELLPADDING="6">{body}</TD></TR></TABLE>>'
+    )
+    rings = ', peripheries="2"' if state.accepting else ""
+    tip = f"state {state.id}, {state.verdict}, distance {distance}: {text}"
+    return f'    {state.id} [label={html}, color="{line}", fillcolor="{fill}", tooltip={_quoted(tip)}{rings}];'
+
+
+def _edge(fspa: Fspa, edge: Edge, text: str, full: bool) -> str:
+    attributes = [f"tooltip={_quoted(text)}", *_manner(fspa.states[edge.source], fspa.states[edge.target])]
+    if full:
+        lines = "<BR/>".join(map(_html, wrapped(text, GUARD_WIDTH)))
+        attributes.append(f'label=<<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="3"><TR><TD>{lines}</TD></TR></TABLE>>')
+    return f"    {edge.source} -> {edge.target} [{', '.join(attributes)}];"
+
+
+def _manner(source: State, target: State) -> list[str]:
+    """How an edge is drawn: progress is dark and kept straight, ways into a trap are pale red and give way."""
+    if source.distance is None or source.id == target.id:
+        return []
+    if target.distance is None:
+        return ['color="#f87171"', 'weight="0"']
+    return ['color="#0f172a"', 'penwidth="1.5"', 'weight="8"'] if target.distance < source.distance else []
+
+
+def _quoted(text: str) -> str:
+    """A DOT string; backslashes are doubled, since an odd one would take the closing quote with it."""
+    return '"' + visible(text).replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def _html(text: str) -> str:
+    """Text inside an HTML-like label."""
+    escaped = visible(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    return escaped.replace('"', "&quot;").replace("[", "&#91;").replace("]", "&#93;")

@@ -1,0 +1,21 @@
+"""The process that lays a graph out: ``python child.py FORMAT ENGINE < graph.dot > picture``.
+
+A layout cannot be interrupted from within, so that it runs where it can be ended from outside.
+"""
+
+from __future__ import annotations
+
+import sys
+
+
+def main() -> None:
+    """Read a DOT text, write the picture."""
+    import pygraphviz
+
+    picture_format, engine = sys.argv[1:]
+    graph = pygraphviz.AGraph(string=sys.stdin.buffer.read().decode("utf-8"))
+    sys.stdout.buffer.write(graph.draw(format=picture_format, prog=engine))
+
+
+if __name__ == "__main__":
+    main()

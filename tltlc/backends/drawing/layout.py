@@ -1,0 +1,64 @@
+"""Pictures of automata, laid out by Graphviz within a time limit."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Files, Options
+from tltlc.backends.dot import graph
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+CHILD = Path(__file__).with_name("child.py")
+
+MOST_EDGES_IN_FULL = 400
+"""Beyond, guards would cover each other, and the layered layout would only use up its time."""
+
+SKETCH = "`tltlc compile -t dot` writes the whole graph for other tools"
+
+
+def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
+    """``NAME.FORMAT``, or the best that could be done in time.
+
+    Tried in this order, each within ``options.layout_limit_s``: everything in layers; state numbers
+    only, in layers; state numbers only, by forces.  If none is done in time, ``NAME.dot``.  What was
+    left out is reported (TLT0712).
+
+    Raises:
+        TltlError: TLT0711 where pygraphviz is not installed, TLT0713 where the layout itself failed.
+    """
+    if find_spec("pygraphviz") is None:
+        raise TltlError(
+            [Diagnostic("TLT0711", "pictures need pygraphviz, which is not installed", help="pip install pygraphviz")]
+        )
+    name = f"{fspa.name}.{picture_format}"
+    full, sketch = graph(fspa, options), graph(fspa, options, guards=False)
+    if len(fspa.edges) <= MOST_EDGES_IN_FULL:
+        picture = _laid_out(full, picture_format, "dot", options.layout_limit_s)
+        if picture is not None:
+            return {name: picture}
+    for engine in ("dot", "sfdp"):
+        picture = _laid_out(sketch, picture_format, engine, options.layout_limit_s)
+        if picture is not None:
+            title = f"`{name}` shows {len(fspa.states)} states by number only, without guards: the graph is too tangled"
+            options.report(Diagnostic("TLT0712", title, help=SKETCH, severity="note"))
+            return {name: picture}
+    title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
+    options.report(Diagnostic("TLT0712", title, severity="note"))
+    return {f"{fspa.name}.dot": full}
+
+
+def _laid_out(dot: str, picture_format: str, engine: str, limit_s: float) -> bytes | None:
+    """The picture of a graph, None if the limit was reached first."""
+    command = [sys.executable, str(CHILD), picture_format, engine]
+    try:
+        done = subprocess.run(command, input=dot.encode(), capture_output=True, timeout=limit_s, check=False)
+    except subprocess.TimeoutExpired:
+        return None
+    if done.returncode or not done.stdout:
+        reason = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit status {done.returncode}"]
+        raise TltlError([Diagnostic("TLT0713", f"the picture could not be drawn: {reason[-1]}")])
+    return done.stdout

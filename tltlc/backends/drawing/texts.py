@@ -1,0 +1,73 @@
+"""The texts in pictures: labels and guards in the notation asked for, wrapped, with nothing invisible in them."""
+
+from __future__ import annotations
+
+import re
+
+from tltlc.automaton.fspa import Fspa, Text
+from tltlc.backends import Notation
+
+_OPERATORS: dict[Notation, dict[str, str]] = {
+    "unicode": {"!": "¬", "&": "∧", "|": "∨", "->": "⇒", "<->": "⇔", "true": "⊤", "false": "⊥"},
+    "ascii": {},
+    "english": {"!": "not ", "&": "and", "|": "or", "->": "implies", "<->": "iff"},
+}
+
+# Controls, invisible and direction-changing characters, and halves of surrogate pairs.
+_unseen = re.compile(
+    "[\x00-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
+    "\ud800-\udfff\ufffe\uffff\U000e0000-\U000e007f]"
+)
+
+BREAK_BEFORE = ("∧", "∨", "⇒", "⇔", "𝒰", "&", "|", "->", "<->", "and", "or", "implies", "iff", "U", "W", "R", "M")
+
+
+def label(text: Text, notation: Notation) -> str:
+    """A formula in the notation asked for."""
+    return {"unicode": text.unicode, "ascii": text.ascii, "english": text.english}[notation]
+
+
+class Guards:
+    """Guards' texts in a notation; the names of an automaton's atoms are kept as they are."""
+
+    def __init__(self, fspa: Fspa, notation: Notation) -> None:
+        names = sorted((atom.name for atom in fspa.atoms), key=len, reverse=True)
+        # Longer tokens first, so that no operator is found inside a name, nor `->` inside `<->`.
+        tokens = [*map(re.escape, names), "<->", "->", "[!&|]", r"\b(?:true|false)\b"]
+        self._tokens = re.compile("|".join(tokens))
+        self._operators = _OPERATORS[notation]
+        self._names = frozenset(names)
+
+    def text(self, guard: str) -> str:
+        """The guard, which is given in the ASCII notation of artefacts."""
+        return self._tokens.sub(lambda match: self._token(match.group()), guard)
+
+    def _token(self, token: str) -> str:
+        return token if token in self._names else self._operators.get(token, token)
+
+
+def visible(text: str) -> str:
+    r"""The text with every character that would not be seen, or would reorder the others, spelt out as ``\uXXXX``."""
+    return _unseen.sub(lambda match: f"\\u{ord(match.group()):04x}", text)
+
+
+def wrapped(text: str, width: int, most_lines: int = 8) -> list[str]:
+    """The text on lines of about ``width`` characters, broken at blanks and before infix operators.
+
+    No word is split.  What goes beyond ``most_lines`` is cut and marked by an ellipsis.
+    """
+    words: list[str] = []
+    for word in visible(" ".join(text.split())).split(" "):
+        if words and words[-1] in BREAK_BEFORE:
+            words[-1] += " " + word
+        else:
+            words.append(word)
+    lines = [words[0]]
+    for word in words[1:]:
+        if len(lines[-1]) + 1 + len(word) <= width:
+            lines[-1] += " " + word
+        else:
+            lines.append(word)
+    if len(lines) > most_lines:
+        lines = [*lines[: most_lines - 1], lines[most_lines - 1] + " …"]
+    return lines

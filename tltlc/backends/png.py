@@ -1,0 +1,14 @@
+"""The automaton as a PNG picture."""
+
+from __future__ import annotations
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Files, Options, Target
+from tltlc.backends.drawing.layout import draw
+
+TARGET = Target("png", "a picture of pixels", (".png",))
+
+
+def emit(fspa: Fspa, options: Options) -> Files:
+    """``NAME.png``; see :func:`tltlc.backends.drawing.layout.draw` for what happens to graphs too large to draw."""
+    return draw(fspa, options, "png")
