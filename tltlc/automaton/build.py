@@ -98,8 +98,14 @@ def default_judge(formula: Formula) -> Judge:
     """``limit`` where the formula is true of "nothing yet", else ``goal`` (semantics, section 4)."""
     normal = negation_normal_form(formula)
     value: dict[Formula, bool] = {}
-    for node in reversed(list(normal.walk())):
-        value[node] = _of_nothing_yet(node, value)
+    stack = [normal]
+    while stack:
+        node = stack[-1]
+        waiting = [part for part in node.args if part not in value] if node.op in ("and", "or") else []
+        if waiting:
+            stack.extend(waiting)
+        else:
+            value[stack.pop()] = _of_nothing_yet(node, value)
     return "limit" if value[normal] else "goal"
 
 
