@@ -1,0 +1,75 @@
+"""Matches the arguments of a call to the parameters of what is called."""
+
+from __future__ import annotations
+
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.tree import Argument, Call, Expr, Name, Parameter
+from tltlc.resolve.problem import problem
+from tltlc.resolve.scope import Binding, Scope
+
+
+def match(
+    use: Name | Call, binding: Binding, parameters: tuple[Parameter, ...], scope: Scope
+) -> tuple[tuple[Parameter, Expr | None], ...]:
+    """Each parameter with the argument given for it, None where its default stands.
+
+    Raises ResolutionError (TLT0210) for missing, surplus, repeated and unknown arguments.
+    """
+    arguments = use.arguments if isinstance(use, Call) else ()
+    given: dict[str, Expr] = {}
+    for position, argument in enumerate(arguments):
+        name = _parameter_for(argument, position, use, binding, parameters, scope)
+        if name in given:
+            raise problem("TLT0210", f"`{name}` is given twice", scope.source, argument.span)
+        given[name] = argument.value
+    for parameter in parameters:
+        if parameter.name not in given and parameter.default is None:
+            raise problem(
+                "TLT0210",
+                f"`{binding.name}` needs {_article(parameter)}: `{parameter.name}`",
+                scope.source,
+                use.span,
+                f"write `{use.name}({', '.join(_placeholders(parameters))})`",
+                other=(Label(binding.scope.source, binding.span, "declared here"),),
+            )
+    return tuple((parameter, given.get(parameter.name)) for parameter in parameters)
+
+
+def _parameter_for(
+    argument: Argument,
+    position: int,
+    use: Name | Call,
+    binding: Binding,
+    parameters: tuple[Parameter, ...],
+    scope: Scope,
+) -> str:
+    names = [parameter.name for parameter in parameters]
+    if argument.name is not None:
+        if argument.name in names:
+            return argument.name
+        from difflib import get_close_matches
+
+        close = get_close_matches(argument.name, names, n=1)
+        hint = f"did you mean `{close[0]}`?" if close else ""
+        raise problem("TLT0210", f"`{binding.name}` has no `{argument.name}`", scope.source, argument.span, hint)
+    if position >= len(names):
+        count = {0: "no arguments", 1: "one argument"}.get(len(names), f"{len(names)} arguments")
+        raise problem(
+            "TLT0210",
+            f"`{binding.name}` takes {count}",
+            scope.source,
+            argument.span,
+            "one too many",
+            other=(Label(binding.scope.source, binding.span, "declared here"),),
+        )
+    return names[position]
+
+
+def _article(parameter: Parameter) -> str:
+    if parameter.type is None:
+        return "an argument"
+    return f"{'an' if parameter.type[0] in 'aeiou' else 'a'} {parameter.type}"
+
+
+def _placeholders(parameters: tuple[Parameter, ...]) -> list[str]:
+    return [parameter.name for parameter in parameters if parameter.default is None]

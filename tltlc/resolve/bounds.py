@@ -1,0 +1,49 @@
+"""Bounded temporal operators, expanded into ``X`` and ``N``."""
+
+from __future__ import annotations
+
+from tltlc.grammar.tree import Unary
+from tltlc.logic.formula import Formula, and_, next_, or_, weak_next
+from tltlc.resolve.constants import samples
+from tltlc.resolve.context import LARGEST_EXPANSION, too_large
+from tltlc.resolve.problem import problem
+from tltlc.resolve.values import Env
+
+
+def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
+    """The operator of ``expr`` with its bound, over an operand; raises ResolutionError.
+
+    ``F[a,b] p`` is false past the trace's end (strong next), ``G[a,b] p`` asks nothing there (weak
+    next); ``within n`` is ``[0,n]``, ``for n`` is ``[0,n-1]``, ``next after n`` is n nexts.
+    """
+    bound = expr.bound
+    assert bound is not None
+    source = env.scope.source
+    for end in (bound.low, bound.high):
+        if bound.words and end is not None and end.unit is None:
+            digits = source.slice(end.span)
+            title = "a bound in words needs a unit"
+            raise problem("TLT0312", title, source, end.span, advice=f"write `{digits} steps` or `{digits} s`")
+    high = samples(bound.high, env)
+    low = samples(bound.low, env) if bound.low is not None else 0
+    if expr.op in ("X", "N"):
+        if bound.low is not None and low != high:
+            raise problem("TLT0312", "next takes one number of steps, not a range", source, bound.span)
+        low = high
+    elif bound.words and expr.op == "G":
+        if high == 0:
+            raise problem("TLT0312", "`for` needs at least one step", source, bound.high.span)
+        high -= 1
+    if low > high:
+        advice = "write the smaller number first, e.g. `[0, 20]`"
+        raise problem("TLT0312", "this bound ends before it begins", source, bound.span, advice=advice)
+    what = f"the bound of `{source.slice(expr.op_span)}`"
+    if 2 * high + (high - low + 1) * env.context.tree_size(operand) > 2 * LARGEST_EXPANSION:
+        raise too_large(what, source, bound.span)
+    result = operand
+    join, step = (and_, weak_next) if expr.op == "G" else (or_, weak_next if expr.op == "N" else next_)
+    for _ in range(high - low):
+        result = join(operand, step(result))
+    for _ in range(low):
+        result = step(result)
+    return env.context.checked_size(result, what, source, bound.span)

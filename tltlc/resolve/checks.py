@@ -1,0 +1,81 @@
+"""What the symbolic check of predicates found, as diagnostics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
+from tltlc.resolve.context import Context, Instance
+from tltlc.resolve.spec import Signal
+
+if TYPE_CHECKING:
+    from tltlc.resolve.predicate_check import Finding
+
+_NEVER_NEGATIVE = ("length", "time", "speed")
+
+
+def check_predicates(context: Context) -> None:
+    """Checks range and continuity of every predicate in use, each once; the findings go to the log."""
+    from tltlc.resolve.predicate_check import check_predicate
+
+    for instance in context.instances.values():
+        found = check_predicate(instance.expression, context.signals, context.params, instance.low, instance.high)
+        for finding in found:
+            if finding.kind == "range_wrong" and _holds_without_negatives(instance, context):
+                context.log.add(_diagnostic(instance, finding, negative=True))
+            else:
+                context.log.add(_diagnostic(instance, finding))
+
+
+def _holds_without_negatives(instance: Instance, context: Context) -> bool:
+    """Whether the range is only wrong where a length, time or speed without a range would be negative."""
+    from tltlc.resolve.predicate_check import check_predicate
+
+    signals: Mapping[str, Signal] = {
+        name: replace(signal, low=0.0) if signal.type in _NEVER_NEGATIVE and signal.low is None else signal
+        for name, signal in context.signals.items()
+    }
+    again = check_predicate(instance.expression, signals, context.params, instance.low, instance.high)
+    return all(finding.kind != "range_wrong" for finding in again)
+
+
+def _diagnostic(instance: Instance, finding: Finding, negative: bool = False) -> Diagnostic:
+    code, severity, title, advice = _CASES[finding.kind]
+    if negative:
+        code, severity, title, advice = "TLT0401", "warning", *_NEGATIVE
+    label = Label(instance.source, instance.span, finding.message)
+    return Diagnostic(code, title.format(name=instance.name), (label,), advice, severity)
+
+
+_CASES: dict[str, tuple[str, Severity, str, str]] = {
+    "range_wrong": (
+        "TLT0306",
+        "error",
+        "the predicate `{name}` leaves its declared range",
+        "declare the range it has, or hold the value inside with `clamp(…, -1, 1)`",
+    ),
+    "range_unproved": (
+        "TLT0401",
+        "warning",
+        "the range of the predicate `{name}` could not be proved",
+        "declare ranges for the signals and params it uses, or hold the value inside with `clamp(…, -1, 1)`",
+    ),
+    "discontinuous": (
+        "TLT0402",
+        "warning",
+        "the predicate `{name}` jumps at the border of a `when`",
+        "let both sides of the border have the same value there",
+    ),
+    "continuity_unproved": (
+        "TLT0402",
+        "warning",
+        "the predicate `{name}` may jump at the border of a `when`",
+        "let both sides of the border have the same value there",
+    ),
+}
+_NEGATIVE = (
+    "the predicate `{name}` leaves its declared range where a signal is negative",
+    "declare its range, e.g. `in [0 m, inf]`",
+)

@@ -1,0 +1,98 @@
+"""Comparisons of numbers as atoms, with a robustness scaled to [-1, 1]."""
+
+from __future__ import annotations
+
+from math import inf
+
+from tltlc.expression import Condition, Const, Expression, Op, When
+from tltlc.grammar.tree import Binary
+from tltlc.logic.formula import Formula, atom, not_
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.quantities import quantity, same_dimension
+from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, number_text
+
+_MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+_NEGATED = {"<=": ">", ">=": "<"}
+
+
+def comparison(expr: Binary, env: Env) -> Formula:
+    """The atom of a comparison, or its negation: ``x >= c`` is ``not (x < c)``, ``x <= c`` is ``not (x > c)``.
+
+    With x in [low, high], ``x > c`` has the robustness (x - c), scaled to 1 at high and to -1 at low, each
+    side on its own; ``x < c`` is mirrored.  Two sides that both vary are compared by their difference
+    with 0.  Raises ResolutionError where the comparison is constant over the range (TLT0310) or a side that is
+    needed for scaling is unbounded (TLT0311).
+    """
+    left, right = quantity(expr.left, env), quantity(expr.right, env)
+    same_dimension(left, right, expr.right, env)
+    op = expr.op
+    if left.is_constant and not right.is_constant:
+        op, left, right = _MIRRORED[op], right, left
+    negated = op in _NEGATED
+    strict = _NEGATED.get(op, op)
+    if not right.is_constant and strict == "<":
+        strict, left, right = ">", right, left
+    name = f"{left.bracketed(PRODUCT - 1)} {strict} {right.bracketed(PRODUCT - 1)}"
+    if env.symbolic:
+        return atom(name)
+    x, c = left, _value(right)
+    if not right.is_constant:
+        difference = apply("-", (left, right), left.dimension)
+        assert difference is not None, "not all constant"
+        x, c = difference, 0.0
+    _check(x, strict, c, negated, expr, env)
+    found = env.context.atom(name, _robustness(x, strict, c), "", env.scope.source, expr.span)
+    return not_(found) if negated else found
+
+
+def _value(quantity_: Quantity) -> float:
+    return quantity_.expression.value if isinstance(quantity_.expression, Const) else 0.0
+
+
+def _check(x: Quantity, op: str, c: float, negated: bool, expr: Binary, env: Env) -> None:
+    source = env.scope.source
+    always = x.low > c if op == ">" else x.high < c
+    never = x.high <= c if op == ">" else x.low >= c
+    if always or never:
+        range_ = f"[{number_text(x.low)}, {number_text(x.high)}]"
+        raise problem(
+            "TLT0310",
+            f"this comparison {'always' if always != negated else 'never'} holds",
+            source,
+            expr.span,
+            f"`{x.text}` lies in {range_}",
+            advice="compare with a value inside that range, or write `true` or `false`",
+        )
+    needed = [x.high == inf, x.low == -inf]
+    if any(needed):
+        raise _unbounded(x, needed, expr, env)
+
+
+def _unbounded(x: Quantity, needed: list[bool], expr: Binary, env: Env) -> ResolutionError:
+    ends = " and ".join(word for word, missing in zip(("upper", "lower"), needed, strict=True) if missing)
+    return problem(
+        "TLT0311",
+        f"`{x.text}` has no {ends} bound to scale this comparison by",
+        env.scope.source,
+        expr.span,
+        advice="declare a range, e.g. `in [0, 100]`, where the signal or param is declared, or use a predicate",
+    )
+
+
+def _robustness(x: Quantity, op: str, c: float) -> Expression:
+    """The margin by which ``x op c`` holds, over its greatest value on that side of c."""
+    above, below = x.high - c, c - x.low
+    if op == ">":
+        margin: Expression = x.expression if c == 0 else Op("-", (x.expression, Const(c)))
+        holding, failing = above, below
+    else:
+        margin = Op("neg", (x.expression,)) if c == 0 else Op("-", (Const(c), x.expression))
+        holding, failing = below, above
+    if failing in (0.0, holding):
+        return _over(margin, holding)
+    condition = Condition(">" if op == ">" else "<", (x.expression, Const(c)))
+    return When(((condition, _over(margin, holding)),), _over(margin, failing))
+
+
+def _over(margin: Expression, divisor: float) -> Expression:
+    return margin if divisor == 1 else Op("/", (margin, Const(divisor)))

@@ -1,0 +1,137 @@
+"""What a whole run of resolution shares: the declared signals and params, the atoms found, the limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.expression import Expression
+from tltlc.logic.formula import Formula, atom
+from tltlc.resolve.problem import Log, ResolutionError, problem
+from tltlc.resolve.spec import Atom, Param, Signal, ValueType
+from tltlc.source import SourceFile, Span
+
+LARGEST_EXPANSION = 100_000
+"""Nodes of a formula, written out as a tree, that bounds, quantifiers and lets may expand to."""
+MOST_EXPANSIONS = 200_000
+"""Uses of lets and quantifiers that one formula may expand."""
+
+
+@dataclass(frozen=True, slots=True)
+class SignalInfo:
+    """A declared signal; with parameters, one signal for each choice of entities."""
+
+    name: str
+    parameters: tuple[str, ...]
+    type: ValueType
+    low: float | None
+    high: float | None
+    doc: str
+    place: Label
+
+    def of(self, entities: tuple[str, ...]) -> Signal:
+        """The signal of these entities."""
+        name = f"{self.name}({', '.join(entities)})" if entities else self.name
+        return Signal(name, self.type, self.low, self.high, self.doc)
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """A predicate with its arguments, to be checked; entities go by parameter name, so that all share one check."""
+
+    name: str
+    expression: Expression
+    low: float
+    high: float
+    source: SourceFile
+    span: Span
+
+
+@dataclass(slots=True)
+class Context:
+    """Tables that fill up while a program is resolved."""
+
+    log: Log = field(default_factory=Log)
+    signal_infos: dict[str, SignalInfo] = field(default_factory=dict)
+    params: dict[str, Param] = field(default_factory=dict)
+    clock_s: float | None = None
+    signals: dict[str, Signal] = field(default_factory=dict)
+    """Signals in use, by full name."""
+    atoms: dict[str, Atom] = field(default_factory=dict)
+    instances: dict[tuple[int, Any], Instance] = field(default_factory=dict)
+    """By identity of the predicate's declaration and values of its parameters."""
+    expanding: dict[int, str] = field(default_factory=dict)
+    """The lets and predicates being expanded, outermost first: identity of the declaration and its name."""
+    broken: set[int] = field(default_factory=set)
+    """Declarations whose error has been reported."""
+    expansions: int = 0
+    values: dict[Any, Any] = field(default_factory=dict)
+    """Values of predicates and expansions of lets, by identity of the declaration and values of its parameters."""
+    _sizes: dict[Formula, int] = field(default_factory=dict)
+
+    def signal(self, info: SignalInfo, entities: tuple[str, ...]) -> Signal:
+        """The signal of these entities, noted as used."""
+        found = info.of(entities)
+        return self.signals.setdefault(found.name, found)
+
+    def atom(self, name: str, expression: Expression, doc: str, source: SourceFile, span: Span) -> Formula:
+        """The atom of that name; raises ResolutionError where the name already stands for something else."""
+        known = self.atoms.setdefault(name, Atom(name, expression, doc))
+        if known.expression != expression:
+            raise problem(
+                "TLT0216",
+                f"two different predicates would both be the atom `{name}`",
+                source,
+                span,
+                advice="rename one of them: names of atoms must differ in the compiled automaton",
+            )
+        return atom(name)
+
+    def recursion(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
+        """The problem of a let or predicate that is being expanded already, reported once."""
+        active = list(self.expanding)
+        cycle = active[active.index(declaration) :]
+        names = [self.expanding[key] for key in (*cycle, declaration)]
+        if self.broken.intersection(cycle):
+            return ResolutionError(None)
+        self.broken.update(cycle)
+        return problem(
+            "TLT0207",
+            f"`{names[0]}` is defined by itself: " + " -> ".join(names),
+            source,
+            span,
+            advice="a definition may only use others that do not lead back to it; to repeat, use `always` or `until`",
+        )
+
+    def tree_size(self, formula: Formula) -> int:
+        """The number of nodes of the formula written out as a tree."""
+        if formula in self._sizes:
+            return self._sizes[formula]
+        stack = [formula]
+        while stack:
+            node = stack[-1]
+            missing = [child for child in node.args if child not in self._sizes]
+            if missing:
+                stack.extend(missing)
+            else:
+                self._sizes[node] = 1 + sum(self._sizes[child] for child in node.args)
+                stack.pop()
+        return self._sizes[formula]
+
+    def checked_size(self, formula: Formula, what: str, source: SourceFile, span: Span) -> Formula:
+        """The formula itself; raises ResolutionError where an expansion has made it too large."""
+        if self.expansions > MOST_EXPANSIONS or self.tree_size(formula) > LARGEST_EXPANSION:
+            raise too_large(what, source, span)
+        return formula
+
+
+def too_large(what: str, source: SourceFile, span: Span) -> ResolutionError:
+    """The problem of an expansion past the limit; ``what`` names the bound, let or quantifier."""
+    return problem(
+        "TLT0315",
+        f"{what} expands to more than {LARGEST_EXPANSION:,} parts",
+        source,
+        span,
+        advice="choose a smaller bound or a slower clock, or let a signal count the time",
+    )

@@ -1,0 +1,174 @@
+"""Signals, params and the clock: declared anywhere in the program, one table for all of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar.tree import ClockDecl, ParamDecl, SignalDecl
+from tltlc.resolve import units
+from tltlc.resolve.constants import interval, number, override
+from tltlc.resolve.context import Context, SignalInfo
+from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.predicates import unknown_type
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.scope import Scope
+from tltlc.resolve.spec import Param, ValueType
+from tltlc.resolve.values import Env, number_text
+
+
+def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) -> None:
+    """Fills the context's tables of signals, params and the clock; problems go to its log."""
+    places: dict[str, Label] = {}
+    clock: Label | None = None
+    for scope in scopes:
+        env = Env(context, scope)
+        for declaration in scope.module.declarations:
+            try:
+                if isinstance(declaration, SignalDecl):
+                    _signal(declaration, env)
+                elif isinstance(declaration, ParamDecl):
+                    _param(declaration, env, places)
+                elif isinstance(declaration, ClockDecl):
+                    clock = _clock(declaration, env, clock)
+            except ResolutionError as failure:
+                context.log.add(failure.diagnostic)
+    _override(options, context)
+
+
+def _type(declaration: SignalDecl | ParamDecl, scope: Scope) -> ValueType:
+    found = units.value_type(declaration.type or "number")
+    if found is None:
+        raise unknown_type(str(declaration.type), declaration, scope)
+    return found
+
+
+def _range(declaration: SignalDecl | ParamDecl, type_: ValueType, env: Env) -> tuple[float | None, float | None]:
+    if declaration.interval is not None:
+        if type_ == "bool":
+            title = f"`{declaration.name}` is a bool: it has no range"
+            raise problem("TLT0303", title, env.scope.source, declaration.interval.span)
+        return interval(declaration.interval, units.TYPES[type_], env)
+    return (0.0, 1.0) if type_ in ("ratio", "bool") else (None, None)
+
+
+def _signal(declaration: SignalDecl, env: Env) -> None:
+    scope = env.scope
+    place = Label(scope.source, declaration.name_span)
+    for parameter in declaration.parameters:
+        if parameter.type not in (None, "entity"):
+            title = f"a signal is of entities, not of {parameter.type}s"
+            raise problem("TLT0210", title, scope.source, parameter.span, advice=f"write `{parameter.name}: entity`")
+    type_ = _type(declaration, scope)
+    low, high = _range(declaration, type_, env)
+    names = tuple(parameter.name for parameter in declaration.parameters)
+    new = SignalInfo(declaration.name, names, type_, low, high, declaration.doc, place)
+    table = env.context.signal_infos
+    old = table.get(new.name)
+    if old is None:
+        table[new.name] = new
+        return
+    if (old.type, len(old.parameters)) == (new.type, len(new.parameters)):
+        if (old.low, old.high) == (new.low, new.high) or declaration.interval is None:
+            return
+        if (old.low, old.high) == ((0.0, 1.0) if type_ == "ratio" else (None, None)):
+            table[new.name] = SignalInfo(new.name, names, type_, low, high, new.doc or old.doc, place)
+            return
+    raise _conflict("signal", new.name, place, old.place)
+
+
+def _param(declaration: ParamDecl, env: Env, places: dict[str, Label]) -> None:
+    scope = env.scope
+    place = Label(scope.source, declaration.name_span)
+    type_ = _type(declaration, scope)
+    low, high = _range(declaration, type_, env)
+    value = number(declaration.value, units.TYPES[type_], env, f"`{declaration.name}`")
+    if not (-inf if low is None else low) <= value <= (inf if high is None else high):
+        raise problem(
+            "TLT0307",
+            f"the value of `{declaration.name}` lies outside its range",
+            scope.source,
+            declaration.value.span,
+            f"the range is {_range_text(low, high)}",
+        )
+    new = Param(declaration.name, type_, value, low, high, declaration.doc)
+    old = env.context.params.get(new.name)
+    if old is None:
+        env.context.params[new.name] = new
+        places[new.name] = place
+        return
+    if (old.type, old.value) == (new.type, new.value):
+        if (old.low, old.high) == (new.low, new.high) or declaration.interval is None:
+            return
+        if (old.low, old.high) == ((0.0, 1.0) if type_ == "ratio" else (None, None)):
+            env.context.params[new.name] = new
+            places[new.name] = place
+            return
+    raise _conflict("param", new.name, place, places[new.name])
+
+
+def _conflict(what: str, name: str, new: Label, old: Label) -> ResolutionError:
+    return problem(
+        "TLT0204",
+        f"the {what} `{name}` is declared in two different ways",
+        new.source,
+        new.span,
+        "differs from the other declaration",
+        advice="make the two declarations the same, or rename one",
+        other=(Label(old.source, old.span, "the other declaration"),),
+    )
+
+
+def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
+    source, written = env.scope.source, declaration.value
+    found = units.in_si(written.value, written.unit)
+    if found is not None and written.unit == "Hz" and written.value > 0:
+        period = 1.0 / found[0]
+    elif found is not None and found[1] == units.TYPES["time"] and written.value > 0:
+        period = found[0]
+    else:
+        title = "a clock is a frequency or a period, above zero"
+        raise problem("TLT0314", title, source, written.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
+    here = Label(source, declaration.span)
+    if old is not None and period != env.context.clock_s:
+        raise problem(
+            "TLT0314",
+            "two clocks differ",
+            source,
+            declaration.span,
+            advice="a program has one clock: keep one of the two",
+            other=(Label(old.source, old.span, "the other clock"),),
+        )
+    env.context.clock_s = period
+    return old or here
+
+
+def _override(options: ResolveOptions, context: Context) -> None:
+    """Applies the values given from outside the source text."""
+    for name, text in options.params.items():
+        old = context.params.get(name)
+        if old is None:
+            from difflib import get_close_matches
+
+            close = get_close_matches(name, list(context.params), n=1)
+            advice = f"did you mean `{close[0]}`?" if close else None
+            context.log.add(Diagnostic("TLT0308", f"there is no param `{name}` to set", (), advice))
+            continue
+        found = override(text)
+        dimension = units.TYPES[old.type]
+        if found is None or found[1] not in (None, dimension):
+            title = f"`{text}` is no value for the param `{name}`"
+            unit = units.si_unit(dimension)
+            advice = f"write a number, e.g. `{name}={number_text(old.value)}{' ' + unit if unit else ''}`"
+            context.log.add(Diagnostic("TLT0308", title, (), advice))
+        elif not (-inf if old.low is None else old.low) <= found[0] <= (inf if old.high is None else old.high):
+            title = f"`{text}` lies outside the range of the param `{name}`"
+            advice = f"its range is {_range_text(old.low, old.high)}"
+            context.log.add(Diagnostic("TLT0307", title, (), advice))
+        else:
+            context.params[name] = Param(name, old.type, found[0], old.low, old.high, old.doc)
+
+
+def _range_text(low: float | None, high: float | None) -> str:
+    return f"[{number_text(-inf if low is None else low)}, {number_text(inf if high is None else high)}]"

@@ -1,0 +1,186 @@
+"""Finds, reads and parses the files that a module imports, directly or through others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from tltlc.diagnostics.diagnostic import Label, TltlError
+from tltlc.files import read_source
+from tltlc.grammar.tree import Import, Module
+from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.problem import Log, ResolutionError, problem
+from tltlc.source import SourceFile
+
+STANDARD_LIBRARY_NAME = "<standard library>"
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A parsed module, the name by which messages speak of it, and what each of its imports led to."""
+
+    module: Module
+    title: str
+    imports: tuple[tuple[Import, Loaded], ...]
+
+
+def load(module: Module, options: ResolveOptions, log: Log) -> tuple[Loaded, ...]:
+    """Every module reached from ``module``, each once, imported ones before those that import them.
+
+    The last one is ``module`` itself.  Imports that fail are reported and left out.
+    """
+    done: dict[Path, Loaded] = {}
+    stack = [_Visit(module, _path_of(module.source), Path(module.source.name).stem)]
+    order: list[Loaded] = []
+    while stack:
+        visit = stack[-1]
+        declaration = next(visit.pending, None)
+        if declaration is None:
+            stack.pop()
+            loaded = Loaded(visit.module, visit.title, tuple(visit.found))
+            order.append(loaded)
+            done[visit.path] = loaded
+            if stack and visit.reason:
+                stack[-1].found.append((visit.reason, loaded))
+            continue
+        source = visit.module.source
+        try:
+            path, shown = _find(declaration, source, options)
+            if path in done:
+                visit.found.append((declaration, done[path]))
+            elif any(path == other.path for other in stack):
+                raise _cycle(declaration, source, path, stack)
+            else:
+                stack.append(_Visit(_parse(path, shown, declaration, source, log), path, path.stem, declaration))
+        except ResolutionError as failure:
+            log.add(failure.diagnostic)
+    return tuple(order)
+
+
+def standard_library() -> Path:
+    """The folder of the standard library: inside an installed package, else beside it in a checkout."""
+    package = Path(__file__).parent.parent
+    installed = package / "stdlib"
+    return installed if installed.is_dir() else package.parent / "stdlib_predicates"
+
+
+@dataclass(slots=True)
+class _Visit:
+    module: Module
+    path: Path
+    title: str
+    reason: Import | None = None
+    found: list[tuple[Import, Loaded]] = field(default_factory=list)
+    pending: Iterator[Import] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.pending = iter([d for d in self.module.declarations if isinstance(d, Import)])
+
+
+def _path_of(source: SourceFile) -> Path:
+    standard = standard_library()
+    if source.name.startswith(STANDARD_LIBRARY_NAME):
+        return standard / source.name[len(STANDARD_LIBRARY_NAME) + 1 :]
+    return Path(source.name).absolute()
+
+
+def _folder(source: SourceFile) -> Path:
+    """The folder that imports are relative to, as the user wrote it; a text without a file is in the current one."""
+    if source.name.startswith(STANDARD_LIBRARY_NAME):
+        return standard_library()
+    return Path(source.name).parent if not source.name.startswith("<") else Path()
+
+
+def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> tuple[Path, str]:
+    """The absolute path of an imported file and the name to show for it."""
+    target = declaration.target
+    here = _folder(source)
+    if declaration.is_path:
+        shown = here / target
+        if not _is_file(shown):
+            raise problem(
+                "TLT0010",
+                f"there is no file `{target}` beside this one",
+                source,
+                declaration.target_span,
+                advice=_similar(target, [path.name for path in _files(shown.parent)]),
+            )
+        return Path(_normal(shown.absolute())), _shown(shown)
+    folders = (here, *options.library_dirs, standard_library())
+    name = target.replace(".", "/") + ".tltl"
+    for folder in folders:
+        if _is_file(folder / name):
+            return Path(_normal((folder / name).absolute())), _shown(folder / name)
+    known = sorted({path.stem for folder in folders for path in _files(folder)})
+    advice = _similar(target, known) or "a library is a file NAME.tltl beside this one or in a --library folder"
+    raise problem("TLT0010", f"there is no library `{target}`", source, declaration.target_span, advice=advice)
+
+
+def _similar(target: str, known: list[str]) -> str | None:
+    from difflib import get_close_matches
+
+    close = get_close_matches(target, known, n=1)
+    return f"did you mean `{close[0]}`?" if close else None
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def _files(folder: Path) -> list[Path]:
+    try:
+        return sorted(folder.glob("*.tltl"))
+    except OSError:
+        return []
+
+
+def _normal(path: Path) -> str:
+    from os.path import normpath
+
+    return normpath(path)
+
+
+def _shown(path: Path) -> str:
+    """Library files are shown under one name, wherever the package is installed."""
+    try:
+        inside = Path(_normal(path.absolute())).relative_to(standard_library().absolute())
+    except ValueError:
+        return str(path)
+    return f"{STANDARD_LIBRARY_NAME}/{inside.as_posix()}"
+
+
+def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log: Log) -> Module:
+    from tltlc.grammar.parser import parse
+
+    try:
+        text = read_source(path, shown)
+    except TltlError as failure:
+        here = Label(source, declaration.target_span, "imported here")
+        found = failure.diagnostics[0]
+        raise ResolutionError(replace(found, labels=(*found.labels, here))) from None
+    module, diagnostics = parse(text)
+    for diagnostic in diagnostics:
+        log.add(diagnostic)
+    return module
+
+
+def _cycle(declaration: Import, source: SourceFile, path: Path, stack: list[_Visit]) -> ResolutionError:
+    start = next(i for i, visit in enumerate(stack) if visit.path == path)
+    names = [visit.title for visit in stack[start:]] + [stack[start].title]
+    others = tuple(
+        Label(stack[i - 1].module.source, visit.reason.target_span, f"`{visit.title}` is imported here")
+        for i, visit in enumerate(stack)
+        if i > start and visit.reason
+    )
+    return problem(
+        "TLT0011",
+        "imports form a cycle: " + " -> ".join(names),
+        source,
+        declaration.target_span,
+        advice="move what both need into a third file",
+        other=others,
+    )

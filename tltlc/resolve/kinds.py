@@ -1,0 +1,95 @@
+"""Looks names up, and says what kind of thing an expression is."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from tltlc.grammar import tree
+from tltlc.grammar.tree import Call, Expr, Group, Name, SignalDecl
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.scope import FUNCTIONS, Binding, Kind, library_with, suggestion
+from tltlc.resolve.values import Entity, Env, Quantity, Unknown
+
+_FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
+
+
+def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> Binding:
+    """What a name stands for in a scope; raises ResolutionError (TLT0201) with a suggestion where it is unknown."""
+    binding = env.scope.names.get(use.name)
+    if binding is not None:
+        return binding
+    span = use.name_span if isinstance(use, Call) else use.span
+    hint = suggestion(use.name, env.scope, wanted, env.local)
+    library = None if hint else library_with(use.name)
+    advice = f"`{use.name}` is in the library {library}: add `import {library}`" if library else None
+    raise problem("TLT0201", f"no {what} `{use.name}` here", env.scope.source, span, hint, advice=advice)
+
+
+def entity(expr: Expr, env: Env) -> Entity:
+    """The entity that an argument names; raises ResolutionError."""
+    while isinstance(expr, Group):
+        expr = expr.inner
+    if isinstance(expr, Name):
+        local = env.local.get(expr.name)
+        if isinstance(local, Entity):
+            return local
+        if isinstance(local, Unknown):
+            return Entity(local.name)
+        if local is None:
+            binding = lookup(expr, env, ("entity",), "entity")
+            if binding.kind == "entity":
+                return Entity(binding.name)
+    raise problem(
+        "TLT0302",
+        f"expected an entity, found {described_kind(expr, env)}",
+        env.scope.source,
+        expr.span,
+        advice="entities are declared with `entity NAME`",
+    )
+
+
+def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
+    """What an argument is, from its outermost part alone; unknown names count as formulas."""
+    while isinstance(expr, Group):
+        expr = expr.inner
+    if isinstance(expr, (tree.Number, tree.When)):
+        return "number"
+    if isinstance(expr, tree.Unary):
+        return "number" if expr.op == "-" else "formula"
+    if isinstance(expr, tree.Binary):
+        return "formula" if expr.op in _FORMULA_OPERATORS else "number"
+    if isinstance(expr, (Name, Call)):
+        local = env.local.get(expr.name)
+        if local is not None:
+            quantity = isinstance(local, Quantity) and not local.is_bool
+            return "number" if quantity else "entity" if isinstance(local, Entity) else "formula"
+        binding = env.scope.names.get(expr.name)
+        if binding is None:
+            return "number" if isinstance(expr, Call) and expr.name in FUNCTIONS else "formula"
+        if isinstance(binding.declaration, SignalDecl):
+            return "formula" if binding.declaration.type == "bool" else "number"
+        return "entity" if binding.kind == "entity" else "number" if binding.kind == "param" else "formula"
+    return "formula"
+
+
+def described_kind(expr: Expr, env: Env) -> str:
+    """The kind of an expression in words, for ``expected a number, found …``."""
+    while isinstance(expr, Group):
+        expr = expr.inner
+    if isinstance(expr, tree.Constant):
+        return f"`{'true' if expr.value else 'false'}`"
+    if isinstance(expr, tree.Binary) and expr.op in ("<", "<=", ">", ">="):
+        return "a comparison"
+    kind = kind_of(expr, env)
+    return {"entity": "an entity", "number": "a number", "formula": "a formula"}[kind]
+
+
+def not_a_formula(expr: Expr, env: Env) -> ResolutionError:
+    """The problem of a number or an entity where a formula must stand."""
+    advice = None
+    if kind_of(expr, env) == "number" and isinstance(expr, (Name, Call)):
+        advice = f"compare it, e.g. `{env.scope.source.slice(expr.span)} > 0.5`"
+    elif kind_of(expr, env) == "entity":
+        advice = f"say what holds of it, e.g. `near({env.scope.source.slice(expr.span)})`"
+    found = described_kind(expr, env)
+    return problem("TLT0301", f"expected a formula, found {found}", env.scope.source, expr.span, advice=advice)

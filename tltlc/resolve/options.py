@@ -1,0 +1,18 @@
+"""What resolution is told from outside the source text."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+@dataclass(frozen=True, slots=True)
+class ResolveOptions:
+    """``library_dirs`` are searched for imports after the file's own folder; ``params`` overrides values by name.
+
+    A value is written as in a source text, ``"25 m"``; without a unit it is in SI units.
+    """
+
+    library_dirs: tuple[Path, ...] = ()
+    params: Mapping[str, str] = field(default_factory=dict)

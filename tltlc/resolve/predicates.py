@@ -1,0 +1,197 @@
+"""Uses of predicates: their arguments, the value they stand for, and the names of their atoms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import cast
+
+from tltlc.expression import Const
+from tltlc.grammar import tree
+from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
+from tltlc.resolve import units
+from tltlc.resolve.arguments import match
+from tltlc.resolve.constants import interval
+from tltlc.resolve.context import Instance
+from tltlc.resolve.kinds import entity, kind_of
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.quantities import mismatch, of_signal, quantity
+from tltlc.resolve.scope import Binding, Scope
+from tltlc.resolve.spec import Signal, ValueType
+from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, constant
+
+
+@dataclass(frozen=True, slots=True)
+class PredicateUse:
+    """A predicate with its arguments: its value (named and bounded as declared) and its documentation."""
+
+    value: Quantity
+    doc: str
+
+
+def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> PredicateUse:
+    """The value of a predicate where it is used; its name is that of the atom, e.g. ``near(s1, close=3)``."""
+    declaration = binding.declaration
+    assert isinstance(declaration, PredicateDecl)
+    values: dict[str, Value] = {}
+    shown: list[str] = []
+    for parameter, argument in match(use, binding, declaration.parameters, env.scope):
+        inside = env.within(binding.scope, dict(values))
+        default = argument_value(parameter, parameter.default, inside, binding, depth) if parameter.default else None
+        value = default if argument is None else argument_value(parameter, argument, env, binding, depth)
+        assert value is not None
+        values[parameter.name] = value
+        if default is None:
+            shown.append(_text(value))
+        elif _text(value) != _text(default):
+            shown.append(f"{parameter.name}={_text(value)}")
+    name = f"{declaration.name}({', '.join(shown)})" if shown else declaration.name
+    return PredicateUse(_instantiate(name, declaration, binding.scope, values, env, depth), declaration.doc)
+
+
+def check_unused(binding: Binding, env: Env) -> None:
+    """Instantiates a predicate with symbolic arguments, so that its body is checked even if nothing uses it."""
+    declaration = binding.declaration
+    assert isinstance(declaration, PredicateDecl)
+    if any(key[0] == id(declaration) for key in env.context.instances):
+        return
+    values: dict[str, Value] = {}
+    for parameter in declaration.parameters:
+        if parameter.default is not None:
+            inside = env.within(binding.scope, dict(values))
+            values[parameter.name] = argument_value(parameter, parameter.default, inside, binding, 0)
+        else:
+            values[parameter.name] = _symbolic(parameter, binding, env)
+    _instantiate(declaration.name, declaration, binding.scope, values, env, 0)
+
+
+def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Binding, depth: int) -> Value:
+    """The value of an argument for a parameter of a predicate or a numeric one of a ``let``; raises ResolutionError."""
+    while isinstance(argument, Group):
+        argument = argument.inner
+    if parameter.type == "entity" or (parameter.type is None and kind_of(argument, env) == "entity"):
+        return entity(argument, env)
+    type_ = parameter_type(parameter, binding)
+    if type_ == "bool" and isinstance(argument, tree.Constant):
+        return constant(float(argument.value), units.PLAIN)
+    value = quantity(argument, env, depth)
+    if type_ is None or value.dimension is None:
+        return value
+    wanted = units.TYPES[type_]
+    if value.dimension != wanted:
+        article = "an" if type_ == "angle" else "a"
+        raise mismatch(wanted, value.dimension, argument, env, f"`{parameter.name}` is {article} {type_}")
+    if type_ == "ratio" and isinstance(value.expression, Const) and not 0 <= value.expression.value <= 1:
+        raise problem(
+            "TLT0307",
+            f"`{parameter.name}` is a ratio: it must lie in [0, 1]",
+            env.scope.source,
+            argument.span,
+            advice="write a number between 0 and 1, or a percentage up to `100 %`",
+        )
+    return value
+
+
+def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
+    """The value type of a parameter, None where it takes any; raises ResolutionError (TLT0211) for an unknown one."""
+    if parameter.type is None or parameter.type in units.TYPES:
+        return parameter.type
+    raise unknown_type(parameter.type, parameter, binding.scope)
+
+
+def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:
+    """The problem of a type that the language has not."""
+    from difflib import get_close_matches
+
+    known = [*units.TYPES, "entity"]
+    close = get_close_matches(name, known, n=1)
+    advice = f"did you mean `{close[0]}`?" if close else f"the types are {', '.join(known)}"
+    return problem("TLT0211", f"there is no type `{name}`", scope.source, at.span, advice=advice)
+
+
+def _symbolic(parameter: Parameter, binding: Binding, env: Env) -> Value:
+    """A value for a parameter of which only the type is known: a number becomes a signal of its own."""
+    if parameter.type == "entity":
+        return Entity(parameter.name)
+    type_ = parameter_type(parameter, binding)
+    if type_ is None:
+        return Unknown(parameter.name)
+    low, high = (0.0, 1.0) if type_ in ("ratio", "bool") else (None, None)
+    found = Signal(parameter.name, cast(ValueType, type_), low, high)
+    env.context.signals.setdefault(found.name, found)
+    return of_signal(found)
+
+
+def _text(value: Value) -> str:
+    return value.name if isinstance(value, (Entity, Unknown)) else value.text if isinstance(value, Quantity) else ""
+
+
+def _instantiate(
+    name: str, declaration: PredicateDecl, scope: Scope, values: Mapping[str, Value], env: Env, depth: int
+) -> Quantity:
+    context = env.context
+    memo = (id(declaration), tuple(values.values()))
+    if memo in context.values:
+        found: Quantity = context.values[memo]
+        return found
+    if id(declaration) in context.broken:
+        raise ResolutionError(None)
+    low, high = declared_range(declaration, scope, env)
+    body = _body(declaration, scope, values, env, depth)
+    _note_instance(declaration, scope, values, (low, high), env, depth)
+    result = Quantity(body.expression, units.PLAIN, low, high, name, depth=body.depth)
+    context.values[memo] = result
+    return result
+
+
+def declared_range(declaration: PredicateDecl, scope: Scope, env: Env) -> tuple[float, float]:
+    """The declared range of a predicate, [-1, 1] where there is none; raises ResolutionError."""
+    if declaration.interval is None:
+        return -1.0, 1.0
+    low, high = interval(declaration.interval, units.PLAIN, env.within(scope, {}))
+    if low is None or high is None or not -1 <= low <= high <= 1:
+        raise problem(
+            "TLT0303",
+            "the range of a predicate must lie in [-1, 1]",
+            scope.source,
+            declaration.interval.span,
+            advice="scale the value, or use clamp(…, -1, 1), and declare `in [-1, 1]`",
+        )
+    return low, high
+
+
+def _body(declaration: PredicateDecl, scope: Scope, values: Mapping[str, Value], env: Env, depth: int) -> Quantity:
+    context = env.context
+    if id(declaration) in context.expanding:
+        raise context.recursion(id(declaration), scope.source, declaration.name_span)
+    context.expanding[id(declaration)] = declaration.name
+    try:
+        body = quantity(declaration.body, env.within(scope, values), depth)
+    finally:
+        context.expanding.pop(id(declaration), None)
+    if body.dimension not in (None, units.PLAIN):
+        why = "divide it by a quantity of the same kind: a predicate is a number in [-1, 1]"
+        raise mismatch(units.PLAIN, body.dimension, declaration.body, env.within(scope, values), why)
+    return body
+
+
+def _note_instance(
+    declaration: PredicateDecl,
+    scope: Scope,
+    values: Mapping[str, Value],
+    declared: tuple[float, float],
+    env: Env,
+    depth: int,
+) -> None:
+    """Keeps the predicate to be checked, once for all entities: they are replaced by the parameters' names."""
+    general: dict[str, Value] = {}
+    names: dict[str, str] = {}
+    for name, value in values.items():
+        if isinstance(value, Entity):
+            value = Entity(names.setdefault(value.name, name))
+        general[name] = value
+    key = (id(declaration), tuple(general.values()))
+    if key not in env.context.instances:
+        body = _body(declaration, scope, general, env, depth)
+        span = declaration.interval.span if declaration.interval else declaration.name_span
+        env.context.instances[key] = Instance(declaration.name, body.expression, *declared, scope.source, span)

@@ -1,0 +1,47 @@
+"""The one exception inside resolution: it ends the clause or declaration at hand, never the whole run."""
+
+from __future__ import annotations
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.source import SourceFile, Span
+
+
+class ResolutionError(Exception):
+    """Carries a diagnostic; ``diagnostic`` is None where the cause has been reported already."""
+
+    def __init__(self, diagnostic: Diagnostic | None) -> None:
+        self.diagnostic = diagnostic
+        super().__init__(diagnostic.title if diagnostic else "reported before")
+
+
+def problem(
+    code: str,
+    title: str,
+    source: SourceFile,
+    span: Span,
+    message: str = "",
+    *,
+    advice: str | None = None,
+    other: tuple[Label, ...] = (),
+) -> ResolutionError:
+    """A problem whose main place is ``span``, with a short remark under its caret and further places behind it."""
+    return ResolutionError(Diagnostic(code, title, (Label(source, span, message), *other), advice))
+
+
+class Log:
+    """The diagnostics found so far, each place and code once."""
+
+    def __init__(self) -> None:
+        self._found: dict[object, Diagnostic] = {}
+
+    def add(self, diagnostic: Diagnostic | None) -> None:
+        """Keep a diagnostic; None and repetitions are ignored."""
+        if diagnostic is None:
+            return
+        main = diagnostic.labels[0] if diagnostic.labels else None
+        place = (main.source.name, main.span) if main else diagnostic.title
+        self._found.setdefault((diagnostic.code, place), diagnostic)
+
+    def all(self) -> tuple[Diagnostic, ...]:
+        """Every diagnostic, in the order in which they were found."""
+        return tuple(self._found.values())

@@ -1,0 +1,302 @@
+"""Arithmetic: from syntax to expressions over signals and params, with units checked."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import cast
+
+from tltlc.expression import Condition, ConditionOp, Const, When
+from tltlc.expression import Param as ParamNode
+from tltlc.expression import Signal as SignalNode
+from tltlc.grammar import tree
+from tltlc.grammar.tree import Call, Expr, Group, Name, Number, ParamDecl, SignalDecl
+from tltlc.resolve import units
+from tltlc.resolve.arguments import match
+from tltlc.resolve.kinds import described_kind, entity, lookup
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.ranges import hull
+from tltlc.resolve.scope import FUNCTIONS, Binding
+from tltlc.resolve.spec import Signal
+from tltlc.resolve.units import Dimension
+from tltlc.resolve.values import LOOSEST, Env, Quantity, Unknown, apply, constant
+
+DEEPEST_ARITHMETIC = 100
+_ARITHMETIC = ("+", "-", "*", "/", "^")
+_COMPARISONS = ("<", "<=", ">", ">=")
+
+
+def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
+    """The number that an expression stands for; raises ResolutionError where it is none or its units do not fit."""
+    while isinstance(expr, Group):
+        expr = expr.inner
+    if depth > DEEPEST_ARITHMETIC:
+        raise _too_deep(expr, env)
+    result = _quantity(expr, env, depth + 1)
+    if result.depth > DEEPEST_ARITHMETIC:
+        raise _too_deep(expr, env)
+    return result
+
+
+def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimension | None:
+    """The dimension of two quantities that are added or compared; raises ResolutionError (TLT0305) if they differ."""
+    if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
+        return left.dimension if left.dimension is not None else right.dimension
+    raise mismatch(left.dimension, right.dimension, at, env, f"the left side is {units.described(left.dimension)}")
+
+
+def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
+    """The problem of a quantity of the wrong dimension at ``at``."""
+    while isinstance(at, Group):
+        at = at.inner
+    unit = units.si_unit(expected)
+    if isinstance(at, Number):
+        digits = env.scope.source.text[at.span.start : at.span.end]
+        if at.unit and digits.endswith(at.unit):
+            digits = digits[: -len(at.unit)].rstrip()
+        why += f"; write `{digits} {unit}`" if unit else f"; write `{digits}`" if expected == units.PLAIN else ""
+    title = f"expected {units.described(expected)}, found {units.described(found)}"
+    return problem("TLT0305", title, env.scope.source, at.span, why)
+
+
+def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
+    """The condition of a ``when`` and its text; raises ResolutionError."""
+    while isinstance(expr, Group):
+        expr = expr.inner
+    if depth > DEEPEST_ARITHMETIC:
+        raise _too_deep(expr, env)
+    if isinstance(expr, tree.Unary) and expr.op == "not" and expr.bound is None:
+        inner, text = condition(expr.operand, env, depth + 1)
+        return Condition("not", (inner,)), f"not ({text})"
+    if isinstance(expr, tree.Binary) and expr.op in ("and", "or"):
+        left, left_text = condition(expr.left, env, depth + 1)
+        right, right_text = condition(expr.right, env, depth + 1)
+        op = cast(ConditionOp, expr.op)
+        return Condition(op, (left, right)), f"({left_text}) {expr.op} ({right_text})"
+    if isinstance(expr, tree.Binary) and expr.op in _COMPARISONS:
+        a, b = quantity(expr.left, env, depth), quantity(expr.right, env, depth)
+        same_dimension(a, b, expr.right, env)
+        op = cast(ConditionOp, expr.op)
+        return Condition(op, (a.expression, b.expression)), f"{a.text} {expr.op} {b.text}"
+    if isinstance(expr, (Name, Call)):
+        value = quantity(expr, env, depth)
+        if value.is_bool:
+            return Condition(">", (value.expression, Const(0.5))), value.text
+    raise problem(
+        "TLT0303",
+        "`when` needs a comparison",
+        env.scope.source,
+        expr.span,
+        advice="compare two numbers, e.g. `when distance(target) < 2 m: …`, or name a `bool` signal",
+    )
+
+
+def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
+    if isinstance(expr, Number):
+        return _number(expr, env)
+    if isinstance(expr, Name):
+        return _named(expr, env, depth)
+    if isinstance(expr, Call):
+        if expr.name in FUNCTIONS and expr.name not in env.local:
+            return _function(expr, env, depth)
+        return _named(expr, env, depth)
+    if isinstance(expr, tree.Unary) and expr.op == "-":
+        operand = quantity(expr.operand, env, depth)
+        return _applied("neg", (operand,), operand.dimension, expr, env)
+    if isinstance(expr, tree.Binary) and expr.op in _ARITHMETIC:
+        return _infix(expr, env, depth)
+    if isinstance(expr, tree.When):
+        return _when(expr, env, depth)
+    raise _not_a_number(expr, env)
+
+
+def _number(expr: Number, env: Env) -> Quantity:
+    if abs(expr.value) == inf:
+        raise problem("TLT0303", "`inf` may only stand at the end of a range", env.scope.source, expr.span)
+    found = units.in_si(expr.value, expr.unit)
+    if found is None:
+        raise problem(
+            "TLT0304",
+            f"`{expr.unit}` cannot be used in arithmetic",
+            env.scope.source,
+            expr.span,
+            advice="steps count samples: they belong to bounds such as `within 20 steps` and to `limit`",
+        )
+    value, dimension = found
+    return constant(value, None if value == 0 and expr.unit is None else dimension)
+
+
+def _named(expr: Name | Call, env: Env, depth: int) -> Quantity:
+    local = env.local.get(expr.name)
+    if local is not None:
+        if isinstance(local, Quantity) and isinstance(expr, Name):
+            return local
+        if isinstance(local, Unknown):
+            return Quantity(SignalNode(local.name), None, -inf, inf, local.name)
+        raise _not_a_number(expr, env)
+    if env.constant:
+        raise problem(
+            "TLT0302",
+            "expected a constant here",
+            env.scope.source,
+            expr.span,
+            "only numbers and their arithmetic",
+        )
+    binding = lookup(expr, env, ("signal", "param", "predicate"), "signal or param")
+    if binding.kind == "param":
+        match(expr, binding, (), env.scope)
+        return param(binding, env)
+    if binding.kind == "signal":
+        return signal(expr, binding, env)
+    if binding.kind == "predicate":
+        from tltlc.resolve.predicates import predicate
+
+        return predicate(expr, binding, env, depth).value
+    raise _not_a_number(expr, env)
+
+
+def param(binding: Binding, env: Env) -> Quantity:
+    """The value of a declared param."""
+    declaration = binding.declaration
+    assert isinstance(declaration, ParamDecl)
+    found = env.context.params.get(declaration.name)
+    if found is None:
+        raise ResolutionError(None)
+    low = -inf if found.low is None else found.low
+    high = inf if found.high is None else found.high
+    return Quantity(ParamNode(found.name), units.TYPES[found.type], low, high, found.name)
+
+
+def signal(expr: Name | Call, binding: Binding, env: Env) -> Quantity:
+    """The value of a declared signal, of the entities given."""
+    declaration = binding.declaration
+    assert isinstance(declaration, SignalDecl)
+    pairs = match(expr, binding, declaration.parameters, env.scope)
+    entities = tuple(entity(argument, env).name for _, argument in pairs if argument is not None)
+    info = env.context.signal_infos.get(declaration.name)
+    if info is None:
+        raise ResolutionError(None)
+    return of_signal(env.context.signal(info, entities))
+
+
+def of_signal(found: Signal) -> Quantity:
+    """A signal's value."""
+    low = -inf if found.low is None else found.low
+    high = inf if found.high is None else found.high
+    dimension = units.TYPES[found.type]
+    return Quantity(SignalNode(found.name), dimension, low, high, found.name, is_bool=found.type == "bool")
+
+
+def _infix(expr: tree.Binary, env: Env, depth: int) -> Quantity:
+    left = quantity(expr.left, env, depth)
+    if _is_per_time(expr, env):
+        assert isinstance(expr.right, Name)
+        scale, dimension = units.in_si(1.0, expr.right.name) or (1.0, units.PLAIN)
+        per = constant(scale, dimension)
+        return _applied("/", (left, per), units.product(left.dimension, dimension, -1.0), expr, env)
+    right = quantity(expr.right, env, depth)
+    if expr.op in ("+", "-"):
+        return _applied(expr.op, (left, right), same_dimension(left, right, expr.right, env), expr, env)
+    if expr.op == "^":
+        return _power(expr, left, right, env)
+    dimension_ = units.product(left.dimension, right.dimension, 1.0 if expr.op == "*" else -1.0)
+    return _applied(expr.op, (left, right), dimension_, expr, env)
+
+
+def _is_per_time(expr: tree.Binary, env: Env) -> bool:
+    """Whether this is a literal speed such as ``3 m/s``: a unit lexes as a name behind the ``/``."""
+    return (
+        expr.op == "/"
+        and isinstance(expr.left, Number)
+        and expr.left.unit is not None
+        and isinstance(expr.right, Name)
+        and expr.right.name in units.time_units()
+        and expr.right.name not in env.local
+        and (expr.right.name not in env.scope.names or env.scope.names[expr.right.name].kind not in ("param", "signal"))
+    )
+
+
+def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Quantity:
+    if exponent.dimension not in (None, units.PLAIN):
+        raise mismatch(units.PLAIN, exponent.dimension, expr.right, env, "an exponent is a number")
+    if base.dimension in (None, units.PLAIN):
+        return _applied("^", (base, exponent), units.PLAIN, expr, env)
+    if not isinstance(exponent.expression, Const):
+        raise problem(
+            "TLT0305",
+            f"{units.described(base.dimension)} needs a constant exponent",
+            env.scope.source,
+            expr.right.span,
+        )
+    return _applied("^", (base, exponent), units.power(base.dimension, exponent.expression.value), expr, env)
+
+
+_ARGUMENTS = {"abs": 1, "sqrt": 1, "exp": 1, "tanh": 1, "clamp": 3}
+
+
+def _function(expr: Call, env: Env, depth: int) -> Quantity:
+    name = expr.name
+    wanted = _ARGUMENTS.get(name)
+    named = next((argument for argument in expr.arguments if argument.name is not None), None)
+    if named is not None:
+        raise problem("TLT0210", f"`{name}` takes its arguments by position", env.scope.source, named.span)
+    if len(expr.arguments) != wanted if wanted else len(expr.arguments) < 2:
+        count = {1: "one argument", 3: "three arguments: the value, its low and its high end"}
+        text = count.get(wanted or 0, "at least two arguments")
+        raise problem("TLT0210", f"`{name}` takes {text}", env.scope.source, expr.span)
+    args = tuple(quantity(argument.value, env, depth) for argument in expr.arguments)
+    dimension = args[0].dimension
+    if name in ("exp", "tanh"):
+        if dimension not in (None, units.PLAIN):
+            why = f"`{name}` is of a number; divide by a quantity of the same kind"
+            raise mismatch(units.PLAIN, dimension, expr.arguments[0].value, env, why)
+    elif name == "sqrt":
+        dimension = units.power(dimension, 0.5)
+    else:
+        so_far = args[0]
+        for argument, value in zip(expr.arguments[1:], args[1:], strict=True):
+            dimension = same_dimension(so_far, value, argument.value, env)
+            so_far = value if so_far.dimension is None else so_far
+    return _applied(name, args, units.PLAIN if name in ("exp", "tanh") else dimension, expr, env)
+
+
+def _when(expr: tree.When, env: Env, depth: int) -> Quantity:
+    cases = [
+        (condition(case.condition, env, depth), quantity(case.value, env, depth), case.value) for case in expr.cases
+    ]
+    otherwise = quantity(expr.otherwise, env, depth)
+    typical = next((value for _, value, _ in cases if value.dimension is not None), otherwise)
+    for _, value, at in cases:
+        same_dimension(typical, value, at, env)
+    dimension = same_dimension(typical, otherwise, expr.otherwise, env)
+    values = [value for _, value, _ in cases] + [otherwise]
+    low, high = hull(tuple((value.low, value.high) for value in values))
+    texts = [f"when {text}: {value.text}" for (_, text), value, _ in cases]
+    node = When(tuple((test, value.expression) for (test, _), value, _ in cases), otherwise.expression)
+    text = " ".join([*texts, f"otherwise: {otherwise.text}"])
+    return Quantity(node, dimension, low, high, text, LOOSEST, 1 + max(value.depth for value in values))
+
+
+def _applied(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, expr: Expr, env: Env) -> Quantity:
+    result = apply(op, args, dimension)
+    if result is None:
+        text = f"{args[0].text} {op} {args[1].text}" if op in _ARITHMETIC else f"{op}({args[0].text})"
+        raise problem("TLT0309", f"`{text}` has no value", env.scope.source, expr.span)
+    return result
+
+
+def _not_a_number(expr: Expr, env: Env) -> ResolutionError:
+    advice = None
+    if isinstance(expr, tree.Binary) and expr.op in _COMPARISONS:
+        advice = "join two comparisons with `and`, e.g. `0.2 < health and health < 0.8`"
+    title = f"expected a number, found {described_kind(expr, env)}"
+    return problem("TLT0302", title, env.scope.source, expr.span, advice=advice)
+
+
+def _too_deep(expr: Expr, env: Env) -> ResolutionError:
+    return problem(
+        "TLT0317",
+        f"this arithmetic is more than {DEEPEST_ARITHMETIC} operators deep",
+        env.scope.source,
+        expr.span,
+        advice="let the game compute the value and offer it as a signal",
+    )

@@ -1,0 +1,96 @@
+"""The range of an operator's result from the ranges of its arguments.
+
+Plain interval arithmetic without outward rounding: it gives the ends by which comparisons are
+scaled, where 0 to 1 must stay 0 to 1, and the values of constants.  Proofs about predicates use
+the rigorous arithmetic of :mod:`tltlc.resolve.predicate_check`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import reduce
+from math import exp, inf, isnan, sqrt, tanh
+
+Range = tuple[float, float]
+EVERYTHING: Range = (-inf, inf)
+
+
+def range_of(op: str, args: tuple[Range, ...]) -> Range:
+    """The range of ``op`` (as in :class:`tltlc.expression.Op`); everything where it has no bound or no value."""
+    try:
+        low, high = _FUNCTIONS[op](*args)
+    except (OverflowError, ZeroDivisionError):
+        return EVERYTHING
+    return EVERYTHING if isnan(low) or isnan(high) else (low, high)
+
+
+def hull(ranges: tuple[Range, ...]) -> Range:
+    """The smallest range that contains all of them."""
+    return min(low for low, _ in ranges), max(high for _, high in ranges)
+
+
+def _add(*args: Range) -> Range:
+    return reduce(lambda a, b: (a[0] + b[0], a[1] + b[1]), args)
+
+
+def _subtract(a: Range, b: Range) -> Range:
+    return a[0] - b[1], a[1] - b[0]
+
+
+def _multiply(*args: Range) -> Range:
+    return reduce(lambda a, b: _corners(a, b, lambda x, y: 0.0 if 0.0 in (x, y) else x * y), args)
+
+
+def _divide(a: Range, b: Range) -> Range:
+    if b[0] <= 0 <= b[1]:
+        return EVERYTHING
+    return _corners(a, b, lambda x, y: 0.0 if abs(y) == inf else x / y)
+
+
+def _power(a: Range, b: Range) -> Range:
+    exponent = b[0]
+    if b[0] == b[1] and exponent == int(exponent):
+        if exponent < 0:
+            return _divide((1.0, 1.0), _power(a, (-exponent, -exponent)))
+        if exponent % 2 == 0:
+            a = _abs(a)
+        return a[0] ** int(exponent), a[1] ** int(exponent)
+    if a[0] < 0 or (a[0] == 0 and b[0] <= 0):
+        return EVERYTHING
+    return _corners(a, b, lambda x, y: float(x**y))
+
+
+def _abs(a: Range) -> Range:
+    if a[0] >= 0:
+        return a
+    return (-a[1], -a[0]) if a[1] <= 0 else (0.0, max(-a[0], a[1]))
+
+
+def _clamp(a: Range, low: Range, high: Range) -> Range:
+    return max(low[0], min(a[0], high[0])), max(low[1], min(a[1], high[1]))
+
+
+def _sqrt(a: Range) -> Range:
+    return EVERYTHING if a[0] < 0 else (sqrt(a[0]), sqrt(a[1]))
+
+
+def _corners(a: Range, b: Range, function: Callable[[float, float], float]) -> Range:
+    values = [function(x, y) for x in a for y in b]
+    return min(values), max(values)
+
+
+_FUNCTIONS: dict[str, Callable[..., Range]] = {
+    "+": _add,
+    "-": _subtract,
+    "*": _multiply,
+    "/": _divide,
+    "^": _power,
+    "neg": lambda a: (-a[1], -a[0]),
+    "min": lambda *args: (min(a[0] for a in args), min(a[1] for a in args)),
+    "max": lambda *args: (max(a[0] for a in args), max(a[1] for a in args)),
+    "abs": _abs,
+    "clamp": _clamp,
+    "sqrt": _sqrt,
+    "exp": lambda a: (exp(a[0]), exp(a[1])),
+    "tanh": lambda a: (tanh(a[0]), tanh(a[1])),
+}

@@ -1,0 +1,182 @@
+"""Which names a module sees: its own and those that its imports offer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal, Union
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.resolve.imports import Loaded, standard_library
+from tltlc.resolve.problem import Log, problem
+from tltlc.source import SourceFile, Span
+
+Kind = Literal["signal", "param", "predicate", "let", "entity"]
+Declared = Union[SignalDecl, ParamDecl, PredicateDecl, LetDecl, Name]
+FUNCTIONS = ("min", "max", "abs", "clamp", "sqrt", "exp", "tanh")
+_MERGED = ("signal", "param", "entity")
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """What a name stands for, the scope it was declared in, and the import that brought it, if any."""
+
+    kind: Kind
+    declaration: Declared
+    scope: Scope
+    via: str | None = None
+
+    @property
+    def name(self) -> str:
+        """The declared name, whatever alias led here."""
+        return self.declaration.name
+
+    @property
+    def span(self) -> Span:
+        """Where the name is declared, in ``scope.source``."""
+        return self.declaration.span if isinstance(self.declaration, Name) else self.declaration.name_span
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """A module's source and the names visible in it."""
+
+    module: Module
+    title: str
+    names: dict[str, Binding] = field(default_factory=dict, repr=False)
+
+    @property
+    def source(self) -> SourceFile:
+        """The text that spans of this scope's declarations point into."""
+        return self.module.source
+
+
+def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
+    """One scope per module, in the same order, which has imported modules first."""
+    scopes: dict[int, Scope] = {}
+    for loaded in modules:
+        scope = Scope(loaded.module, loaded.title)
+        scopes[id(loaded)] = scope
+        for binding in _own(scope):
+            log.add(_declare(scope, binding))
+        for declaration, target in loaded.imports:
+            _import(declaration, scopes[id(target)].names, scope, log)
+    return tuple(scopes.values())
+
+
+def suggestion(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str:
+    """``did you mean `near` (from stealth)?`` for the closest visible name, or an empty text."""
+    from difflib import get_close_matches
+
+    wanted = set(kinds)
+    known = [n for n, binding in scope.names.items() if binding.kind in wanted]
+    close = get_close_matches(name, [*local, *known], n=1, cutoff=0.6)
+    if not close:
+        return ""
+    binding = scope.names.get(close[0])
+    via = f" (from {binding.via})" if binding and binding.via else ""
+    return f"did you mean `{close[0]}`{via}?"
+
+
+def library_with(name: str) -> str | None:
+    """The standard library that declares a name, to suggest its import; reads the files, so only for messages."""
+    import re
+
+    pattern = re.compile(rf"^(?:predicate|signal|param|let)\s+{re.escape(name)}(?![A-Za-z0-9_.])", re.MULTILINE)
+    for path in sorted(standard_library().glob("*.tltl")):
+        if not path.stem.endswith("_tests") and pattern.search(path.read_text(encoding="utf-8")):
+            return path.stem
+    return None
+
+
+def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, log: Log) -> None:
+    """Makes the chosen names of an imported module visible."""
+    chosen = dict(offered) if declaration.names is None else {}
+    for wanted in declaration.names or ():
+        if wanted.name in offered:
+            chosen[wanted.name] = offered[wanted.name]
+        else:
+            log.add(_not_offered(scope, wanted, declaration.target, offered))
+    prefix = f"{declaration.alias}." if declaration.alias else ""
+    for name, found in chosen.items():
+        log.add(_offer(scope, prefix + name, replace(found, via=declaration.target), declaration.span))
+
+
+def _own(scope: Scope) -> Iterator[Binding]:
+    for declaration in scope.module.declarations:
+        if isinstance(declaration, SignalDecl):
+            yield Binding("signal", declaration, scope)
+        elif isinstance(declaration, ParamDecl):
+            yield Binding("param", declaration, scope)
+        elif isinstance(declaration, PredicateDecl):
+            yield Binding("predicate", declaration, scope)
+        elif isinstance(declaration, LetDecl):
+            yield Binding("let", declaration, scope)
+        elif isinstance(declaration, EntityDecl):
+            for name in declaration.names:
+                yield Binding("entity", name, scope)
+
+
+def _declare(scope: Scope, binding: Binding) -> Diagnostic | None:
+    name = binding.name
+    if (
+        name in FUNCTIONS
+        and isinstance(binding.declaration, (SignalDecl, PredicateDecl, LetDecl))
+        and binding.declaration.parameters
+    ):
+        return problem(
+            "TLT0212",
+            f"`{name}` is a function of the language",
+            scope.source,
+            binding.span,
+            advice=f"choose another name, e.g. `{name}_of`",
+        ).diagnostic
+    known = scope.names.get(name)
+    if known and not (known.kind == binding.kind and binding.kind in ("signal", "param")):
+        return problem(
+            "TLT0202",
+            f"`{name}` is declared twice",
+            scope.source,
+            binding.span,
+            "declared again here",
+            advice="remove one of the two, or rename it",
+            other=(Label(scope.source, known.span, "first declared here"),),
+        ).diagnostic
+    scope.names.setdefault(name, binding)
+    return None
+
+
+def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic | None:
+    known = scope.names.setdefault(name, binding)
+    if known.declaration is binding.declaration or (known.kind == binding.kind and binding.kind in _MERGED):
+        return None
+    if known.via is None:
+        return problem(
+            "TLT0202",
+            f"`{name}` is declared twice",
+            scope.source,
+            known.span,
+            "declared here",
+            advice=f"rename it, or import with another name in front: `import {binding.via} as …`",
+            other=(Label(binding.scope.source, binding.span, f"and in {binding.via}"),),
+        ).diagnostic
+    return problem(
+        "TLT0203",
+        f"both {known.via} and {binding.via} offer `{name}`",
+        scope.source,
+        span,
+        advice=f"give one of them another name in front, e.g. `import {binding.via} as {str(binding.via)[:2]}`",
+        other=(
+            Label(known.scope.source, known.span, f"the one of {known.via}"),
+            Label(binding.scope.source, binding.span, f"the one of {binding.via}"),
+        ),
+    ).diagnostic
+
+
+def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str, Binding]) -> Diagnostic | None:
+    from difflib import get_close_matches
+
+    close = get_close_matches(wanted.name, list(offered), n=1)
+    hint = f"did you mean `{close[0]}`?" if close else ""
+    return problem("TLT0205", f"{library} offers no `{wanted.name}`", scope.source, wanted.span, hint).diagnostic

@@ -1,0 +1,190 @@
+"""Specs: their clauses, what they conjoin to, and what they say about themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal, cast
+
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.expression import Condition, Expression, Op, When
+from tltlc.expression import Param as ParamNode
+from tltlc.expression import Signal as SignalNode
+from tltlc.grammar.tree import Binary, Clause, Expr, Name, Number, SpecDecl
+from tltlc.logic.formula import Formula, always, and_, eventually, not_, then
+from tltlc.resolve.constants import samples
+from tltlc.resolve.formulas import conjuncts, formula
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.spec import Judge, Part, Spec
+from tltlc.resolve.values import Env
+
+_ONCE = ("level", "limit", "judge", "semantics")
+_CHOICES = {"judge": ("goal", "limit"), "semantics": ("finite", "infinite")}
+
+
+def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -> Spec | None:
+    """The resolved spec, or None where a clause is in error; every such clause is reported to the log.
+
+    ``groups`` are the names of the atoms of each ``exclusive``; those of which the formula has at least
+    two are part of the spec.
+    """
+    log, source = env.context.log, env.scope.source
+    parts: list[Part] = []
+    metadata: dict[str, Clause] = {}
+    tags: list[str] = []
+    complete = True
+    for clause in declaration.clauses:
+        try:
+            if clause.kind in _READERS:
+                parts.extend(_READERS[clause.kind](clause, env))
+            elif clause.kind == "tag":
+                tags.extend(tag.name for tag in cast("tuple[Name, ...]", clause.value) if tag.name not in tags)
+            else:
+                _remember(clause, metadata, env)
+        except ResolutionError as failure:
+            log.add(failure.diagnostic)
+            complete = False
+    if complete and not parts:
+        log.add(_empty(declaration, env).diagnostic)
+    limit = None
+    try:
+        limit = _limit(metadata.get("limit"), env)
+    except ResolutionError as failure:
+        log.add(failure.diagnostic)
+        complete = False
+    if not complete or not parts:
+        return None
+    whole = and_(*(part.formula for part in parts))
+    used = list(whole.atoms())
+    exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
+    names = list(dict.fromkeys([*used, *(name for group in exclusive for name in group)]))
+    atoms = tuple(env.context.atoms[name] for name in names)
+    variables = [node for atom in atoms for node in _variables(atom.expression)]
+    return Spec(
+        name=declaration.name,
+        doc=declaration.doc,
+        formula=whole,
+        parts=tuple(parts),
+        atoms=atoms,
+        signals=tuple(
+            dict.fromkeys(env.context.signals[node.name] for node in variables if isinstance(node, SignalNode))
+        ),
+        params=tuple(dict.fromkeys(env.context.params[node.name] for node in variables if isinstance(node, ParamNode))),
+        exclusive=tuple(tuple(names.index(name) for name in group) for group in exclusive),
+        level=_word(metadata.get("level")),
+        limit_steps=limit,
+        judge=cast("Judge | None", _word(metadata.get("judge"))),
+        semantics=cast(Literal["finite", "infinite"], _word(metadata.get("semantics")) or "finite"),
+        tags=tuple(tags),
+        clock_s=env.context.clock_s,
+        source=source,
+        name_span=declaration.name_span,
+    )
+
+
+def _reach(clause: Clause, env: Env) -> list[Part]:
+    operands: list[Expr] = []
+    node = _expression(clause)
+    while isinstance(node, Binary) and node.op == "then":
+        operands.append(node.left)
+        node = node.right
+    result = formula(node, env)
+    if not operands:
+        result = eventually(result)
+    for operand in reversed(operands):
+        result = then(formula(operand, env), result)
+    return [_part(result, clause, env)]
+
+
+def _keep(clause: Clause, env: Env) -> list[Part]:
+    return [_part(always(formula(_expression(clause), env)), clause, env)]
+
+
+def _avoid(clause: Clause, env: Env) -> list[Part]:
+    return [_part(always(not_(formula(_expression(clause), env))), clause, env)]
+
+
+def _require(clause: Clause, env: Env) -> list[Part]:
+    return [Part(formula(e, env), env.scope.source, e.span) for e in conjuncts(_expression(clause))]
+
+
+_READERS: dict[str, Callable[[Clause, Env], list[Part]]] = {
+    "reach": _reach,
+    "keep": _keep,
+    "avoid": _avoid,
+    "require": _require,
+}
+
+
+def _expression(clause: Clause) -> Expr:
+    assert not isinstance(clause.value, tuple)
+    return clause.value
+
+
+def _part(whole: Formula, clause: Clause, env: Env) -> Part:
+    return Part(whole, env.scope.source, clause.span)
+
+
+def _remember(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
+    """Keeps a clause of metadata; raises ResolutionError where it is repeated or has no such choice."""
+    source = env.scope.source
+    if clause.kind in metadata:
+        raise problem(
+            "TLT0214",
+            f"this spec has two clauses `{clause.kind}`",
+            source,
+            clause.span,
+            advice="keep one of the two",
+            other=(Label(source, metadata[clause.kind].span, "the first one"),),
+        )
+    metadata[clause.kind] = clause
+    choices = _CHOICES.get(clause.kind)
+    if choices and isinstance(clause.value, Name) and clause.value.name not in choices:
+        title = f"`{clause.kind}` is {' or '.join(f'`{choice}`' for choice in choices)}"
+        raise problem("TLT0215", title, source, clause.value.span, f"found `{clause.value.name}`")
+
+
+def _limit(clause: Clause | None, env: Env) -> int | None:
+    if clause is None:
+        return None
+    assert isinstance(clause.value, Number)
+    if clause.value.unit is None:
+        digits = env.scope.source.slice(clause.value.span)
+        advice = f"write `limit {digits} steps` or `limit {digits} s`"
+        raise problem("TLT0312", "a limit needs a unit", env.scope.source, clause.value.span, advice=advice)
+    steps = samples(clause.value, env)
+    if steps < 1:
+        raise problem("TLT0312", "a limit is at least one step", env.scope.source, clause.value.span)
+    return steps
+
+
+def _word(clause: Clause | None) -> str | None:
+    return clause.value.name if clause is not None and isinstance(clause.value, Name) else None
+
+
+def _empty(declaration: SpecDecl, env: Env) -> ResolutionError:
+    if any(clause.kind in _READERS for clause in declaration.clauses):
+        return ResolutionError(None)
+    return problem(
+        "TLT0213",
+        f"the spec `{declaration.name}` asks for nothing",
+        env.scope.source,
+        declaration.name_span,
+        advice="add a clause, e.g. `reach near(exit)` or `keep alive`",
+    )
+
+
+def _variables(expression: Expression) -> list[SignalNode | ParamNode]:
+    """The signals and params of an expression, in order of appearance."""
+    found: list[SignalNode | ParamNode] = []
+    stack: list[Expression | Condition] = [expression]
+    while stack:
+        node = stack.pop()
+        if isinstance(node, (SignalNode, ParamNode)):
+            found.append(node)
+        elif isinstance(node, (Op, Condition)):
+            stack.extend(reversed(node.args))
+        elif isinstance(node, When):
+            stack.append(node.otherwise)
+            for condition, value in reversed(node.cases):
+                stack += (value, condition)
+    return found

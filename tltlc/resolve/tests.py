@@ -1,0 +1,82 @@
+"""``test`` blocks: traces in atoms and what must hold of them."""
+
+from __future__ import annotations
+
+from typing import Literal, cast
+
+from tltlc.grammar.tree import Expr, TestDecl, TestExpect, TestStep
+from tltlc.resolve.formulas import conjuncts, formula
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.spec import Expect, Spec, Step, Test
+from tltlc.resolve.values import Env
+
+_VERDICTS = ("satisfied", "holding", "pending", "violated")
+
+
+def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env) -> Test | None:
+    """The resolved test, or None where something in it is in error or its spec is.
+
+    ``specs`` holds every spec of the file, None for those in error.  Problems go to the log.
+    """
+    context, source = env.context, env.scope.source
+    name = declaration.spec.name
+    if name not in specs:
+        from difflib import get_close_matches
+
+        close = get_close_matches(name, list(specs), n=1)
+        hint = f"did you mean `{close[0]}`?" if close else ""
+        context.log.add(problem("TLT0208", f"no spec `{name}` here", source, declaration.spec.span, hint).diagnostic)
+        return None
+    spec = specs[name]
+    if spec is None:
+        return None
+    items: list[Step | Expect] = []
+    complete = True
+    for item in declaration.items:
+        try:
+            items.append(_step(item, spec, env) if isinstance(item, TestStep) else _expect(item, env))
+        except ResolutionError as failure:
+            context.log.add(failure.diagnostic)
+            complete = False
+    return Test(declaration.title, name, tuple(items), source, declaration.span) if complete else None
+
+
+def _step(item: TestStep, spec: Spec, env: Env) -> Step:
+    source = env.scope.source
+    if not item.atoms:
+        advice = "name the atoms that hold, e.g. `step alive`, or `step not alive`"
+        raise problem("TLT0217", "this step names no atom", source, item.span, advice=advice)
+    if item.times < 1:
+        raise problem("TLT0217", "a step is repeated at least once", source, item.span)
+    values: dict[str, bool] = {}
+    for written in (part for atom in item.atoms for part in conjuncts(atom)):
+        name, holds = _literal(written, env)
+        if name not in {atom.name for atom in spec.atoms}:
+            known = ", ".join(f"`{atom.name}`" for atom in spec.atoms)
+            title = f"`{name}` is no atom of the spec `{spec.name}`"
+            raise problem("TLT0209", title, source, written.span, advice=f"its atoms are {known}")
+        if values.setdefault(name, holds) != holds:
+            raise problem("TLT0217", f"`{name}` cannot hold and not hold in one step", source, written.span)
+    return Step(item.times, frozenset(name for name, holds in values.items() if holds))
+
+
+def _literal(written: Expr, env: Env) -> tuple[str, bool]:
+    found = formula(written, env)
+    holds = True
+    while found.op == "not":
+        found, holds = found.args[0], not holds
+    if found.op != "atom":
+        advice = "name predicates, `bool` signals or comparisons, each with `not` or without"
+        raise problem("TLT0316", "a step consists of atoms", env.scope.source, written.span, advice=advice)
+    return found.name, holds
+
+
+def _expect(item: TestExpect, env: Env) -> Expect:
+    source = env.scope.source
+    if item.kind == "verdict" and item.value not in _VERDICTS:
+        title = f"there is no verdict `{item.value}`"
+        raise problem("TLT0217", title, source, item.span, advice=f"the verdicts are {', '.join(_VERDICTS)}")
+    if item.kind == "progress" and not (isinstance(item.value, (int, float)) and 0 <= item.value <= 1):
+        raise problem("TLT0217", "progress lies in [0, 1]", source, item.span)
+    kind = cast(Literal["verdict", "progress", "state"], item.kind)
+    return Expect(kind, item.value, item.comparison, source, item.span)

@@ -1,0 +1,103 @@
+"""Dimensions, units and how messages name them."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Final, cast
+
+from tltlc.resolve.spec import ValueType
+
+Dimension = tuple[float, float, float]
+"""Exponents of metre, second and radian."""
+
+PLAIN: Final[Dimension] = (0.0, 0.0, 0.0)
+_FREQUENCY: Final[Dimension] = (0.0, -1.0, 0.0)
+
+TYPES: Final[dict[str, Dimension]] = {
+    "number": PLAIN,
+    "ratio": PLAIN,
+    "length": (1.0, 0.0, 0.0),
+    "time": (0.0, 1.0, 0.0),
+    "speed": (1.0, -1.0, 0.0),
+    "angle": (0.0, 0.0, 1.0),
+    "bool": PLAIN,
+}
+
+_UNITS: Final[dict[str, tuple[float, float, Dimension]]] = {
+    "m": (1.0, 1.0, TYPES["length"]),
+    "km": (1000.0, 1.0, TYPES["length"]),
+    "cm": (1.0, 100.0, TYPES["length"]),
+    "s": (1.0, 1.0, TYPES["time"]),
+    "ms": (1.0, 1000.0, TYPES["time"]),
+    "min": (60.0, 1.0, TYPES["time"]),
+    "rad": (1.0, 1.0, TYPES["angle"]),
+    "deg": (pi, 180.0, TYPES["angle"]),
+    "%": (1.0, 100.0, PLAIN),
+    "Hz": (1.0, 1.0, _FREQUENCY),
+}
+
+_NAMES: Final[dict[Dimension, str]] = {
+    PLAIN: "a number",
+    TYPES["length"]: "a length",
+    TYPES["time"]: "a time",
+    TYPES["speed"]: "a speed",
+    TYPES["angle"]: "an angle",
+    _FREQUENCY: "a frequency",
+}
+
+_SI: Final[dict[Dimension, str]] = {
+    TYPES["length"]: "m",
+    TYPES["time"]: "s",
+    TYPES["speed"]: "m/s",
+    TYPES["angle"]: "rad",
+    _FREQUENCY: "Hz",
+}
+
+
+def value_type(name: str) -> ValueType | None:
+    """The type of that name, or None if the language has no such type."""
+    return cast(ValueType, name) if name in TYPES else None
+
+
+def in_si(value: float, unit: str | None) -> tuple[float, Dimension] | None:
+    """A literal's value in SI units and its dimension; None for a unit that measures no quantity (``steps``)."""
+    if unit is None:
+        return value, PLAIN
+    if unit not in _UNITS:
+        return None
+    numerator, denominator, dimension = _UNITS[unit]
+    # One division, so that 29 % is the same number as 0.29.
+    return value * numerator / denominator, dimension
+
+
+def time_units() -> tuple[str, ...]:
+    """The units of time, as they may stand behind the ``/`` of a speed."""
+    return tuple(unit for unit, (_, _, dimension) in _UNITS.items() if dimension == TYPES["time"])
+
+
+def si_unit(dimension: Dimension) -> str | None:
+    """How a literal of that dimension may be written in SI units, or None if no unit does."""
+    return _SI.get(dimension)
+
+
+def described(dimension: Dimension) -> str:
+    """The dimension in words, e.g. ``a length``."""
+    if dimension in _NAMES:
+        return _NAMES[dimension]
+    return "a quantity in " + " ".join(
+        unit if exponent == 1 else f"{unit}^{exponent:g}"
+        for unit, exponent in zip(("m", "s", "rad"), dimension, strict=True)
+        if exponent
+    )
+
+
+def product(left: Dimension | None, right: Dimension | None, sign: float = 1.0) -> Dimension | None:
+    """The dimension of ``left * right``, or of ``left / right`` where ``sign`` is -1; None fits any dimension."""
+    if left is None or right is None:
+        return None
+    return (left[0] + sign * right[0], left[1] + sign * right[1], left[2] + sign * right[2])
+
+
+def power(base: Dimension | None, exponent: float) -> Dimension | None:
+    """The dimension of ``base ^ exponent``."""
+    return None if base is None else (base[0] * exponent, base[1] * exponent, base[2] * exponent)

@@ -1,0 +1,123 @@
+"""What an expression of the surface language stands for while it is resolved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import isinf
+from typing import Union
+
+from tltlc.expression import Const, Expression, Op
+from tltlc.logic.formula import Formula
+from tltlc.resolve.context import Context
+from tltlc.resolve.ranges import range_of
+from tltlc.resolve.scope import Scope
+from tltlc.resolve.units import Dimension
+
+LOOSEST, SUM, PRODUCT, SIGN, POWER, CLOSED = range(6)
+"""How tightly the text of a quantity binds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """An object of the level."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number that depends on signals and params.
+
+    ``dimension`` None fits any (0, inf); ``low`` and ``high`` bound the value, in SI units; ``text`` is
+    its one spelling in the names of atoms and ``binding`` how tightly that spelling binds; ``depth``
+    is that of the expression; ``is_bool`` marks a value that is 0 or 1 by type.
+    """
+
+    expression: Expression
+    dimension: Dimension | None
+    low: float
+    high: float
+    text: str
+    binding: int = CLOSED
+    depth: int = 1
+    is_bool: bool = False
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it is a plain number."""
+        return isinstance(self.expression, Const)
+
+    def bracketed(self, binding: int) -> str:
+        """The text, in brackets where it binds more loosely than asked."""
+        return self.text if self.binding >= binding else f"({self.text})"
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A parameter whose value may be anything: what a ``let`` is checked with before its first use."""
+
+    name: str
+
+
+Value = Union[Entity, Quantity, Formula, Unknown]
+
+
+@dataclass(frozen=True, slots=True)
+class Env:
+    """Where an expression stands: the scope of its text and the values of the parameters around it.
+
+    ``symbolic`` marks the check of a ``let`` whose parameters have no values yet; ``constant`` allows
+    numbers only.
+    """
+
+    context: Context
+    scope: Scope
+    local: Mapping[str, Value] = field(default_factory=dict)
+    symbolic: bool = False
+    constant: bool = False
+
+    def within(self, scope: Scope, local: Mapping[str, Value]) -> Env:
+        """The inside of a declaration of ``scope``."""
+        return replace(self, scope=scope, local=local)
+
+    def also(self, name: str, value: Value) -> Env:
+        """With one more local name."""
+        return replace(self, local={**self.local, name: value})
+
+
+def number_text(value: float) -> str:
+    """The shortest text that reads back as the same number, whole ones without a point."""
+    whole = not isinf(value) and abs(value) < 1e15 and value == int(value)
+    return str(int(value)) if whole else repr(value)
+
+
+def constant(value: float, dimension: Dimension | None) -> Quantity:
+    """A plain number."""
+    return Quantity(Const(value), dimension, value, value, number_text(value), SIGN if value < 0 else CLOSED)
+
+
+_INFIX = {
+    "+": (SUM, SUM, PRODUCT),
+    "-": (SUM, SUM, PRODUCT),
+    "*": (PRODUCT, PRODUCT, SIGN),
+    "/": (PRODUCT, PRODUCT, SIGN),
+}
+
+
+def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Quantity | None:
+    """``op`` over quantities; of constants, a constant, or None if they give no finite value (``1 / 0``)."""
+    low, high = range_of(op, tuple((arg.low, arg.high) for arg in args))
+    if all(arg.is_constant for arg in args):
+        return constant(low, dimension) if low == high and not isinf(low) else None
+    if op in _INFIX:
+        binding, left, right = _INFIX[op]
+        text = f"{args[0].bracketed(left)} {op} {args[1].bracketed(right)}"
+    elif op == "^":
+        binding, text = POWER, f"{args[0].bracketed(CLOSED)}^{args[1].bracketed(CLOSED)}"
+    elif op == "neg":
+        binding, text = SIGN, f"-{args[0].bracketed(POWER)}"
+    else:
+        binding, text = CLOSED, f"{op}({', '.join(arg.text for arg in args)})"
+    expression = Op(op, tuple(arg.expression for arg in args))  # type: ignore[arg-type]
+    return Quantity(expression, dimension, low, high, text, binding, 1 + max(arg.depth for arg in args))
