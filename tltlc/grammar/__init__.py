@@ -1,0 +1,1 @@
+"""From .tltl text to syntax tree."""

@@ -1,5 +1,7 @@
 """From reductions of the grammar to nodes of the syntax tree: one method per rule, named after it."""
 
+# ruff: noqa: D102 (a method's name is that of its rule in tltl.lark, which says all)
+
 from __future__ import annotations
 
 from dataclasses import replace
@@ -9,6 +11,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import tree
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.tree import Expr
+from tltlc.grammar.words import TEST_ITEMS
 from tltlc.source import SourceFile, Span
 
 OPERATORS = {
@@ -132,9 +135,7 @@ class Builder:
         clause = tree.Clause("require", formula, "", name.span, formula.span)
         return tree.SpecDecl(name.text, (clause,), False, self._doc(span), name.span, span)
 
-    def make_clause(
-        self, span: Span, keyword: Token, value: Expr | tuple[tree.Name, ...] | Token
-    ) -> tree.Clause:
+    def make_clause(self, span: Span, keyword: Token, value: Expr | tuple[tree.Name, ...] | Token) -> tree.Clause:
         if isinstance(value, Token):
             value = tree.Name(value.text, value.span)
         return tree.Clause(keyword.text, value, self._doc(span), keyword.span, span)
@@ -164,7 +165,7 @@ class Builder:
         self, span: Span, _expect: Token, name: Token, comparator: Token, number: tree.Number
     ) -> tree.TestExpect:
         if name.text != "progress":
-            self._error("TLT0108", f"a test cannot expect a number of `{name.text}`", name.span, EXPECT_HELP)
+            self._error("TLT0108", f"a test cannot expect a number of `{name.text}`", name.span, TEST_ITEMS["expect"])
         value = number.value / 100 if number.unit == "%" else number.value
         if number.unit not in (None, "%"):
             self._error("TLT0108", "progress has no unit", number.span, "progress runs from 0 to 1")
@@ -172,7 +173,7 @@ class Builder:
 
     def make_expect_state(self, span: Span, _expect: Token, name: Token, label: Token) -> tree.TestExpect:
         if name.text != "state":
-            self._error("TLT0108", f"a test cannot expect a text of `{name.text}`", name.span, EXPECT_HELP)
+            self._error("TLT0108", f"a test cannot expect a text of `{name.text}`", name.span, TEST_ITEMS["expect"])
         return tree.TestExpect("state", label.text[1:-1], None, span)
 
     # --- expressions ----------------------------------------------------------------------------
@@ -247,9 +248,6 @@ class Builder:
 
     def _error(self, code: str, title: str, span: Span, help_: str) -> None:
         self.diagnostics.append(Diagnostic(code, title, (Label(self._source, span),), help_))
-
-
-EXPECT_HELP = "`expect satisfied` (or holding, pending, violated), `expect progress >= 0.5` or `expect state \"…\"`"
 
 
 def _infinite(limit: Expr) -> Expr:

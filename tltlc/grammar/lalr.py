@@ -10,7 +10,7 @@ from tltlc.grammar.tables import Tables
 from tltlc.source import Span
 
 
-class Unexpected(Exception):
+class UnexpectedTokenError(Exception):
     """The token at ``index`` fits nowhere; ``states`` is the stack of the machine in front of it."""
 
     def __init__(self, index: int, states: list[int]) -> None:
@@ -20,7 +20,7 @@ class Unexpected(Exception):
 
 
 def run(tables: Tables, start: str, tokens: Sequence[Token], builder: object) -> Any:
-    """What the builder makes of the tokens, read as a ``start``; raises Unexpected.
+    """What the builder makes of the tokens, read as a ``start``; raises UnexpectedTokenError.
 
     A reduction by a rule with the action ``name`` calls ``builder.make_name(span, *kept values)``.
     """
@@ -39,7 +39,7 @@ def run(tables: Tables, start: str, tokens: Sequence[Token], builder: object) ->
         while True:
             action = actions[states[-1]].get(kind)
             if action is None:
-                raise Unexpected(index, states)
+                raise UnexpectedTokenError(index, states)
             if action >= 0:
                 states.append(action)
                 values.append(token)

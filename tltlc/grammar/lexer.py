@@ -25,6 +25,7 @@ class Token(NamedTuple):
 
     @property
     def span(self) -> Span:
+        """The range of offsets that the token covers."""
         return Span(self.start, self.end)
 
 

@@ -1,26 +1,71 @@
-"""Parse a .tltl text into its syntax tree."""
+"""Parse a .tltl text into its syntax tree.
+
+A text without errors goes through the tables in one run.  Otherwise it is read again, declaration by
+declaration and clause by clause (:mod:`tltlc.grammar.recovery`), so that each broken one is reported once.
+"""
 
 from __future__ import annotations
 
-from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar import lalr
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar import checks, lalr, nesting
 from tltlc.grammar.builder import Builder
-from tltlc.grammar.lexer import tokenize
+from tltlc.grammar.lexer import Tokens, tokenize
 from tltlc.grammar.tables import load
-from tltlc.grammar.tree import Expr, Module
-from tltlc.source import SourceFile
+from tltlc.grammar.tree import Declaration, Expr, Module
+from tltlc.source import SourceFile, Span
+
+MAX_CHARACTERS: Final = 1 << 20
+"""Greatest length of a text."""
 
 
 def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
     """The declarations of a file that could be read, and everything wrong with its syntax; never raises."""
+    if len(source.text) > MAX_CHARACTERS:
+        return Module(source, (), ()), (_too_large(source),)
     lexed = tokenize(source.text)
-    builder = Builder(source, lexed.docs)
-    declarations = lalr.run(load(), "module", lexed.tokens, builder)
-    return Module(source, declarations, tuple(lexed.comments)), tuple(builder.diagnostics)
+    declarations, diagnostics = _declarations(source, lexed)
+    in_order = sorted(diagnostics, key=lambda diagnostic: diagnostic.labels[0].span.start)
+    return Module(source, declarations, tuple(lexed.comments)), tuple(in_order)
 
 
 def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ...]]:
     """One formula, or None where it cannot be read, and everything wrong with its syntax; never raises."""
+    if len(source.text) > MAX_CHARACTERS:
+        return None, (_too_large(source),)
     lexed = tokenize(source.text)
+    too_deep = nesting.deep_brackets(source, lexed.tokens)
+    if too_deep:
+        return None, (too_deep,)
     builder = Builder(source, lexed.docs)
-    return lalr.run(load(), "expression", lexed.tokens, builder), tuple(builder.diagnostics)
+    try:
+        formula: Expr = lalr.run(load(), "expression", lexed.tokens, builder)
+    except lalr.UnexpectedTokenError as error:
+        from tltlc.grammar.messages import unexpected
+
+        return None, (unexpected(source, lexed.tokens, error, "expression"),)
+    too_deep = nesting.deep_expression(source, formula)
+    if too_deep:
+        return None, (too_deep,)
+    return formula, (*builder.diagnostics, *checks.check_formula(source, formula))
+
+
+def _declarations(source: SourceFile, lexed: Tokens) -> tuple[tuple[Declaration, ...], tuple[Diagnostic, ...]]:
+    if nesting.deep_brackets(source, lexed.tokens) is None:
+        builder = Builder(source, lexed.docs)
+        try:
+            declarations: tuple[Declaration, ...] = lalr.run(load(), "module", lexed.tokens, builder)
+        except lalr.UnexpectedTokenError:
+            pass
+        else:
+            shallow, found = nesting.drop_deep(source, declarations)
+            return shallow, (*builder.diagnostics, *found, *checks.check(source, shallow))
+    from tltlc.grammar.recovery import recover
+
+    return recover(source, lexed)
+
+
+def _too_large(source: SourceFile) -> Diagnostic:
+    title = f"`{source.name}` is larger than 1 MiB"
+    return Diagnostic("TLT0004", title, (Label(source, Span(0, 0)),), "split it: `import` other files")

@@ -1,0 +1,116 @@
+"""What the grammar lets through and the language does not: checked on the tree, one error per clause."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar import tree
+from tltlc.grammar.nesting import children, expressions
+from tltlc.grammar.then_check import check_then
+from tltlc.grammar.tree import Declaration, Expr
+from tltlc.grammar.words import JUDGE, SEMANTICS, VERDICTS, closest
+from tltlc.source import SourceFile, Span
+
+_FORMULA_CLAUSES: Final = {"reach", "keep", "avoid", "require"}
+_BOUND_OPERATORS: Final = {"within": ("F",), "for": ("G",), "after": ("X", "N"), "[": ("F", "G")}
+_BOUND_HELP: Final = {
+    "F": "`eventually within 20 steps p` or `F[0,20] p`",
+    "G": "`always for 20 steps p` or `G[0,19] p`",
+    "X": "`next after 3 steps p`",
+    "N": "`weak_next after 3 steps p`",
+}
+
+
+def check(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
+    """Errors in declarations that were read without one."""
+    for declaration in declarations:
+        if isinstance(declaration, tree.SpecDecl):
+            yield from _check_spec(source, declaration)
+        yield from check_clauses(source, (declaration,))
+
+
+def check_clauses(source: SourceFile, declarations: Iterable[Declaration]) -> Iterator[Diagnostic]:
+    """Errors inside the expressions and clauses of declarations."""
+    for declaration in declarations:
+        match declaration:
+            case tree.SpecDecl():
+                for clause in declaration.clauses:
+                    yield from _check_clause(source, clause)
+            case tree.TestDecl():
+                yield from _check_test(source, declaration)
+            case _:
+                yield from _first(error for part in expressions(declaration) for error in check_formula(source, part))
+
+
+def check_formula(source: SourceFile, formula: Expr, *, in_reach: bool = False) -> Iterator[Diagnostic]:
+    """The first error inside one expression; ``in_reach`` where it is the sequence of a ``reach`` clause."""
+    yield from _first(_expression_errors(source, formula, in_reach))
+
+
+def _expression_errors(source: SourceFile, formula: Expr, in_reach: bool) -> Iterator[Diagnostic]:
+    yield from check_then(source, formula, in_reach=in_reach)
+    waiting = [formula]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part, tree.Unary) and part.bound:
+            yield from _check_bound(source, part, part.bound)
+        waiting += reversed([*children(part)])
+
+
+def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.Bound) -> Iterator[Diagnostic]:
+    word = source.slice(bound.span).split()[0] if bound.words else "["
+    if formula.op in _BOUND_OPERATORS[word]:
+        return
+    operator = source.slice(formula.op_span)
+    title = f"`{operator}` takes no bound with `{word}`"
+    yield _error(source, "TLT0111", title, bound.span, _BOUND_HELP[formula.op])
+
+
+def _check_spec(source: SourceFile, spec: tree.SpecDecl) -> Iterator[Diagnostic]:
+    if "." in spec.name:
+        plain = spec.name.replace(".", "_")
+        yield _error(source, "TLT0113", "the name of a spec has no dots", spec.name_span, f"`{plain}`")
+    if not any(clause.kind in _FORMULA_CLAUSES for clause in spec.clauses):
+        title = f"`{spec.name}` asks for nothing"
+        help_ = "add a clause: `reach`, `keep`, `avoid` or `require`"
+        yield _error(source, "TLT0112", title, spec.name_span, help_)
+
+
+def _check_clause(source: SourceFile, clause: tree.Clause) -> Iterator[Diagnostic]:
+    if isinstance(clause.value, tuple):
+        return
+    if clause.kind in _FORMULA_CLAUSES:
+        yield from check_formula(source, clause.value, in_reach=clause.kind == "reach")
+    elif clause.kind in ("judge", "semantics") and isinstance(clause.value, tree.Name):
+        words, form = (JUDGE, "judge at") if clause.kind == "judge" else (SEMANTICS, "semantics")
+        yield from _check_word(source, clause.value.name, clause.value.span, words, form)
+
+
+def _check_test(source: SourceFile, test: tree.TestDecl) -> Iterator[Diagnostic]:
+    for item in test.items:
+        if isinstance(item, tree.TestStep):
+            yield from _first(error for atom in item.atoms for error in check_formula(source, atom))
+        elif item.kind == "verdict":
+            word = str(item.value)
+            span = Span(item.span.end - len(word), item.span.end)
+            yield from _check_word(source, word, span, VERDICTS, "expect")
+
+
+def _check_word(source: SourceFile, word: str, span: Span, words: tuple[str, ...], form: str) -> Iterator[Diagnostic]:
+    if word not in words:
+        near = closest(word, words)
+        listed = ", ".join(f"`{form} {other}`" for other in words[:-1]) + f" or `{form} {words[-1]}`"
+        help_ = f"did you mean `{near}`?" if near else listed
+        yield _error(source, "TLT0108", f"`{word}` is not known here", span, help_)
+
+
+def _first(errors: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    for error in errors:
+        yield error
+        return
+
+
+def _error(source: SourceFile, code: str, title: str, span: Span, help_: str) -> Diagnostic:
+    return Diagnostic(code, title, (Label(source, span),), help_)

@@ -1,0 +1,280 @@
+"""What to say where a text cannot be read on: what was expected, in plain words, and how to mend it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar import lalr
+from tltlc.grammar.lexer import BAD, END, Token
+from tltlc.grammar.tables import load
+from tltlc.grammar.words import CLAUSES, DECLARATIONS, TEST_ITEMS, closest
+from tltlc.source import SourceFile, Span
+
+_KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
+_NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "line of a test"}
+_OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
+_ARITHMETIC: Final = {"PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "POWER", "LESS", "AT_MOST", "MORE", "AT_LEAST"}
+_COMPARISONS: Final = {"LESS", "AT_MOST", "MORE", "AT_LEAST"}
+_INFIX: Final = {"AND", "OR", "IMPLIES", "IFF", "THEN", "UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
+_UNTILS: Final = {"UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
+_OPERAND: Final = {"NAME", "NUMBER", "LPAR"}
+_PLAIN: Final = {"NAME": "a name", "NUMBER": "a number", "STRING": "a text in quotes", "UNIT": "a unit"}
+
+
+def unexpected(source: SourceFile, tokens: Sequence[Token], error: lalr.UnexpectedTokenError, start: str) -> Diagnostic:
+    """The error for a token that fits nowhere; ``tokens`` are those of one piece, read as a ``start``."""
+    place = _Place(source, tokens, error, start)
+    for rule in _RULES:
+        diagnostic = rule(place)
+        if diagnostic:
+            return diagnostic
+    return place.error("TLT0101", place.expectation(), place.form())
+
+
+def never_closed(source: SourceFile, opening: Token) -> Diagnostic:
+    """The error for a bracket without its partner."""
+    closing = {"(": ")", "[": "]", "{": "}"}[opening.text]
+    title = f"this `{opening.text}` is never closed"
+    return Diagnostic("TLT0105", title, (Label(source, opening.span),), f"write the missing `{closing}`")
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where reading ended, and what the rules below ask about it."""
+
+    source: SourceFile
+    tokens: Sequence[Token]
+    stop: lalr.UnexpectedTokenError
+    start: str
+
+    @property
+    def found(self) -> Token:
+        return self.tokens[self.stop.index]
+
+    @property
+    def before(self) -> Token | None:
+        return self.tokens[self.stop.index - 1] if self.stop.index else None
+
+    @property
+    def at_end(self) -> bool:
+        return self.found.type == END
+
+    @cached_property
+    def allowed(self) -> set[str]:
+        return lalr.accepted(load(), self.stop.states)
+
+    @property
+    def wants_operand(self) -> bool:
+        return self.allowed >= _OPERAND
+
+    @property
+    def wants_operator(self) -> bool:
+        return "AND" in self.allowed
+
+    @cached_property
+    def open_brackets(self) -> list[Token]:
+        """The brackets that are open here, outermost first."""
+        stack: list[Token] = []
+        for token in self.tokens[: self.stop.index]:
+            if token.type in _OPENING:
+                stack.append(token)
+            elif stack and token.type == _OPENING[stack[-1].type]:
+                stack.pop()
+        return stack
+
+    def form(self) -> str | None:
+        """The form of the piece as a help, by its keyword."""
+        form = _KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
+        return f"the form is {form}" if form else None
+
+    def error(
+        self, code: str, title: str, help_: str | None, message: str = "", span: Span | None = None
+    ) -> Diagnostic:
+        """An error at the token that was found; at the end of a piece, at its last token."""
+        if span is None:
+            span = self.before.span if self.at_end and self.before else self.found.span
+        return Diagnostic(code, title, (Label(self.source, span, message),), help_)
+
+    def expectation(self) -> str:
+        """``expected … after …, found …``."""
+        before = f" after {shown(self.before)}" if self.before else ""
+        found = "" if self.at_end else f", found {shown(self.found)}"
+        return f"expected {self.wanted()}{before}{found}"
+
+    def wanted(self) -> str:
+        """What could stand here, in plain words."""
+        allowed = set(self.allowed)
+        if self.wants_operand:
+            if self.before and self.before.type in _ARITHMETIC:
+                return "a value"
+            return "an expression" if self.tokens[0].type in ("PREDICATE", "PARAM", "SIGNAL") else "a formula"
+        items = []
+        if self.wants_operator:
+            items.append("an operator")
+            allowed -= _INFIX | _ARITHMETIC | {"UNIT", "LPAR"}
+        items += [text for kind, text in _PLAIN.items() if kind in allowed]
+        signs = {terminal: text for text, terminal in {**load().soft, **load().signs}.items()}
+        items += [f"`{signs[kind]}`" for kind in sorted(allowed) if kind in signs]
+        words = {terminal: text for text, terminal in load().words.items()}
+        rest = [f"`{words[kind]}`" for kind in sorted(allowed) if kind in words and kind not in _PLAIN]
+        if len(rest) <= 4:
+            items += rest
+        if END in allowed and len(items) < 2:
+            items.append(f"the end of the {_NOUNS.get(self.start, 'formula')}")
+        items = items[:4] or [f"a {_NOUNS.get(self.start, 'formula')}"]
+        return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} or {items[-1]}"
+
+
+def shown(token: Token | None) -> str:
+    """A token as it stands in the text, short enough for a title."""
+    text = token.text if token else ""
+    return f"`{text}`" if len(text) <= 30 else f"`{text[:29]}…`"
+
+
+def _strange(place: _Place) -> Diagnostic | None:
+    """A sign or word that the language does not know."""
+    token = place.found
+    if token.type != BAD:
+        return None
+    text = token.text
+    if text in ("==", "!="):
+        help_ = "compare with `<`, `<=`, `>` or `>=`; a bool signal is an atom by itself"
+        return place.error("TLT0110", f"`{text}` does not compare here", help_)
+    if text.startswith('"'):
+        return place.error("TLT0114", "this text in quotes never ends", 'write the missing `"` on the same line')
+    if text == "/*":
+        return place.error("TLT0104", "`/*` means nothing here", "comments begin with `//` and end with the line")
+    if text[0].isalpha():
+        return place.error("TLT0104", f"`{text}` is no name", "names are ASCII letters, digits and `_`")
+    helps = {
+        ";": "leave it out: nothing is needed between clauses",
+        "'": 'texts stand in double quotes: "…"',
+        "“": 'texts stand in straight double quotes: "…"',
+        "”": 'texts stand in straight double quotes: "…"',
+        "#": "comments begin with `//`",
+        "~": "for `not` write `not` or `!`",
+        ".": "a number has a digit on both sides of its point, as in `0.5`",
+        "%": "a percentage follows a number, as in `50%`",
+    }
+    sign = text if text.isprintable() else f"U+{ord(text):04X}"
+    return place.error("TLT0104", f"`{sign}` means nothing here", helps.get(text, "leave it out"))
+
+
+def _equality(place: _Place) -> Diagnostic | None:
+    """A single ``=`` where a comparison was meant."""
+    if place.found.type != "EQUAL" or not place.wants_operator:
+        return None
+    help_ = "compare with `<`, `<=`, `>` or `>=`; a bool signal is an atom by itself"
+    return place.error("TLT0110", "`=` does not compare", help_)
+
+
+def _chained(place: _Place) -> Diagnostic | None:
+    """``a < b < c``."""
+    if place.found.type not in _COMPARISONS or not place.wants_operator:
+        return None
+    return place.error("TLT0110", "comparisons cannot be chained", "write `a < b and b < c`")
+
+
+def _unknown_keyword(place: _Place) -> Diagnostic | None:
+    """A piece that begins with no keyword of its kind."""
+    keywords = _KEYWORDS.get(place.start)
+    if place.stop.index or not keywords or place.at_end:
+        return None
+    token, noun = place.found, _NOUNS[place.start]
+    if token.type in _OPENING.values():
+        return None
+    if place.start == "declaration" and token.text in CLAUSES:
+        help_ = f"`spec NAME {{ {token.text} … }}`"
+        return place.error("TLT0107", f"`{token.text}` stands only inside a spec", help_)
+    if place.start == "declaration" and token.text in TEST_ITEMS:
+        return place.error("TLT0107", f"`{token.text}` stands only inside a test", DECLARATIONS["test"])
+    near = closest(token.text, list(keywords)) if token.type == "NAME" else None
+    message = f"did you mean `{near}`?" if near else ""
+    listed = ", ".join(f"`{word}`" for word in keywords)
+    title = f"no {noun} begins with {shown(token)}"
+    return place.error("TLT0107", title, None if near else f"one of {listed}", message)
+
+
+def _brackets(place: _Place) -> Diagnostic | None:
+    """A bracket without its partner."""
+    token = place.found
+    if token.type in _OPENING.values():
+        opening = place.open_brackets[-1] if place.open_brackets else None
+        if opening is None:
+            return place.error("TLT0105", f"this `{token.text}` closes nothing", "leave it out")
+        if _OPENING[opening.type] != token.type and _OPENING[opening.type] in place.allowed:
+            return never_closed(place.source, opening)
+        return None
+    if place.at_end and place.open_brackets and _OPENING[place.open_brackets[-1].type] in place.allowed:
+        return never_closed(place.source, place.open_brackets[-1])
+    return None
+
+
+def _bounds(place: _Place) -> Diagnostic | None:
+    """A bound without a unit, or behind an operator that takes none."""
+    before = place.before
+    if place.allowed == {"UNIT"} and before:
+        return place.error(
+            "TLT0111", f"expected a unit after {shown(before)}", f"`{before.text} steps` or `{before.text} s`"
+        )
+    if place.found.type == "LSQB" and before and before.type in _UNTILS:
+        help_ = "bound an `F` beside it: `(a U b) & F[0,20] b`"
+        return place.error("TLT0111", f"`{before.text}` takes no bound", help_)
+    return None
+
+
+def _reserved(place: _Place) -> Diagnostic | None:
+    """A reserved word where a name should stand."""
+    token = place.found
+    if "NAME" not in place.allowed or token.text not in load().words:
+        return None
+    keyword = token.text in DECLARATIONS or token.text in CLAUSES
+    if place.wants_operand and not keyword:
+        return None
+    help_ = f"choose another name, for example `{token.text.lower()}_`"
+    return place.error("TLT0106", f"`{token.text}` is a reserved word, not a name", help_)
+
+
+def _missing_type(place: _Place) -> Diagnostic | None:
+    """``signal a: in [0, 1]``, where `in` was taken for the type."""
+    before = place.before
+    if place.found.type != "LSQB" or before is None or before.text != "in" or "LSQB" in place.allowed:
+        return None
+    return place.error("TLT0101", "expected a type after `:`", place.form(), span=before.span)
+
+
+def _misspelt_operator(place: _Place) -> Diagnostic | None:
+    """A name where an operator should stand."""
+    before, token = place.before, place.found
+    if token.type != "NAME" or not place.wants_operator or before is None:
+        return None
+    if re.fullmatch("[FGXN]{2,}", before.text):
+        letters = " ".join(before.text)
+        return place.error("TLT0101", f"`{before.text}` is read as one name", f"write `{letters}`", span=before.span)
+    words = [word for word, terminal in load().words.items() if terminal in _INFIX and len(word) > 1]
+    near = closest(token.text, words)
+    if near is None:
+        temporal = closest(before.text, [word for word in load().words if len(word) > 3])
+        if temporal and before.type == "NAME":
+            message = f"did you mean `{temporal}`?"
+            return place.error("TLT0101", f"`{before.text}` is no operator", None, message, before.span)
+        return None
+    return place.error("TLT0101", place.expectation(), None, f"did you mean `{near}`?")
+
+
+_RULES: Final = (
+    _strange,
+    _equality,
+    _chained,
+    _unknown_keyword,
+    _brackets,
+    _bounds,
+    _reserved,
+    _missing_type,
+    _misspelt_operator,
+)

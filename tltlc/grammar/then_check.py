@@ -1,0 +1,113 @@
+"""The rule on the operands of ``then``: what could be read in two ways must have brackets (TLT0102).
+
+Outside ``reach`` an operand is an atom, a negated atom or in brackets.  In ``reach``, where ``then`` is
+plainly the loosest operator, only an operand that begins with a bare temporal operator is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar import tree
+from tltlc.grammar.nesting import children
+from tltlc.grammar.tree import Expr
+from tltlc.source import SourceFile, Span
+
+_TEMPORAL: Final = "FGXN"
+_COMPARISONS: Final = ("<", "<=", ">", ">=")
+_SHORT: Final = 60
+
+
+def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator[Diagnostic]:
+    """An error for each operand of a ``then`` in ``formula`` that lacks brackets."""
+    waiting = [(formula, in_reach)]
+    while waiting:
+        part, lenient = waiting.pop()
+        if isinstance(part, tree.Binary) and part.op == "then":
+            operands = _operands(part)
+            for place in range(len(operands)):
+                yield from _check_operand(source, operands, place, lenient)
+            waiting += [(operand, False) for operand in reversed(operands)]
+        else:
+            waiting += [(child, False) for child in reversed([*children(part)])]
+
+
+def _operands(sequence: tree.Binary) -> list[Expr]:
+    """The operands of ``a then b then …``, in order."""
+    found = [sequence.left]
+    rest = sequence.right
+    while isinstance(rest, tree.Binary) and rest.op == "then":
+        found.append(rest.left)
+        rest = rest.right
+    return [*found, rest]
+
+
+def _check_operand(source: SourceFile, operands: list[Expr], place: int, lenient: bool) -> Iterator[Diagnostic]:
+    operand = operands[place]
+    leading = _leading(operand)
+    if leading is None and (lenient or _is_plain(operand)):
+        return
+    last = place == len(operands) - 1
+    other = operands[place - 1] if last else operands[place + 1]
+    if leading is None:
+        title, span = "this operand of `then` needs brackets", operand.span
+        help_ = _readings(source, operand, other, last)
+    else:
+        word = source.slice(leading.op_span)
+        span = leading.op_span
+        title = f"a bare `{word}` cannot follow `then`" if last else f"`then` cannot follow a bare `{word}`"
+        help_ = _readings(source, operand, other, last)
+        if leading is operand and leading.op == "F" and leading.bound is None:
+            before, after = (other, leading.operand) if last else (leading.operand, other)
+            first, second = _text(source, before), _text(source, after)
+            if len(first) + len(second) <= _SHORT:
+                help_ = f"`reach {first} then {second}` means: {second} after {first}\n{help_}"
+    yield Diagnostic("TLT0102", title, (Label(source, span),), help_)
+
+
+def _leading(operand: Expr) -> tree.Unary | None:
+    """The temporal operator with which an operand begins, without brackets."""
+    while isinstance(operand, tree.Binary):
+        operand = operand.left
+    while isinstance(operand, tree.Unary) and operand.op == "not":
+        operand = operand.operand
+    return operand if isinstance(operand, tree.Unary) and operand.op in _TEMPORAL else None
+
+
+def _is_plain(operand: Expr) -> bool:
+    """Whether an operand is an atom, a negated atom, a constant or in brackets."""
+    if isinstance(operand, tree.Unary) and operand.op == "not":
+        operand = operand.operand
+    if isinstance(operand, tree.Binary):
+        return operand.op in _COMPARISONS
+    return isinstance(operand, (tree.Name, tree.Call, tree.Group, tree.Constant, tree.Number))
+
+
+def _readings(source: SourceFile, operand: Expr, other: Expr, last: bool) -> str:
+    """Both ways to put the brackets, as a help."""
+    whole, neighbour = _text(source, operand), _text(source, other)
+    inner: Expr
+    if isinstance(operand, tree.Unary):
+        operator = source.slice(Span(operand.span.start, operand.operand.span.start)).strip()
+        inner, head, tail = operand.operand, f"{operator} ", ""
+    elif isinstance(operand, tree.Binary):
+        operator = source.slice(operand.op_span)
+        left, right = _text(source, operand.left), _text(source, operand.right)
+        inner = operand.left if last else operand.right
+        head, tail = ("", f" {operator} {right}") if last else (f"{left} {operator} ", "")
+    else:
+        return "put it in brackets"
+    if len(whole) + len(neighbour) > _SHORT:
+        return "put the operand, or the whole sequence, in brackets"
+    if last:
+        return f"write `{neighbour} then ({whole})`" + (
+            f" or `({neighbour} then {_text(source, inner)}){tail}`" if tail else ""
+        )
+    return f"write `({whole}) then {neighbour}` or `{head}({_text(source, inner)} then {neighbour})`"
+
+
+def _text(source: SourceFile, part: Expr) -> str:
+    """A part as it stands in the text, on one line."""
+    return " ".join(source.slice(Span(part.span.start, part.span.end)).split())
