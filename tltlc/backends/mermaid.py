@@ -16,7 +16,7 @@ CLASSES = """\
     classDef pending fill:#f8fafc,stroke:#475569,color:#0f172a
     classDef violated fill:#fef2f2,stroke:#dc2626,color:#0f172a"""
 
-_PLAIN = frozenset(" (),.¬∧∨⇒⇔⊤⊥◇□○𝒰")
+_PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰")
 
 
 def emit(fspa: Fspa, options: Options) -> Files:

@@ -25,15 +25,14 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
 
     Tried in this order, each within ``options.layout_limit_s``: everything in layers; state numbers
     only, in layers; state numbers only, by forces.  If none is done in time, ``NAME.dot``.  What was
-    left out is reported (TLT0712).
+    left out is reported (TLT0711).
 
     Raises:
-        TltlError: TLT0711 where pygraphviz is not installed, TLT0713 where the layout itself failed.
+        TltlError: TLT0730 where pygraphviz is not installed, TLT0712 where the layout itself failed.
     """
     if find_spec("pygraphviz") is None:
-        raise TltlError(
-            [Diagnostic("TLT0711", "pictures need pygraphviz, which is not installed", help="pip install pygraphviz")]
-        )
+        title = "a picture needs `pygraphviz`, which is not installed"
+        raise TltlError([Diagnostic("TLT0730", title, help="pip install 'pygraphviz'")])
     name = f"{fspa.name}.{picture_format}"
     full, sketch = graph(fspa, options), graph(fspa, options, guards=False)
     if len(fspa.edges) <= MOST_EDGES_IN_FULL:
@@ -44,10 +43,10 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
         picture = _laid_out(sketch, picture_format, engine, options.layout_limit_s)
         if picture is not None:
             title = f"`{name}` shows {len(fspa.states)} states by number only, without guards: the graph is too tangled"
-            options.report(Diagnostic("TLT0712", title, help=SKETCH, severity="note"))
+            options.report(Diagnostic("TLT0711", title, help=SKETCH, severity="note"))
             return {name: picture}
     title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
-    options.report(Diagnostic("TLT0712", title, severity="note"))
+    options.report(Diagnostic("TLT0711", title, severity="note"))
     return {f"{fspa.name}.dot": full}
 
 
@@ -60,5 +59,5 @@ def _laid_out(dot: str, picture_format: str, engine: str, limit_s: float) -> byt
         return None
     if done.returncode or not done.stdout:
         reason = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit status {done.returncode}"]
-        raise TltlError([Diagnostic("TLT0713", f"the picture could not be drawn: {reason[-1]}")])
+        raise TltlError([Diagnostic("TLT0712", f"the picture could not be drawn: {reason[-1]}")])
     return done.stdout
