@@ -140,4 +140,4 @@ def _where(values: Mapping[str, float]) -> str:
 
 
 def _number(value: float) -> str:
-    return f"{value:.6g}"
+    return f"{round(value, 12):.6g}"

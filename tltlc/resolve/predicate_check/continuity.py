@@ -19,7 +19,8 @@ from tltlc.resolve.predicate_check.region import Box, Region, Variable
 from tltlc.resolve.predicate_check.witness import CLEARLY, Point, points, value_at
 
 _MOST_POINTS = 150
-_MOST_CROSSINGS = 200
+_MOST_CROSSINGS = 60
+_BORDER_WIDTH = 1e-14  # relative distance of the two points that stand for the sides of a border
 _NEAR = 1e-7  # relative distance at which the value must still be about the same as at the border
 
 
@@ -141,13 +142,11 @@ def _along(start: Point, variable: Variable, box: Box, expression: Expression) -
 
 
 def _jump_between(all_cases: Sequence[Case], start: Point, end: Point, variable: Variable) -> Jump | None:
-    """Halve the way between points of different cases down to neighbouring numbers; is there a jump?"""
+    """Halve the way between points of different cases down to the border; is there a jump?"""
     low, high = start[variable], end[variable]
     left, right = _active(all_cases, start), _active(all_cases, end)
-    while True:
+    while abs(high - low) > _BORDER_WIDTH * max(1.0, abs(low)):
         middle = low + (high - low) / 2
-        if middle in (low, high):
-            break
         case = _active(all_cases, {**start, variable: middle})
         if case is None:
             return None

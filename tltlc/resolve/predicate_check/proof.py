@@ -1,28 +1,36 @@
 """Proves that an expression stays within bounds on a region, without sympy.
 
 Three means, cheapest first: interval arithmetic on the whole region, the sign of the exact
-difference to each bound, and interval arithmetic on ever smaller parts of the region.
+difference to a bound (of the whole and of each ratio in it), and interval arithmetic on ever
+smaller parts of the region.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
 from math import inf
 
-from tltlc.expression import Expression
-from tltlc.resolve.predicate_check.interval import Interval, UndefinedError
+from tltlc.expression import Expression, Op
+from tltlc.resolve.predicate_check.interval import EVERYTHING, Interval, UndefinedError, meet
 from tltlc.resolve.predicate_check.region import Region, bound
 
 TOLERANCE = 1e-9  # what rounding may add to a value that lies on a bound
-_MOST_PARTS = 300
+MOST_PARTS = 300
 
 
-def proves_within(value: Expression, region: Region, low: float, high: float) -> bool:
-    """True if the value is defined and in ``[low, high]``, up to TOLERANCE, at each point of the region."""
+def proves_within(value: Expression, region: Region, low: float, high: float, parts: int = MOST_PARTS) -> bool:
+    """True if the value is defined and in ``[low, high]``, up to TOLERANCE, at each point of the region.
+
+    ``parts`` limits the subdivision.
+    """
     if holds_at_once(value, region, low, high):
         return True
-    if _defined(value, region) and _proves_by_sign(value, region, low, high):
-        return True
-    return _holds_in_parts(value, region, low, high)
+    if _defined(value, region):
+        region = _with_ratios(value, region)
+        if holds_at_once(value, region, low, high) or _proves_by_sign(value, region, low, high):
+            return True
+    return _holds_in_parts(value, region, low, high, parts)
 
 
 def holds_at_once(value: Expression, region: Region, low: float, high: float) -> bool:
@@ -35,7 +43,7 @@ def holds_at_once(value: Expression, region: Region, low: float, high: float) ->
 
 def proves_defined(value: Expression, region: Region) -> bool:
     """True if the value exists at each point of the region."""
-    return _defined(value, region) or _holds_in_parts(value, region, -inf, inf)
+    return _defined(value, region) or _holds_in_parts(value, region, -inf, inf, MOST_PARTS)
 
 
 def inside(bounds: Interval, low: float, high: float) -> bool:
@@ -45,6 +53,25 @@ def inside(bounds: Interval, low: float, high: float) -> bool:
 
 def _defined(value: Expression, region: Region) -> bool:
     return holds_at_once(value, region, -inf, inf)
+
+
+def _with_ratios(value: Expression, region: Region) -> Region:
+    """The region, knowing of each ratio in a defined value whether it is at least -1 or 0 and at most 0 or 1."""
+    known = dict(region.known)
+    for node in _ratios(value):
+        low = next((end for end in (0.0, -1.0) if _proves_by_sign(node, region, end, inf)), -inf)
+        high = next((end for end in (0.0, 1.0) if _proves_by_sign(node, region, -inf, end)), inf)
+        known[node] = meet(known.get(node, EVERYTHING), (low, high)) or (low, high)
+        region = replace(region, known=known)
+    return region
+
+
+def _ratios(value: Expression) -> Iterator[Op]:
+    if isinstance(value, Op):
+        for arg in value.args:
+            yield from _ratios(arg)
+        if value.op == "/":
+            yield value
 
 
 def _proves_by_sign(value: Expression, region: Region, low: float, high: float) -> bool:
@@ -57,14 +84,17 @@ def _proves_by_sign(value: Expression, region: Region, low: float, high: float) 
         if below[0] < 0 < below[1]:
             return False
         sign = 1 if below[0] >= 0 else -1
-        over_low = polynomial_bound(add(form.numerator, form.denominator, -exact(low)), region)
-        over_high = polynomial_bound(add(form.numerator, form.denominator, -exact(high)), region)
+        for end, side in ((low, sign), (high, -sign)):
+            if end not in (-inf, inf):
+                over = polynomial_bound(add(form.numerator, form.denominator, -exact(end)), region)
+                if (over[0] < 0) if side > 0 else (over[1] > 0):
+                    return False
     except (TooLargeError, UndefinedError):
         return False
-    return (over_low[0] >= 0 >= over_high[1]) if sign > 0 else (over_low[1] <= 0 <= over_high[0])
+    return True
 
 
-def _holds_in_parts(value: Expression, region: Region, low: float, high: float) -> bool:
+def _holds_in_parts(value: Expression, region: Region, low: float, high: float, limit: int) -> bool:
     parts, tried = [region], 0
     while parts:
         part = parts.pop()
@@ -72,7 +102,7 @@ def _holds_in_parts(value: Expression, region: Region, low: float, high: float) 
         if holds_at_once(value, part, low, high):
             continue
         halves = part.halves()
-        if halves is None or tried > _MOST_PARTS:
+        if halves is None or tried > limit:
             return False
         parts += [half for half in (whole.narrowed() for whole in halves) if half is not None]
     return True

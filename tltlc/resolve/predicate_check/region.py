@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from math import inf
+from math import copysign, inf, log1p
 
 from tltlc.expression import Const, Expression, Op, Param, Signal
 from tltlc.resolve.predicate_check import interval
@@ -15,6 +15,7 @@ Variable = Signal | Param
 Box = Mapping[Variable, Interval]
 
 _ROUNDS = 6
+_FAR_AWAY = 1e6
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,11 +187,8 @@ def _loose_bound(expression: Expression, box: Box) -> Interval:
 
 
 def _length(side: Interval) -> float:
-    """How much a cut across a side may help: logarithmic for sides far from 0, 100 where infinite."""
-    low, high = side
-    if high - low == inf:
-        return 100.0
-    return (high - low) / (1.0 + min(abs(low), abs(high)))
+    """How much a cut across a side may help: its length where numbers grow as their logarithms do."""
+    return sum(copysign(log1p(min(abs(end), _FAR_AWAY)), end) * sign for end, sign in zip(side, (-1, 1), strict=True))
 
 
 def _middle(low: float, high: float) -> float:
