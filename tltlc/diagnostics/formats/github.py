@@ -1,0 +1,40 @@
+"""Diagnostics as workflow commands of GitHub Actions, which shows them beside the changed lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+
+_COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
+
+
+def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
+    """One command per line and diagnostic."""
+    return "".join(_command(diagnostic) + "\n" for diagnostic in diagnostics)
+
+
+def _command(diagnostic: Diagnostic) -> str:
+    properties: dict[str, str | int] = {}
+    remark = ""
+    if diagnostic.labels:
+        label = diagnostic.labels[0]
+        remark = label.message
+        line, column = label.source.position(label.span.start)
+        end_line, end_column = label.source.position(label.span.end)
+        properties = {"file": label.source.name, "line": line, "endLine": end_line}
+        if line == end_line:
+            # The service takes columns only within one line; its end column belongs to the range.
+            properties |= {"col": column, "endColumn": max(column, end_column - 1)}
+    properties["title"] = diagnostic.code
+    listed = ",".join(f"{name}={_property(str(value))}" for name, value in properties.items())
+    text = "\n".join(part for part in (diagnostic.title, remark, diagnostic.help) if part)
+    return f"::{_COMMANDS[diagnostic.severity]} {listed}::{_data(text)}"
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")

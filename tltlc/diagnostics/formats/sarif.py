@@ -1,0 +1,67 @@
+"""Diagnostics as SARIF 2.1.0 (OASIS), for code scanning services and editors."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import Final
+from urllib.parse import quote
+
+from tltlc import __version__
+from tltlc.diagnostics.codes import codes, title
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+
+_SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sarif-schema-2.1.0.json"
+
+
+def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
+    """One SARIF log with one run; paths are relative to the current folder where they lie below it."""
+    rules = sorted({diagnostic.code for diagnostic in diagnostics})
+    run = {
+        "tool": {"driver": {"name": "tltlc", "version": __version__, "rules": [_rule(code) for code in rules]}},
+        "columnKind": "unicodeCodePoints",
+        "results": [_result(diagnostic, rules.index(diagnostic.code)) for diagnostic in diagnostics],
+    }
+    return json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, ensure_ascii=False, indent=2) + "\n"
+
+
+def _rule(code: str) -> dict[str, object]:
+    rule: dict[str, object] = {"id": code}
+    if code in codes():
+        rule["shortDescription"] = {"text": title(code)}
+    return rule
+
+
+def _result(diagnostic: Diagnostic, rule: int) -> dict[str, object]:
+    remark = diagnostic.labels[0].message if diagnostic.labels else ""
+    text = "\n".join(part for part in (diagnostic.title, remark, diagnostic.help) if part)
+    result: dict[str, object] = {
+        "ruleId": diagnostic.code,
+        "ruleIndex": rule,
+        "level": diagnostic.severity,
+        "message": {"text": text},
+        "locations": [_location(label) for label in diagnostic.labels[:1]],
+    }
+    if diagnostic.labels[1:]:
+        related = []
+        for label in diagnostic.labels[1:]:
+            message = {"message": {"text": label.message}} if label.message else {}
+            related.append({**_location(label), **message})
+        result["relatedLocations"] = related
+    return result
+
+
+def _location(label: Label) -> dict[str, object]:
+    start_line, start_column = label.source.position(label.span.start)
+    end_line, end_column = label.source.position(label.span.end)
+    region = {"startLine": start_line, "startColumn": start_column, "endLine": end_line, "endColumn": end_column}
+    return {"physicalLocation": {"artifactLocation": {"uri": _uri(label.source.name)}, "region": region}}
+
+
+def _uri(name: str) -> str:
+    """The URI of a file: relative to the current folder where the file lies below it."""
+    path = os.path.relpath(name) if name and not name.startswith("<") else name
+    if path.startswith(os.pardir):
+        return "file://" + quote(os.path.abspath(name).replace(os.sep, "/"))  # noqa: PTH100
+    return quote(path.replace(os.sep, "/"))
