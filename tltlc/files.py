@@ -29,7 +29,7 @@ def read_source(
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             data = file.read(max_bytes + 1)
     except (OSError, ValueError) as error:
-        raise TltlError([Diagnostic("TLT0001", f"cannot read `{shown}`: {_reason(error)}")]) from None
+        raise reading_error(shown, error) from None
     return decode(data, shown, max_bytes=max_bytes)
 
 
@@ -51,15 +51,12 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
         raise _not_utf8(error.object, name, error.start) from None
 
 
-def _not_utf8(data: bytes, name: str, start: int) -> TltlError:
-    """The error for the first bad byte, shown in a text where every bad byte is replaced."""
-    source = SourceFile(name, data.decode(errors="replace"))
-    offset = len(data[:start].decode())
-    label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is no UTF-8")
-    return TltlError([Diagnostic("TLT0002", f"`{name}` is not UTF-8 text", (label,), help="save it as UTF-8")])
+def reading_error(name: str, error: OSError | ValueError) -> TltlError:
+    """TLT0001 for a file that the system does not give us."""
+    return TltlError([Diagnostic("TLT0001", f"cannot read `{name}`: {reason(error)}")])
 
 
-def _reason(error: OSError | ValueError) -> str:
+def reason(error: OSError | ValueError) -> str:
     """Why the system refused, in plain words."""
     if isinstance(error, FileNotFoundError):
         return "there is no such file"
@@ -70,3 +67,11 @@ def _reason(error: OSError | ValueError) -> str:
     if isinstance(error, OSError) and error.strerror:
         return error.strerror[0].lower() + error.strerror[1:]
     return "its name is not one that the system allows"
+
+
+def _not_utf8(data: bytes, name: str, start: int) -> TltlError:
+    """The error for the first bad byte, shown in a text where every bad byte is replaced."""
+    source = SourceFile(name, data.decode(errors="replace"))
+    offset = len(data[:start].decode())
+    label = Label(source, Span(offset, offset + 1), f"the byte 0x{data[start]:02X} is no UTF-8")
+    return TltlError([Diagnostic("TLT0002", f"`{name}` is not UTF-8 text", (label,), help="save it as UTF-8")])

@@ -56,7 +56,7 @@ def compile_source(source: SourceFile, options: CompileOptions | None = None) ->
     """Compile every spec of a source text, or those that the options name.
 
     Errors: :class:`TltlError` with everything that was found up to the end of the stage that failed;
-    TLT0710 where the options name a spec that is not there.
+    TLT0720 where the options name a spec that is not there.
     """
     options = options or CompileOptions()
     module, found = parse(source)
@@ -66,21 +66,27 @@ def compile_source(source: SourceFile, options: CompileOptions | None = None) ->
     _stop_at_errors(found)
     automata: list[Fspa] = []
     for spec in pick_specs(program.specs, options.specs, source.name):
-        try:
-            fspa = build(spec, state_budget=options.state_budget)
-        except TltlError as error:
-            found += error.diagnostics
-        else:
+        fspa, remarks = _build(spec, options)
+        found += remarks
+        if fspa is not None:
             automata.append(fspa)
-            found += _verdict_warnings(spec, fspa)
     _stop_at_errors(found)
     return Compiled(program, tuple(automata), found)
+
+
+def _build(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diagnostic, ...]]:
+    """The automaton of a spec, or None and the errors why not; with warnings."""
+    try:
+        fspa = build(spec, state_budget=options.state_budget)
+    except TltlError as error:
+        return None, error.diagnostics
+    return fspa, _verdict_warnings(spec, fspa)
 
 
 def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tuple[Spec, ...]:
     """The specs of these names in the order of the file, all for no names.
 
-    Errors: TLT0710 for a name that is none of them.
+    Errors: TLT0720 for a name that is none of them.
     """
     known = [spec.name for spec in specs]
     for name in names:
@@ -96,7 +102,7 @@ def unknown_spec(name: str, known: list[str], file: str) -> Diagnostic:
     close = get_close_matches(name, known, n=1)
     listed = ", ".join(f"`{other}`" for other in known[:10]) + (", …" if len(known) > 10 else "")
     way_out = f"did you mean `{close[0]}`?" if close else f"it holds {listed}" if known else "it holds no spec"
-    return Diagnostic("TLT0710", f"`{file}` has no spec `{name}`", help=way_out)
+    return Diagnostic("TLT0720", f"`{file}` has no spec `{name}`", help=way_out)
 
 
 def compile_text(text: str, name: str = "<text>", options: CompileOptions | None = None) -> tuple[Fspa, ...]:
@@ -153,6 +159,22 @@ def read_artefact(source: SourceFile) -> Fspa:
     from tltlc.backends.json import read
 
     return read(source.text, source.name)
+
+
+def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
+    """The automaton with other values of its params, as written (``{"level_size": "30 m"}``).
+
+    Errors: TLT0307 out of range, TLT0308 no such param or no such value.
+    """
+    if not values:
+        return fspa
+    from dataclasses import replace
+
+    from tltlc.resolve.overrides import overridden
+
+    params, found = overridden({param.name: param for param in fspa.params}, values)
+    _stop_at_errors(tuple(found))
+    return replace(fspa, params=tuple(params.values()))
 
 
 def _stop_at_errors(diagnostics: tuple[Diagnostic, ...]) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import inf
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import ClockDecl, ParamDecl, SignalDecl
 from tltlc.resolve import units
-from tltlc.resolve.constants import interval, number, override
+from tltlc.resolve.constants import interval, number
 from tltlc.resolve.context import Context, SignalInfo
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.predicates import unknown_type
@@ -146,28 +146,13 @@ def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
 
 def _override(options: ResolveOptions, context: Context) -> None:
     """Applies the values given from outside the source text."""
-    for name, text in options.params.items():
-        old = context.params.get(name)
-        if old is None:
-            from difflib import get_close_matches
+    if options.params:
+        from tltlc.resolve.overrides import overridden
 
-            close = get_close_matches(name, list(context.params), n=1)
-            advice = f"did you mean `{close[0]}`?" if close else None
-            context.log.add(Diagnostic("TLT0308", f"there is no param `{name}` to set", (), advice))
-            continue
-        found = override(text)
-        dimension = units.TYPES[old.type]
-        if found is None or found[1] not in (None, dimension):
-            title = f"`{text}` is no value for the param `{name}`"
-            unit = units.si_unit(dimension)
-            advice = f"write a number, e.g. `{name}={number_text(old.value)}{' ' + unit if unit else ''}`"
-            context.log.add(Diagnostic("TLT0308", title, (), advice))
-        elif not (-inf if old.low is None else old.low) <= found[0] <= (inf if old.high is None else old.high):
-            title = f"`{text}` lies outside the range of the param `{name}`"
-            advice = f"its range is {_range_text(old.low, old.high)}"
-            context.log.add(Diagnostic("TLT0307", title, (), advice))
-        else:
-            context.params[name] = Param(name, old.type, found[0], old.low, old.high, old.doc)
+        params, found = overridden(context.params, options.params)
+        context.params.update(params)
+        for diagnostic in found:
+            context.log.add(diagnostic)
 
 
 def _range_text(low: float | None, high: float | None) -> str:

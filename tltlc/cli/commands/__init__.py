@@ -1,0 +1,1 @@
+"""One module per command, loaded when its command is named; each holds one click command, ``command``."""

@@ -1,0 +1,118 @@
+"""Exit statuses, and the last word on every exception."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from typing import Final
+
+import click
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+CLEAN: Final = 0
+FINDINGS: Final = 1
+USAGE: Final = 2
+UNREADABLE: Final = 3
+MISSING_COMPONENT: Final = 4
+BUG: Final = 70
+INTERRUPTED: Final = 130
+CLOSED_PIPE: Final = 141
+
+_STATUS_OF_CODE: Final = {
+    "TLT0001": UNREADABLE,
+    "TLT0005": UNREADABLE,
+    "TLT0700": USAGE,
+    "TLT0710": USAGE,
+    "TLT0720": USAGE,
+    "TLT0721": USAGE,
+    "TLT0722": USAGE,
+    "TLT0730": MISSING_COMPONENT,
+}
+"""The codes whose exit status is not that of an error in a source text."""
+
+_COMPONENTS: Final = {"graphviz", "pygraphviz", "sympy", "networkx", "rich", "tomli"}
+"""Modules that come with tltlc, and that an installation by parts may lack."""
+
+
+class StopQuietlyError(Exception):
+    """Ends the command with a status and no message: nobody is there to read one."""
+
+    def __init__(self, status: int) -> None:
+        super().__init__(status)
+        self.status = status
+
+
+def status_of(diagnostics: Iterable[Diagnostic]) -> int:
+    """The exit status for what was found: that of the first error, 0 where there is none."""
+    for diagnostic in diagnostics:
+        if diagnostic.severity == "error":
+            return _STATUS_OF_CODE.get(diagnostic.code, FINDINGS)
+    return CLEAN
+
+
+def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:
+    """The error for a part that is not installed."""
+    title = f"{wanted_by} needs `{module}`, which is not installed"
+    return TltlError([Diagnostic("TLT0730", title, help=f"pip install '{requirement}'")])
+
+
+def report(error: Exception) -> int:
+    """Say on standard error what went wrong and return the exit status."""
+    if isinstance(error, BrokenPipeError):
+        error = StopQuietlyError(CLOSED_PIPE)
+    if isinstance(error, StopQuietlyError):
+        if error.status == CLOSED_PIPE:
+            _discard_output()
+        return error.status
+    if isinstance(error, click.exceptions.Exit):
+        return error.exit_code
+    if isinstance(error, click.Abort):
+        return INTERRUPTED
+    if isinstance(error, click.ClickException):
+        error = TltlError([_usage(error)])
+    if isinstance(error, ModuleNotFoundError) and error.name in _COMPONENTS:
+        error = missing_component("this command", error.name, error.name)
+    if isinstance(error, TltlError):
+        from tltlc.cli.report import show
+
+        show(error.diagnostics, "text", sys.stderr)
+        return status_of(error.diagnostics)
+    return _bug(error)
+
+
+def _usage(error: click.ClickException) -> Diagnostic:
+    """A complaint about the command line, as a diagnostic."""
+    message = error.format_message().rstrip(".")
+    context = error.ctx if isinstance(error, click.UsageError) else None
+    command = context.command_path if context else "tltlc"
+    return Diagnostic("TLT0700", message[:1].lower() + message[1:], help=f"`{command} --help` shows how to use it")
+
+
+def _discard_output() -> None:
+    """Let Python's own flush at exit go nowhere: whoever read our output has gone."""
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (OSError, ValueError):
+        pass  # Standard output is no file of the system, so nothing is flushed to one.
+
+
+def _bug(error: Exception) -> int:
+    """An exception that nobody foresaw: a short reference for the report, the traceback only when asked for."""
+    import traceback
+    import zlib
+
+    from tltlc import __version__
+
+    if os.environ.get("TLTLC_DEBUG") == "1":
+        traceback.print_exception(error)
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    where = f"{type(error).__name__} {os.path.basename(place.filename)}:{place.lineno}"  # noqa: PTH119
+    print(
+        f"error: a bug in tltlc stopped this command (reference {zlib.crc32(where.encode()):08x})\n"
+        f"  Please report it with this reference, the version ({__version__}) and the files that the command was given.\n"
+        "  TLTLC_DEBUG=1 in the environment shows where it happened.",
+        file=sys.stderr,
+    )
+    return BUG

@@ -1,0 +1,163 @@
+"""The entry point: finds a command, runs it, and turns every way to fail into a message and an exit status.
+
+A command is a module of :mod:`tltlc.cli.commands`; other distributions add theirs through the
+entry-point group ``tltlc.commands``, each entry a click command.  Neither is loaded before it is named.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any, Final, NoReturn
+
+import click
+
+from tltlc.cli import exits
+
+BUILT_IN: Final = {
+    "compile": "Compile the specs of a file to artefacts and monitors.",
+    "check": "Report what is wrong in source files, and write nothing.",
+    "render": "Draw the automaton of a spec.",
+    "monitor": "Run a spec over a recorded trace and judge it.",
+    "test": "Run the test blocks of source files.",
+    "list": "List the predicates, targets or error codes there are.",
+    "explain": "Say what an error code means and how to mend it.",
+    "new": "Create a starter project that compiles.",
+    "completion": "Print the completion script of a shell.",
+}
+
+ENTRY_POINTS: Final = "tltlc.commands"
+COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run the command line (by default that of the process) and exit with its status."""
+    cli.main(args=None if arguments is None else list(arguments))
+
+
+class CommandLine(click.Group):
+    """The group of all commands."""
+
+    def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:  # type: ignore[override]
+        """Run and exit; messages go to standard error, and never is there a traceback."""
+        for stream in (sys.stdout, sys.stderr):
+            if hasattr(stream, "reconfigure"):
+                # A terminal that cannot show ∧ gets an escape, not a crash.
+                stream.reconfigure(errors="backslashreplace")
+        extra.update(prog_name="tltlc", complete_var=COMPLETE_VARIABLE, standalone_mode=False)
+        try:
+            status = super().main(None if args is None else list(args), **extra) or 0
+            sys.stdout.flush()
+        except Exception as error:
+            status = exits.report(error)
+        sys.exit(status)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; click would answer these two with a status of its own."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:
+            raise exits.StopQuietlyError(exits.CLOSED_PIPE) from None
+        except KeyboardInterrupt:
+            raise exits.StopQuietlyError(exits.INTERRUPTED) from None
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of the commands, those of other distributions last."""
+        return [*BUILT_IN, *sorted(plugin.name for plugin in _plugins() if plugin.name not in BUILT_IN)]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of that name, loaded."""
+        if cmd_name in BUILT_IN:
+            from importlib import import_module
+
+            command: click.Command = import_module(f"tltlc.cli.commands.{cmd_name}").command
+            return command
+        for plugin in _plugins():
+            if plugin.name == cmd_name:
+                return _load(plugin)
+        return None
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """As click does, with a suggestion where there is no such command."""
+        if args[0].startswith("-") or self.get_command(ctx, args[0]):
+            return super().resolve_command(ctx, args)
+        from difflib import get_close_matches
+
+        close = get_close_matches(args[0], self.list_commands(ctx), n=1)
+        raise click.UsageError(
+            f"There is no command `{args[0]}`." + (f" Did you mean `{close[0]}`?" if close else ""), ctx
+        )
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of commands, from the table above, so that showing it loads none of them."""
+        rows = list(BUILT_IN.items())
+        for plugin in sorted(_plugins(), key=lambda plugin: plugin.name):
+            if plugin.name not in BUILT_IN:
+                origin = f", from {plugin.dist.name}" if plugin.dist else ""
+                extra = f" (needs the extra {', '.join(plugin.extras)})" if plugin.extras else ""
+                rows.append((plugin.name, f"A command of {plugin.module}{origin}{extra}."))
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[Any]:
+        """Completions, from the table above."""
+        from click.shell_completion import CompletionItem
+
+        names = [CompletionItem(name, help=BUILT_IN.get(name)) for name in self.list_commands(ctx)]
+        return [item for item in names if item.value.startswith(incomplete)] + click.Command.shell_complete(
+            self, ctx, incomplete
+        )
+
+
+def _plugins() -> Any:
+    from importlib.metadata import entry_points
+
+    return entry_points(group=ENTRY_POINTS)
+
+
+def _load(plugin: Any) -> click.Command:
+    """The command of another distribution; where it lacks a component, the way to install it."""
+    try:
+        command: click.Command = plugin.load()
+    except ModuleNotFoundError as error:
+        package = plugin.dist.name if plugin.dist else "tltlc"
+        wanted = f"{package}[{','.join(plugin.extras)}]" if plugin.extras else error.name or package
+        raise exits.missing_component(f"`tltlc {plugin.name}`", error.name or package, wanted) from error
+    return command
+
+
+def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if wanted and not ctx.resilient_parsing:
+        from tltlc import __version__
+
+        click.echo(f"tltlc {__version__}")
+        ctx.exit()
+
+
+@click.group(
+    cls=CommandLine,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="`tltlc COMMAND --help` shows the options of a command, with examples.",
+)
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Show the version and exit."
+)
+def cli() -> None:
+    """Compile plans for a game, written in temporal logic, to automata that judge and reward a player.
+
+    \b
+    Start here:
+      tltlc new my_game                          a project that compiles
+      tltlc compile my_game/level.tltl -o build  its automaton and its monitor
+      tltlc render my_game/level.tltl -o level.svg
+    """
+
+
+if os.environ.get("TLTLC_DEBUG") == "1":
+    import faulthandler
+
+    # A crash or a hang below Python shows where it is.
+    faulthandler.enable()

@@ -1,0 +1,153 @@
+"""The optional project file ``tltl.toml``, found upwards from a source file.
+
+libraries = ["predicates"]            # folders, relative to the project file
+targets = ["json", "dot", "python"]   # what `tltlc compile` writes without -t
+
+[style]
+notation = "unicode"                  # of formulas in pictures: unicode, ascii or english
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.source import SourceFile, Span
+
+if TYPE_CHECKING:
+    from tltlc.backends import Notation
+
+FILE_NAME: Final = "tltl.toml"
+NOTATIONS: Final = ("unicode", "ascii", "english")
+_KEYS: Final = ("libraries", "targets", "style")
+_STYLE_KEYS: Final = ("notation",)
+
+
+@dataclass(frozen=True, slots=True)
+class Project:
+    """What a project file says; ``targets`` is empty where it says nothing of them."""
+
+    libraries: tuple[Path, ...] = ()
+    targets: tuple[str, ...] = ()
+    notation: Notation = "unicode"
+
+
+def project_for(path: str) -> Project:
+    """The project that a source file belongs to, by the nearest project file in its folder or above.
+
+    For standard input that is the current folder.  Errors: those of :func:`read_project`.
+    """
+    folder = Path(path).absolute().parent if path != "-" else Path.cwd()
+    for place in (folder, *folder.parents):
+        candidate = place / FILE_NAME
+        if candidate.is_file():
+            return read_project(candidate)
+    return Project()
+
+
+def read_project(path: Path) -> Project:
+    """The contents of a project file.
+
+    Errors: TLT0701 no TOML, TLT0702 an unknown key, TLT0703 a value of the wrong kind.
+    """
+    from tltlc.files import read_source
+
+    source = read_source(path, _shown(path))
+    table = _parse(source)
+    _known(table, _KEYS, source)
+    style = table.get("style", {})
+    if not isinstance(style, dict):
+        raise _wrong(source, "style", "a table, e.g. `[style]`", style)
+    _known(style, _STYLE_KEYS, source)
+    libraries = _strings(table, "libraries", '["predicates"]', source)
+    targets = _strings(table, "targets", '["json", "dot"]', source)
+    notation = style.get("notation", "unicode")
+    if notation not in NOTATIONS:
+        raise _wrong(source, "notation", 'one of "unicode", "ascii", "english"', notation)
+    folders = tuple(path.parent / library for library in libraries)
+    for library, folder in zip(libraries, folders, strict=True):
+        if not folder.is_dir():
+            raise _wrong(source, "libraries", "folders beside this file", library)
+    return Project(folders, targets, notation)
+
+
+def _parse(source: SourceFile) -> dict[str, Any]:
+    import sys
+
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+    try:
+        # The TOML of other systems ends its lines with CR LF, which the reader insists on seeing as one.
+        return tomllib.loads(source.text.replace("\r\n", "\n"))
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        message = str(error) or "it is nested too deeply"
+        raise TltlError([_syntax_error(source, message)]) from None
+
+
+def _syntax_error(source: SourceFile, message: str) -> Diagnostic:
+    """The TOML reader's message; its place becomes a label."""
+    import re
+
+    found = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", message)
+    reason = message[: found.start()] if found else message
+    label = Label(source, Span(len(source.text), len(source.text)), reason[:1].lower() + reason[1:])
+    if found and found[1]:
+        end_of_line = 0
+        for _ in range(int(found[1]) - 1):
+            end_of_line = source.text.index("\n", end_of_line) + 1
+        start = min(end_of_line + int(found[2]) - 1, len(source.text))
+        label = Label(source, Span(start, min(start + 1, len(source.text))), label.message)
+    return Diagnostic("TLT0701", f"`{source.name}` is not TOML", (label,))
+
+
+def _known(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> None:
+    from difflib import get_close_matches
+
+    for key in table:
+        if key not in keys:
+            close = get_close_matches(key, keys, n=1)
+            way_out = f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(f'`{k}`' for k in keys)}"
+            raise TltlError([Diagnostic("TLT0702", f"unknown key `{key}`", _place(source, key), way_out)])
+
+
+def _strings(table: dict[str, Any], key: str, example: str, source: SourceFile) -> tuple[str, ...]:
+    value = table.get(key, [])
+    if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+        raise _wrong(source, key, f"a list of texts, e.g. `{key} = {example}`", value)
+    return tuple(value)
+
+
+def _wrong(source: SourceFile, key: str, expected: str, found: object) -> TltlError:
+    shown = f'"{found}"' if isinstance(found, str) else _KINDS.get(type(found).__name__, "another kind of value")
+    return TltlError(
+        [Diagnostic("TLT0703", f"wrong value for `{key}`: {shown}", _place(source, key), f"expected {expected}")]
+    )
+
+
+_KINDS: Final = {
+    "int": "a number",
+    "float": "a number",
+    "bool": "true or false",
+    "list": "a list",
+    "dict": "a table",
+}
+
+
+def _place(source: SourceFile, key: str) -> tuple[Label, ...]:
+    """Where the key stands, as far as a search for it at the start of a line can tell."""
+    import re
+
+    found = re.search(rf"^\s*\[?\s*[\"']?({re.escape(key)})\b", source.text, re.MULTILINE)
+    return (Label(source, Span(*found.span(1))),) if found else ()
+
+
+def _shown(path: Path) -> str:
+    """The path, relative to the current folder where it lies inside."""
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)

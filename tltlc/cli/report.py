@@ -1,0 +1,71 @@
+"""Showing diagnostics in the format that the user chose, and the exit status that follows."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from types import TracebackType
+from typing import TextIO
+
+from tltlc.cli import exits
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+
+class Report:
+    """Collects what a command finds; as a context, ends the command at the first :class:`TltlError`.
+
+    Text is shown at once, on standard error.  The formats for machines are one document per run,
+    shown at the end: on standard output, or on standard error for commands that put results there.
+    ``status`` is the exit status.
+    """
+
+    def __init__(self, format: str = "text", *, results: bool = False) -> None:  # noqa: A002
+        self.format = format
+        self.found: list[Diagnostic] = []
+        self.status = exits.CLEAN
+        self._document = sys.stderr if results else sys.stdout
+
+    def add(self, diagnostics: Iterable[Diagnostic]) -> None:
+        """Show (or keep for the end) what was found."""
+        new = tuple(diagnostics)
+        self.found.extend(new)
+        self.status = self.status or exits.status_of(new)
+        if self.format == "text":
+            show(new, "text", sys.stderr)
+
+    def say(self, text: str) -> None:
+        """Narration: a line on standard error, only beside diagnostics for people."""
+        if self.format == "text":
+            print(text, file=sys.stderr)
+
+    def __enter__(self) -> Report:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        if isinstance(error, TltlError):
+            self.add(error.diagnostics)
+        elif error is not None:
+            return False
+        if self.format != "text":
+            show(self.found, self.format, self._document)
+        return error is not None
+
+
+def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None:  # noqa: A002
+    """Write diagnostics to a stream; in colour only for people at a terminal."""
+    found = tuple(diagnostics)
+    if not found and format == "text":
+        return
+    from tltlc.diagnostics.render import render
+
+    text = render(found, format, color=format == "text" and wants_colour(stream))
+    stream.write(text if text.endswith("\n") or not text else text + "\n")
+    stream.flush()
+
+
+def wants_colour(stream: TextIO) -> bool:
+    """Whether colour helps here: a terminal that can, and no NO_COLOR in the environment."""
+    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"

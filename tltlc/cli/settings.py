@@ -1,0 +1,92 @@
+"""The options that every command on a source file shares, and what they come to beside a project file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+FORMATS = ("text", "json", "sarif", "github")
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the command line says of where and how to compile; ``libraries`` before those of the project file."""
+
+    libraries: tuple[Path, ...] = ()
+    params: dict[str, str] = field(default_factory=dict)
+    state_budget: int | None = None
+
+
+def source_options(command: Function) -> Function:
+    """Add ``--library --param --state-budget --format``; the command takes ``settings`` and ``format``."""
+    from functools import wraps
+
+    @wraps(command)
+    def with_settings(
+        *args: Any, library: tuple[Path, ...], param: tuple[str, ...], state_budget: int | None, **rest: Any
+    ) -> Any:
+        return command(*args, settings=Settings(library, _params(param), state_budget), **rest)
+
+    for option in reversed(
+        (
+            click.option(
+                "--library",
+                "-L",
+                metavar="DIR",
+                type=click.Path(path_type=Path),
+                multiple=True,
+                help="Look for imports in this folder, too (repeatable).",
+            ),
+            click.option(
+                "--param",
+                "-p",
+                metavar="NAME=VALUE",
+                multiple=True,
+                help="Set a param, e.g. `level_size=30 m` (repeatable).",
+            ),
+            click.option(
+                "--state-budget",
+                metavar="N",
+                type=click.IntRange(min=1),
+                help="Give up on an automaton that needs more states (default: 50000).",
+            ),
+            format_option,
+        )
+    ):
+        with_settings = option(with_settings)
+    return with_settings  # type: ignore[return-value]
+
+
+format_option = click.option(
+    "--format",
+    type=click.Choice(FORMATS),
+    default="text",
+    help="How to show errors and warnings (default: text).",
+)
+
+
+def check_libraries(libraries: tuple[Path, ...]) -> None:
+    """Error TLT0001 for a library folder that is none."""
+    for folder in libraries:
+        if not folder.is_dir():
+            raise TltlError([Diagnostic("TLT0001", f"the library folder `{folder}` is not there")])
+
+
+def _params(written: tuple[str, ...]) -> dict[str, str]:
+    params: dict[str, str] = {}
+    for text in written:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip() or not value.strip():
+            raise click.BadParameter(f"`{text}` is not of the form NAME=VALUE", param_hint="--param")
+        if name.strip() in params:
+            raise click.BadParameter(f"`{name.strip()}` is set twice", param_hint="--param")
+        params[name.strip()] = value.strip()
+    return params

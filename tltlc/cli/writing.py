@@ -1,0 +1,71 @@
+"""Writing files so that a failure leaves neither a part of one nor harm to an older one."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Mapping
+from pathlib import Path
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reason
+
+
+def write_files(folder: Path, files: Mapping[str, str | bytes]) -> tuple[Path, ...]:
+    """Write all of the files into the folder, made where it is missing, or none of them; their paths in order.
+
+    Every file is first written under a temporary name beside its place, and only when all of them are there are
+    they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _error(folder, error) from None
+    return _write({folder / name: content for name, content in files.items()})
+
+
+def write_file(path: Path, content: str | bytes) -> None:
+    """Write one file into a folder that exists, in the same way; a device or a pipe is written to directly."""
+    _write({path: content})
+
+
+def _write(files: Mapping[Path, str | bytes]) -> tuple[Path, ...]:
+    waiting: list[tuple[Path, Path]] = []
+    shown = Path()
+    try:
+        for shown, content in files.items():
+            data = content.encode() if isinstance(content, str) else content
+            place = Path(os.path.realpath(shown))
+            mode = _mode(place)
+            if mode is not None and not stat.S_ISREG(mode):
+                # A device or a pipe keeps its place; a folder refuses to be opened.
+                with place.open("wb") as file:
+                    file.write(data)
+                continue
+            temporary = place.with_name(f".tltlc-{os.getpid()}-{len(waiting)}.tmp")
+            waiting.append((temporary, place))
+            with temporary.open("wb") as file:
+                file.write(data)
+            if mode is not None:
+                temporary.chmod(stat.S_IMODE(mode))
+        while waiting:
+            temporary, shown = waiting[0]
+            temporary.replace(shown)
+            waiting.pop(0)
+    except OSError as error:
+        raise _error(shown, error) from None
+    finally:
+        for temporary, _ in waiting:
+            temporary.unlink(missing_ok=True)
+    return tuple(files)
+
+
+def _mode(path: Path) -> int | None:
+    try:
+        return path.stat().st_mode
+    except FileNotFoundError:
+        return None
+
+
+def _error(path: Path, error: OSError) -> TltlError:
+    return TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {reason(error)}")])

@@ -1,0 +1,53 @@
+"""Values of params that are given from outside: on the command line, or when an artefact is loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import inf
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.resolve import units
+from tltlc.resolve.constants import override
+from tltlc.resolve.spec import Param
+from tltlc.resolve.values import number_text
+
+
+def overridden(params: Mapping[str, Param], values: Mapping[str, str]) -> tuple[dict[str, Param], list[Diagnostic]]:
+    """The params with the values as written (``{"level_size": "25 m"}``), and what is wrong with those.
+
+    Diagnostics: TLT0308 for a name that is no param and for a text that is no value for it, TLT0307
+    for a value outside the param's range.
+    """
+    result = dict(params)
+    found = []
+    for name, text in values.items():
+        old = params.get(name)
+        changed = _unknown(name, params) if old is None else _override(old, text)
+        if isinstance(changed, Diagnostic):
+            found.append(changed)
+        else:
+            result[name] = changed
+    return result, found
+
+
+def _unknown(name: str, params: Mapping[str, Param]) -> Diagnostic:
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, list(params), n=1)
+    advice = f"did you mean `{close[0]}`?" if close else None
+    return Diagnostic("TLT0308", f"there is no param `{name}` to set", (), advice)
+
+
+def _override(old: Param, text: str) -> Param | Diagnostic:
+    found = override(text)
+    dimension = units.TYPES[old.type]
+    if found is None or found[1] not in (None, dimension):
+        unit = units.si_unit(dimension)
+        advice = f"write a number, e.g. `{old.name}={number_text(old.value)}{' ' + unit if unit else ''}`"
+        return Diagnostic("TLT0308", f"`{text}` is no value for the param `{old.name}`", (), advice)
+    low, high = -inf if old.low is None else old.low, inf if old.high is None else old.high
+    if not low <= found[0] <= high:
+        advice = f"its range is [{number_text(low)}, {number_text(high)}]"
+        return Diagnostic("TLT0307", f"`{text}` lies outside the range of the param `{old.name}`", (), advice)
+    return replace(old, value=found[0])
