@@ -32,19 +32,24 @@ HEAD = """\
     start [shape="point", style="filled", width="0.09", color="#475569", tooltip="start"];"""  # noqa: E501
 
 
+SKETCH = '    graph [overlap="prism", K="1.2", splines="line", outputorder="edgesfirst"];'
+
+
 def emit(fspa: Fspa, options: Options) -> Files:
     """``NAME.dot``."""
     return {f"{fspa.name}.dot": graph(fspa, options)}
 
 
 def graph(fspa: Fspa, options: Options, guards: bool = True) -> str:
-    """The DOT text; without ``guards``, edges carry none and states only their number: a sketch for tangled graphs.
+    """The DOT text; without ``guards``, edges carry none and states only their number: a sketch for tangled graphs,
+    fit for a layout by forces.
 
     Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting
     states are green with a double outline, traps red.
     """
     texts = Guards(fspa, options.notation)
     lines = [f"digraph {_quoted(fspa.name)} {{", HEAD, f"    label={_title(fspa)}; labelloc=t; labeljust=l;"]
+    lines += [] if guards else [SKETCH]
     lines += [_node(state, label(state.label, options.notation), guards) for state in fspa.states]
     lines.append("    start -> 0;")
     lines += [_edge(fspa, edge, texts.text(edge.guard.text), guards) for edge in fspa.edges]

@@ -17,15 +17,15 @@ CHILD = Path(__file__).with_name("child.py")
 MOST_EDGES_IN_FULL = 400
 """Beyond, guards would cover each other, and the layered layout would only use up its time."""
 
-SKETCH = "`tltlc compile -t dot` writes the whole graph for other tools"
+WHOLE_GRAPH = "`tltlc compile -t dot` writes the whole graph for other tools"
 
 
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
     """``NAME.FORMAT``, or the best that could be done in time.
 
-    Tried in this order, each within ``options.layout_limit_s``: everything in layers; state numbers
-    only, in layers; state numbers only, by forces.  If none is done in time, ``NAME.dot``.  What was
-    left out is reported (TLT0711).
+    Tried in this order, each within ``options.layout_limit_s``: everything in layers; only the
+    states' numbers, by forces.  If neither is done in time, ``NAME.dot``.  What was left out is
+    reported (TLT0711).
 
     Raises:
         TltlError: TLT0730 where pygraphviz is not installed, TLT0712 where the layout itself failed.
@@ -39,12 +39,11 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
         picture = _laid_out(full, picture_format, "dot", options.layout_limit_s)
         if picture is not None:
             return {name: picture}
-    for engine in ("dot", "sfdp"):
-        picture = _laid_out(sketch, picture_format, engine, options.layout_limit_s)
-        if picture is not None:
-            title = f"`{name}` shows {len(fspa.states)} states by number only, without guards: the graph is too tangled"
-            options.report(Diagnostic("TLT0711", title, help=SKETCH, severity="note"))
-            return {name: picture}
+    picture = _laid_out(sketch, picture_format, "sfdp", options.layout_limit_s)
+    if picture is not None:
+        title = f"`{name}` shows {len(fspa.states)} states by number only, without guards: the graph is too tangled"
+        options.report(Diagnostic("TLT0711", title, help=WHOLE_GRAPH, severity="note"))
+        return {name: picture}
     title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
     options.report(Diagnostic("TLT0711", title, severity="note"))
     return {f"{fspa.name}.dot": full}
@@ -57,6 +56,8 @@ def _laid_out(dot: str, picture_format: str, engine: str, limit_s: float) -> byt
         done = subprocess.run(command, input=dot.encode(), capture_output=True, timeout=limit_s, check=False)
     except subprocess.TimeoutExpired:
         return None
+    if done.returncode < 0:
+        return None  # the process was ended from outside, mostly since it used up the memory or the stack
     if done.returncode or not done.stdout:
         reason = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit status {done.returncode}"]
         raise TltlError([Diagnostic("TLT0712", f"the picture could not be drawn: {reason[-1]}")])
