@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from tltlc.expression import Condition, Const, Expression, Op, When
+from tltlc.expression import Const, Expression, Op
 from tltlc.grammar.tree import Binary
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve.problem import ResolutionError, problem
@@ -90,8 +90,8 @@ def _robustness(x: Quantity, op: str, c: float) -> Expression:
         holding, failing = below, above
     if failing in (0.0, holding):
         return _over(margin, holding)
-    condition = Condition(">" if op == ">" else "<", (x.expression, Const(c)))
-    return When(((condition, _over(margin, holding)),), _over(margin, failing))
+    # Of the two quotients, the one over the smaller divisor is the greater above 0 and the smaller below.
+    return Op("max" if holding < failing else "min", (_over(margin, holding), _over(margin, failing)))
 
 
 def _over(margin: Expression, divisor: float) -> Expression:

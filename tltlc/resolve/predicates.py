@@ -138,7 +138,8 @@ def _instantiate(
         raise ResolutionError(None)
     low, high = declared_range(declaration, scope, env)
     body = _body(declaration, scope, values, env, depth)
-    _note_instance(declaration, scope, values, (low, high), env, depth)
+    if not any(isinstance(value, Unknown) for value in values.values()):
+        _note_instance(declaration, scope, values, (low, high), env, depth)
     result = Quantity(body.expression, units.PLAIN, low, high, name, depth=body.depth)
     context.values[memo] = result
     return result

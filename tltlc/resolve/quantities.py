@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from typing import cast
 
@@ -131,7 +132,9 @@ def _named(expr: Name | Call, env: Env, depth: int) -> Quantity:
         if isinstance(local, Quantity) and isinstance(expr, Name):
             return local
         if isinstance(local, Unknown):
-            return Quantity(SignalNode(local.name), None, -inf, inf, local.name)
+            found = Signal(local.name, "number", None, None)
+            env.context.signals.setdefault(found.name, found)
+            return replace(of_signal(found), dimension=None)
         raise _not_a_number(expr, env)
     if env.constant:
         raise problem(

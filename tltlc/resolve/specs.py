@@ -69,7 +69,7 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
             dict.fromkeys(env.context.signals[node.name] for node in variables if isinstance(node, SignalNode))
         ),
         params=tuple(dict.fromkeys(env.context.params[node.name] for node in variables if isinstance(node, ParamNode))),
-        exclusive=tuple(tuple(names.index(name) for name in group) for group in exclusive),
+        exclusive=tuple(tuple(sorted(names.index(name) for name in group)) for group in exclusive),
         level=_word(metadata.get("level")),
         limit_steps=limit,
         judge=cast("Judge | None", _word(metadata.get("judge"))),
