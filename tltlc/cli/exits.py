@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable
+from contextlib import suppress
 from typing import Final
 
 import click
@@ -92,10 +93,9 @@ def _usage(error: click.ClickException) -> Diagnostic:
 
 def _discard_output() -> None:
     """Let Python's own flush at exit go nowhere: whoever read our output has gone."""
-    try:
+    # Where standard output is no file of the system, nothing is flushed to one.
+    with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (OSError, ValueError):
-        pass  # Standard output is no file of the system, so nothing is flushed to one.
 
 
 def _bug(error: Exception) -> int:
@@ -111,7 +111,7 @@ def _bug(error: Exception) -> int:
     where = f"{type(error).__name__} {os.path.basename(place.filename)}:{place.lineno}"  # noqa: PTH119
     print(
         f"error: a bug in tltlc stopped this command (reference {zlib.crc32(where.encode()):08x})\n"
-        f"  Please report it with this reference, the version ({__version__}) and the files that the command was given.\n"
+        f"  Please report it with this reference, the version ({__version__}) and the files that caused it.\n"
         "  TLTLC_DEBUG=1 in the environment shows where it happened.",
         file=sys.stderr,
     )

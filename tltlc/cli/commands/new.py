@@ -1,0 +1,100 @@
+"""``tltlc new``: a starter project."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import click
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+
+@click.command(
+    epilog="""\b
+Example:
+  tltlc new my_game
+  tltlc test my_game
+"""
+)
+@click.argument("folder", metavar="NAME", type=click.Path(path_type=Path))
+def command(folder: Path) -> int:
+    """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file."""
+    from tltlc.cli.report import Report
+    from tltlc.cli.writing import write_files
+
+    with Report() as report:
+        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+            title = f"`{folder}` is there already, and not empty"
+            raise TltlError([Diagnostic("TLT0722", title, help="choose another name, or remove it first")])
+        for path in write_files(folder, _FILES):
+            report.say(f"wrote {path}")
+        report.say(f"Next: tltlc test {folder}")
+    return report.status
+
+
+_SPEC: Final = """\
+// What a playtester should manage in the first level.
+import stealth
+
+entity key, door
+exclusive near(key), near(door)
+
+/// Fetch the key, then leave by the door, alive.
+spec leave_with_key {
+    limit 200 steps
+    reach near(key) then near(door)
+    keep alive
+}
+
+test "the door alone is not enough" for leave_with_key {
+    step alive, near(door)
+    expect pending
+}
+
+test "key, then door" for leave_with_key {
+    step 3x alive
+    step alive, near(key)
+    step alive, near(door)
+    expect holding
+}
+"""
+
+_TRACE: Final = """\
+step,distance(key),distance(door),health
+1,8.0,12.0,1.0
+2,5.5,9.5,1.0
+3,3.0,7.5,0.9
+4,0.5,6.0,0.9
+5,2.5,4.0,0.9
+6,4.5,2.0,0.8
+7,6.0,0.4,0.8
+"""
+
+_PROJECT: Final = """\
+# Every key is optional.
+targets = ["json", "dot", "python"]   # `tltlc list targets` shows them all
+libraries = []                        # folders of your own predicate libraries
+
+[style]
+notation = "unicode"                  # of formulas in pictures: unicode, ascii or english
+"""
+
+_README: Final = """\
+# A plan for a playtester
+
+`first_level.tltl` says what a player has to do in the first level; `first_level.csv` is a recorded trace.
+
+    tltlc check first_level.tltl                      is it right?
+    tltlc test first_level.tltl                       does it mean what we meant?
+    tltlc compile first_level.tltl -o build           the automaton and its monitor
+    tltlc render first_level.tltl -o first_level.svg  a picture of it
+    tltlc monitor first_level.tltl first_level.csv    does the trace fulfil it?
+"""
+
+_FILES: Final = {
+    "tltl.toml": _PROJECT,
+    "first_level.tltl": _SPEC,
+    "first_level.csv": _TRACE,
+    "README.md": _README,
+}
