@@ -164,12 +164,18 @@ def _collect_operands(node: Expression, before: Constraints, result: list[Case])
 
 
 def _collect_condition(condition: Condition, before: Constraints, result: list[Case]) -> None:
+    paths = [before]
     for arg in condition.args:
-        if isinstance(arg, Condition):
-            _collect_condition(arg, before, result)
-        elif not isinstance(arg, (Const, Signal, Param)):
-            _collect_operands(arg, before, result)
-            result.extend(_expand(arg, before, False))
+        for path in paths:
+            if isinstance(arg, Condition):
+                _collect_condition(arg, path, result)
+            elif not isinstance(arg, (Const, Signal, Param)):
+                _collect_operands(arg, path, result)
+                result.extend(_expand(arg, path, False))
+        if (
+            isinstance(arg, Condition) and condition.op != "not"
+        ):  # the next one is only looked at if this leaves it open
+            paths = [way for path in paths for way in _where(arg, condition.op == "and", path, False)]
 
 
 def _condition(arg: Expression | Condition) -> Condition:

@@ -7,7 +7,7 @@ remembered answers, sympy.  Only the last imports it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import inf
 from typing import Literal
@@ -15,7 +15,7 @@ from typing import Literal
 from tltlc.expression import Expression, Signal
 from tltlc.resolve import spec
 from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases, condition_operands, variables
-from tltlc.resolve.predicate_check.proof import proves_within
+from tltlc.resolve.predicate_check.proof import Task, proves_task
 from tltlc.resolve.predicate_check.region import Box, Region, Variable
 
 FindingKind = Literal["range_wrong", "range_unproved", "discontinuous", "continuity_unproved"]
@@ -69,13 +69,9 @@ class Predicate:
 def _check_range(predicate: Predicate) -> Finding | None:
     whole = Region(predicate.box, {})
     low, high = predicate.low, predicate.high
-    tasks = [(case, low, high) for case in cases(predicate.expression)]
-    tasks += [(operand, -inf, inf) for operand in condition_operands(predicate.expression)]
-    doubtful = []
-    for case, least, most in tasks:
-        region = whole.where(case.constraints)
-        if region is not None and not proves_within(case.value, region, least, most):
-            doubtful.append(case)
+    tasks = [Task(case.value, case.constraints, low, high) for case in cases(predicate.expression)]
+    tasks += [Task(o.value, o.constraints, -inf, inf) for o in condition_operands(predicate.expression)]
+    doubtful = [task for task in tasks if not proves_task(task, whole)]
     if not doubtful:
         return None
     from tltlc.resolve.predicate_check.witness import find_outside
@@ -85,6 +81,8 @@ def _check_range(predicate: Predicate) -> Finding | None:
         values = _by_name(witness.point)
         what = witness.reason if witness.value is None else f"is {_number(witness.value)}"
         return Finding("range_wrong", f"{_where(values)}the value {what}", values)
+    if _proves_exactly("range", predicate, doubtful, whole):
+        return None
     return Finding("range_unproved", f"could not prove that the value stays in [{_number(low)}, {_number(high)}]")
 
 
@@ -95,19 +93,33 @@ def _check_continuity(predicate: Predicate) -> Finding | None:
     from tltlc.resolve.predicate_check import continuity
 
     whole = Region(predicate.box, {})
-    doubtful = [
-        meeting
-        for meeting in continuity.meetings(all_cases, whole, predicate.bools)
-        if not continuity.proves_agreement(meeting)
-    ]
+    meetings = continuity.meetings(all_cases, whole, predicate.bools)
+    doubtful = [meeting for meeting in meetings if not continuity.proves_agreement(meeting)]
     if not doubtful:
         return None
-    jump = continuity.find_jump(all_cases, predicate.expression, predicate.box, predicate.bools)
+    from tltlc.resolve.predicate_check.jumps import find_jump
+
+    jump = find_jump(all_cases, predicate.expression, predicate.box, predicate.bools)
     if jump is not None:
         values = _by_name(jump.point)
         message = f"{_where(values)}the value jumps from {_number(jump.before)} to {_number(jump.after)}"
         return Finding("discontinuous", message, values)
+    if _proves_exactly("continuity", predicate, [continuity.agreement(meeting) for meeting in doubtful], whole):
+        return None
     return Finding("continuity_unproved", "could not prove that the value is continuous between its `when` cases")
+
+
+def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[Task], whole: Region) -> bool:
+    """True if sympy proves the tasks that are left of a question, or once did."""
+    from tltlc.resolve.predicate_check import memory
+
+    def compute() -> bool:
+        from tltlc.resolve.predicate_check.exact import proves_all
+
+        return proves_all(tasks, whole)
+
+    text = memory.question(kind, predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high)
+    return memory.answer(text, compute)
 
 
 def _box(

@@ -6,18 +6,40 @@ gives it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from math import isfinite
 
 import sympy
 
 from tltlc.expression import Const, Expression, Op
-from tltlc.resolve.predicate_check.cases import Constraint
+from tltlc.resolve.predicate_check.cases import Constraint, TooManyCasesError, cases
 from tltlc.resolve.predicate_check.elimination import LARGEST_DEGREE, GiveUpError, Prover, Term
 from tltlc.resolve.predicate_check.interval import Interval, UndefinedError
 from tltlc.resolve.predicate_check.normal_form import exact
-from tltlc.resolve.predicate_check.proof import proves_defined
+from tltlc.resolve.predicate_check.proof import Task, proves_defined, proves_within
 from tltlc.resolve.predicate_check.region import Region, bound
+
+
+def proves_all(tasks: Iterable[Task], whole: Region) -> bool:
+    """True if each task is proved: the value is defined and in the bounds where the constraints hold."""
+    try:
+        for task in tasks:
+            parts = cases(task.value, split_extremes=True)
+            around = whole.where(task.constraints)
+            if around is None:
+                continue
+            if len(parts) > 1 and not proves_defined(task.value, around):
+                return False  # comparing undefined values would hide that they are
+            for case in parts:
+                constraints = (*task.constraints, *case.constraints)
+                region = whole.where(constraints)
+                if region is None or proves_within(case.value, region, task.low, task.high):
+                    continue
+                if not proves_within_exactly(case.value, constraints, region, task.low, task.high):
+                    return False
+    except TooManyCasesError:
+        return False
+    return True
 
 
 def proves_within_exactly(

@@ -8,15 +8,32 @@ smaller parts of the region.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 
 from tltlc.expression import Expression, Op
+from tltlc.resolve.predicate_check.cases import Constraints
 from tltlc.resolve.predicate_check.interval import EVERYTHING, Interval, UndefinedError, meet
 from tltlc.resolve.predicate_check.region import Region, bound
 
 TOLERANCE = 1e-9  # what rounding may add to a value that lies on a bound
 MOST_PARTS = 300
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """To prove: the value is defined and in ``[low, high]`` where all constraints hold."""
+
+    value: Expression
+    constraints: Constraints
+    low: float
+    high: float
+
+
+def proves_task(task: Task, whole: Region) -> bool:
+    """True if proved for all points of a region."""
+    region = whole.where(task.constraints)
+    return region is None or proves_within(task.value, region, task.low, task.high)
 
 
 def proves_within(value: Expression, region: Region, low: float, high: float, parts: int = MOST_PARTS) -> bool:

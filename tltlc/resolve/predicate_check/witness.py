@@ -81,9 +81,7 @@ def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iter
             if box[one][0] <= point[other] <= box[one][1] and one not in bools:
                 yield {**point, one: point[other]}
     for number in range(1, _SCATTERED + 1 if names else 1):
-        yield {
-            name: _at(box[name], _fraction(number, position), name in bools) for position, name in enumerate(names)
-        }
+        yield {name: _at(box[name], _fraction(number, position), name in bools) for position, name in enumerate(names)}
 
 
 def _grid(axes: list[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:

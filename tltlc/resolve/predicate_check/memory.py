@@ -1,0 +1,128 @@
+"""Remembers the answers that needed sympy, so that each question costs its import at most once.
+
+Two files: the answers for the standard library, which ship with the package and are only read, and the
+user's own in ``$TLTLC_CACHE_DIR`` (set but empty: none) or the system's place for caches.  A file that
+cannot be read or written is as good as none.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from tltlc.expression import Condition, Const, Expression, Op, When
+from tltlc.resolve.predicate_check.cases import variables
+from tltlc.resolve.predicate_check.region import Box, Variable
+
+CHECKER_VERSION = 1  # raise it whenever an answer may change
+SHIPPED = Path(__file__).parent.parent / "proved.json"
+
+_FILE_NAME = "predicates.json"
+_MOST_ANSWERS = 2000
+_anew: dict[str, bool] | None = None
+
+
+def answer(question: str, compute: Callable[[], bool]) -> bool:
+    """The remembered answer to a question, or the computed one, which is remembered from then on."""
+    from hashlib import sha256
+
+    key = sha256(question.encode()).hexdigest()
+    if _anew is not None:
+        _anew[key] = compute()
+        return _anew[key]
+    shipped = read(SHIPPED)
+    if key in shipped:
+        return shipped[key]
+    folder = cache_folder()
+    own = read(folder / _FILE_NAME) if folder else {}
+    if key in own:
+        return own[key]
+    result = compute()
+    if folder:
+        kept = list(own.items())[1 - _MOST_ANSWERS :]
+        _write(folder / _FILE_NAME, dict([*kept, (key, result)]))
+    return result
+
+
+@contextmanager
+def computed_anew() -> Iterator[Mapping[str, bool]]:
+    """While this lasts, files are left alone and every answer is computed; gives the answers by question."""
+    global _anew
+    _anew = {}
+    try:
+        yield _anew
+    finally:
+        _anew = None
+
+
+def question(kind: str, expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float) -> str:
+    """A text that two predicates share only if they are the same but for the names of signals and params."""
+    names = {variable: f"{type(variable).__name__[0].lower()}{n}" for n, variable in enumerate(variables(expression))}
+    ranges = [
+        f"{name}{'?' if variable in bools else ''}:{box[variable][0]!r},{box[variable][1]!r}"
+        for variable, name in names.items()
+    ]
+    parts = (str(CHECKER_VERSION), kind, repr(low), repr(high), " ".join(ranges), _text(expression, names))
+    return "|".join(parts)
+
+
+def cache_folder() -> Path | None:
+    """Where the user's answers are kept, or None if nowhere."""
+    chosen = os.environ.get("TLTLC_CACHE_DIR")
+    if chosen is not None:
+        return Path(chosen) if chosen else None
+    try:
+        if sys.platform == "win32":
+            return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "tltlc" / "Cache"
+        if sys.platform == "darwin":
+            return Path.home() / "Library" / "Caches" / "tltlc"
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "tltlc"
+    except RuntimeError:  # no home folder
+        return None
+
+
+def read(path: Path) -> dict[str, bool]:
+    """The answers in a file; none where it is missing, damaged or of another version."""
+    try:
+        content = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    if not isinstance(content, dict) or content.get("version") != CHECKER_VERSION:
+        return {}
+    answers = content.get("answers")
+    if not isinstance(answers, dict):
+        return {}
+    return {key: value for key, value in answers.items() if isinstance(value, bool)}
+
+
+def file_text(answers: Mapping[str, bool]) -> str:
+    """The text of a file of answers."""
+    return json.dumps({"version": CHECKER_VERSION, "answers": answers}, indent=1) + "\n"
+
+
+def _write(path: Path, answers: Mapping[str, bool]) -> None:
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            temporary.write_text(file_text(answers), "utf-8")
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError:
+        pass  # the answer is only slower the next time
+
+
+def _text(node: Expression | Condition, names: Mapping[Variable, str]) -> str:
+    if isinstance(node, Const):
+        return repr(float(node.value))
+    if isinstance(node, (Op, Condition)):
+        return f"({node.op} {' '.join(_text(arg, names) for arg in node.args)})"
+    if isinstance(node, When):
+        cases = [f"[{_text(condition, names)} {_text(value, names)}]" for condition, value in node.cases]
+        return f"(when {' '.join(cases)} {_text(node.otherwise, names)})"
+    return names[node]
