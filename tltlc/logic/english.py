@@ -21,7 +21,7 @@ _PHRASE: Final = Notation(
 _PLAIN, _LIST, _SCOPED = 0, 1, 2
 """How far a clause may be misread beside another: not at all; it has inner commas; it must stand apart."""
 
-_DEEPEST: Final = 4
+_DEEPEST: Final = 5
 """Clauses nested deeper than this are given as formulas: no sentence of that depth helps a reader."""
 
 _Clause = tuple[str, int]
@@ -48,7 +48,7 @@ def _clause(node: Formula, when: str, depth: int) -> _Clause:
         return f"{_keep(node, 'have', 'avoid')} {when}", _PLAIN
     if depth == 0:
         return f"satisfy {write(node, ASCII)}", _SCOPED
-    bounded = _bounded(node)
+    bounded = _bounded(node, depth)
     if bounded is not None:
         return bounded
     match node.op:
@@ -57,13 +57,13 @@ def _clause(node: Formula, when: str, depth: int) -> _Clause:
         case "and":
             return _together([_clause(part, when, depth - (len(node.args) > 1)) for part in _parts(node)])
         case "or":
-            return "either " + " or ".join(_inner(part, when, depth) for part in _parts(node)), _SCOPED
+            return "either " + " or ".join(_inner(part, depth, when) for part in _parts(node)), _SCOPED
         case "implies" if _is_state(node.args[0]):
-            return f"if {_phrase(node.args[0])} {when}, {_inner(node.args[1], when, depth)}", _SCOPED
+            return f"if {_phrase(node.args[0])} {when}, {_inner(node.args[1], depth, when)}", _SCOPED
         case "implies":
             return _clause(build.or_(build.not_(node.args[0]), node.args[1]), when, depth)
         case "iff":
-            left, right = (_inner(part, when, depth) for part in node.args)
+            left, right = (_inner(part, depth, when) for part in node.args)
             return f"do both or neither of these: {left}, {right}", _SCOPED
         case "X" | "N":
             return _next(node, depth)
@@ -75,16 +75,16 @@ def _clause(node: Formula, when: str, depth: int) -> _Clause:
             return _until(node, depth)
 
 
-def _parts(conjunction: Formula) -> list[Formula]:
+def _parts(node: Formula) -> list[Formula]:
     """The operands, with those without temporal operators gathered where the first of them stands."""
-    make = build.and_ if conjunction.op == "and" else build.or_
+    make = build.and_ if node.op == "and" else build.or_
+    together = [part for part in node.args if _is_state(part)]
     parts: list[Formula] = []
-    states = [part for part in conjunction.args if _is_state(part)]
-    for part in conjunction.args:
+    for part in node.args:
         if not _is_state(part):
             parts.append(part)
-        elif part is states[0]:
-            parts.append(make(*states))
+        elif part is together[0]:
+            parts.append(make(*together))
     return list(dict.fromkeys(parts))
 
 
@@ -99,20 +99,21 @@ def _together(clauses: Sequence[_Clause]) -> _Clause:
 
 def _reach(node: Formula, when: str, depth: int) -> _Clause:
     """``F``: a goal, or a sequence of goals."""
+    (body,) = node.args
+    if _is_state(body) and when != "now":
+        return f"reach {_bracketed(body)} then or later", _PLAIN
+    return f"reach {_goals(body, depth)}", _PLAIN if _is_literal(body) else _LIST
+
+
+def _goals(body: Formula, depth: int) -> str:
+    """What ``F body`` reaches, one goal after the other."""
     steps: list[str] = []
     while True:
-        body = node.args[0]
         link, rest = _next_goal(body)
         if rest is None:
-            steps.append(_goal(body, depth))
-            break
+            return "".join(steps) + _goal(body, depth)
         steps.append(_phrase(build.and_(*(part for part in body.args if _is_state(part)))) + link)
-        node = rest
-    plain = len(steps) == 1 and _is_literal(node.args[0])
-    later = " then or later" if len(steps) == 1 and when != "now" and _is_state(node.args[0]) else ""
-    if later and not plain:
-        steps = [_bracketed(node.args[0])]
-    return "reach " + "".join(steps) + later, _PLAIN if plain or later else _LIST
+        (body,) = rest.args
 
 
 def _next_goal(body: Formula) -> tuple[str, Formula | None]:
@@ -120,7 +121,7 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
     if body.op != "and":
         return "", None
     temporal = [part for part in body.args if not _is_state(part)]
-    if len(temporal) != 1:
+    if len(temporal) != 1 or len(body.args) == 1:
         return "", None
     (rest,) = temporal
     if rest.op == "X" and rest.args[0].op == "F":
@@ -129,25 +130,38 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
 
 
 def _goal(body: Formula, depth: int) -> str:
-    """The last goal of a sequence, with what it asks for from there on."""
+    """The last goal of a sequence: a choice, or what holds there with what it asks for from there on."""
     if _is_state(body):
         return _phrase(body)
+    if depth > 1 and body.op == "or":
+        ways = (_phrase(part) if _is_literal(part) else f"({_goals(part, depth - 1)})" for part in _parts(body))
+        return "either " + " or ".join(ways)
     if body.op == "and":
         states = [part for part in body.args if _is_state(part)]
         others = [part for part in body.args if not _is_state(part)]
         if states:
-            return f"{_bracketed(build.and_(*states))} and from that step on {_inner(build.and_(*others), '', depth)}"
+            return f"{_bracketed(build.and_(*states))} and from that step on {_inner(build.and_(*others), depth)}"
     return f"a {_step(body, depth)}"
 
 
 def _throughout(body: Formula, depth: int) -> _Clause:
     """``G``: what to keep, what to avoid, what to do whenever something holds."""
+    if body.op == "and" and not all(part.op == "atom" for part in body.args):
+        return _together([_throughout(part, depth) for part in _kept(body)])
     if _is_state(body):
         return _keep(body, "keep", "avoid") + " throughout", _PLAIN
     left, right = _implication(body)
     if left is not None and right is not None:
-        return f"whenever {_phrase(left)}, {_inner(right, 'at that step', depth)}", _SCOPED
-    return f"at every step, {_inner(body, 'at that step', depth)}", _SCOPED
+        return f"whenever {_phrase(left)}, {_inner(right, depth)}", _SCOPED
+    return f"at every step, {_inner(body, depth)}", _SCOPED
+
+
+def _kept(body: Formula) -> list[Formula]:
+    """The operands of an ``and`` that is to hold throughout, its atoms gathered where the first of them stands."""
+    atoms = [part for part in body.args if part.op == "atom"]
+    together = build.and_(*atoms)
+    parts = [together if part.op == "atom" else part for part in body.args]
+    return list(dict.fromkeys(parts))
 
 
 def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
@@ -170,10 +184,10 @@ def _until(node: Formula, depth: int) -> _Clause:
         until = "until then" if node.op == "U" else "up to and including that step"
         if _is_state(held):
             return f"{target}, {_keep(held, 'keeping', 'avoiding')} {until}", _SCOPED
-        return f"{target}, and at every step {until} {_inner(held, 'at that step', depth)}", _SCOPED
+        return f"{target}, and at every step {until} {_inner(held, depth)}", _SCOPED
     stop, held = (right, left) if node.op == "W" else (left, right)
     until = "until the first" if node.op == "W" else "up to and including the first"
-    keep = _keep(held, "keep", "avoid") if _is_state(held) else f"at every step, {_inner(held, 'at that step', depth)},"
+    keep = _keep(held, "keep", "avoid") if _is_state(held) else f"at every step, {_inner(held, depth)},"
     return f"{keep} {until} {_step(stop, depth)}, or throughout if there is none", _SCOPED
 
 
@@ -182,47 +196,47 @@ def _next(node: Formula, depth: int) -> _Clause:
     op, count, body = node.op, 0, node
     while body.op == op:
         body, count = body.args[0], count + 1
-    moment = "at the next step" if count == 1 else f"{count} steps later"
     if op == "X" and body is TRUE:
         return f"go on for {count} more step{'s' * (count > 1)}", _PLAIN
     if op == "N" and body is FALSE and count == 1:
         return "be at the last step", _PLAIN
+    moment = "at the next step" if count == 1 else f"after {count} steps"
     if op == "N":
-        last = "if there is one" if count == 1 else "if there are that many"
-        if _is_state(body):
-            return f"{_keep(body, 'have', 'avoid')} {moment}, {last}", _LIST
-        return f"{moment}, {last}, {_inner(body, 'at that step', depth)}", _SCOPED
+        moment += ", if there is one" if count == 1 else ", if there are that many"
     if _is_state(body):
-        return f"{_keep(body, 'have', 'avoid')} {moment}", _PLAIN
-    return f"{moment}, {_inner(body, 'at that step', depth)}", _SCOPED
+        return f"{_keep(body, 'have', 'avoid')} {moment}", _PLAIN if op == "X" else _LIST
+    return f"{moment}, {_inner(body, depth)}", _SCOPED
 
 
-def _bounded(node: Formula) -> _Clause | None:
+def _bounded(node: Formula, depth: int) -> _Clause | None:
     """The expansions ``p | X(p | X p)`` and ``p & N(p & N p)`` of bounded operators."""
     if node.op not in ("and", "or"):
         return None
     step, steps, rest = "X" if node.op == "or" else "N", 0, node
     make = build.or_ if node.op == "or" else build.and_
     body = make(*node.args[:-1])
-    if not _is_state(body):
-        return None
     while rest.op == node.op and rest.args[-1].op == step and make(*rest.args[:-1]) is body:
         rest, steps = rest.args[-1].args[0], steps + 1
     if not steps or rest is not body:
         return None
     if node.op == "or":
-        return f"reach {_bracketed(body)} within {steps} step{'s' * (steps > 1)}", _PLAIN
-    return _keep(body, "keep", "avoid") + f" for {steps + 1} steps", _PLAIN
+        within = f"within {steps} step{'s' * (steps > 1)}"
+        if _is_state(body):
+            return f"reach {_bracketed(body)} {within}", _PLAIN
+        return f"reach {within} a {_step(body, depth)}", _SCOPED
+    if _is_state(body):
+        return f"{_keep(body, 'keep', 'avoid')} for {steps + 1} steps", _PLAIN
+    return f"at each of {steps + 1} steps from here on, {_inner(body, depth)}", _SCOPED
 
 
 def _step(node: Formula, depth: int) -> str:
     """A noun for a moment at which ``node`` holds."""
-    return f"step with {_bracketed(node)}" if _is_state(node) else f"step from which on to {_inner(node, '', depth)}"
+    return f"step with {_bracketed(node)}" if _is_state(node) else f"step from which on to {_inner(node, depth)}"
 
 
-def _inner(node: Formula, when: str, depth: int) -> str:
+def _inner(node: Formula, depth: int, when: str = "at that step") -> str:
     """The clause as part of another, in brackets unless it is plain."""
-    text, rank = _clause(node, when or "at that step", depth - 1)
+    text, rank = _clause(node, when, depth - 1)
     return text if rank == _PLAIN else f"({text})"
 
 

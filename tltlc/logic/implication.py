@@ -8,6 +8,7 @@ from typing import Final
 
 from tltlc.logic import formula as build
 from tltlc.logic.formula import FALSE, TRUE, Formula, Op
+from tltlc.logic.signature import signature
 
 DUAL: Final[dict[Op, Op]] = {"X": "N", "N": "X", "F": "G", "G": "F", "U": "R", "R": "U", "W": "M", "M": "W"}
 """Negation turns the one into the other and goes to the operands: ``!X a`` is ``N !a``."""
@@ -87,6 +88,8 @@ def _any(values: list[bool | None]) -> bool | None:
 def _implies(p: Formula, q: Formula, known: dict[tuple[Formula, Formula], bool], depth: int) -> bool:
     if p is q or p is FALSE or q is TRUE:
         return True
+    if signature(p) & ~signature(q):
+        return False
     found = known.get((p, q))
     if found is None:
         if depth > _DEEPEST or len(known) > _MOST_PAIRS:

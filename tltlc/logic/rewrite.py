@@ -124,14 +124,16 @@ REWRITES: Final = (
         "until",
         ("U", "W"),
         "a U true = true; a U false = false; false U a = a; true U a = F a; !a U a = F a; a U (a U b) = a U b; "
-        "a U F b = F b; a W true = true; a W false = G a; false W a = a; true W a = true; !a W a = true; (a W b) W b = a W b",
+        "a U F b = F b; a W true = true; "
+        "a W false = G a; false W a = a; true W a = true; !a W a = true; (a W b) W b = a W b",
         temporal_rules.untils,
     ),
     Rewrite(
         "release",
         ("R", "M"),
         "a R true = true; a R false = false; true R a = a; false R a = G a; !a R a = G a; a R (a R b) = a R b; "
-        "a R G b = G b; a M true = F a; a M false = false; true M a = a; false M a = false; !a M a = false; (a M b) M b = a M b",
+        "a R G b = G b; a M true = F a; "
+        "a M false = false; true M a = a; false M a = false; !a M a = false; (a M b) M b = a M b",
         temporal_rules.releases,
     ),
 )

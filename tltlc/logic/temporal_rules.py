@@ -93,7 +93,7 @@ def releases(node: Formula) -> Formula:
 
 
 def merged(node: Formula) -> Formula:
-    """Gather operands that begin with the same temporal operator; ``X a & N b`` counts as ``X``, ``X a | N b`` as ``N``."""
+    """Gather operands that begin with the same temporal operator; ``X a & N b`` is an ``X``, ``X a | N b`` an ``N``."""
     distributes: Op
     decides: Op
     distributes, decides = ("G", "X") if node.op == "and" else ("F", "N")

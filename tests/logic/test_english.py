@@ -1,0 +1,113 @@
+"""The English sentence: known ones, and what holds of all of them."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import pytest
+from hypothesis import given
+
+from tests.logic.small_formulas import formulas_of_size, formulas_up_to
+from tests.logic.strategies import formulas
+from tests.logic.truth_table import TruthTable
+from tests.reference_formulas import corpus, read_formula
+from tltlc.logic import formula as f
+from tltlc.logic.formula import Formula
+from tltlc.logic.printer import english_text
+
+EXAMPLES = {
+    "true": "Nothing remains to be done.",
+    "false": "The spec is violated.",
+    "a": "Have a now.",
+    "!a": "Avoid a now.",
+    "F(near(s1) & X F(near(s2) & X F near(exit))) & G alive": (
+        "Reach near(s1), then near(s2), then near(exit), and keep alive throughout."
+    ),
+    "F near(exit) & G alive & G !seen": "Reach near(exit), keep alive throughout, and avoid seen throughout.",
+    "G(alive & !seen)": "Keep alive throughout, and avoid seen throughout.",
+    "G(a & b)": "Keep (a and b) throughout.",
+    "F(s3 & X F(o & e | p & f)) & G alive": "Reach s3, then (o and e) or (p and f), and keep alive throughout.",
+    "F(c1 & X F e1 | c2 & X F e2) & G p": "Reach either (c1, then e1) or (c2, then e2), and keep p throughout.",
+    "F(a & F b)": "Reach a, then or at the same time b.",
+    "F(a & X F(b & G c))": "Reach a, then b and from that step on keep c throughout.",
+    "F a & F b & F c": "Reach a, reach b, and reach c.",
+    "G(a -> F b)": "Whenever a, reach b then or later.",
+    "G(!a | F b)": "Whenever a, reach b then or later.",
+    "G(a -> X b) & b": "Whenever a, have b at the next step; and have b now.",
+    "!F a": "Avoid a throughout.",
+    "G F a": "At every step, reach a then or later.",
+    "F G a": "Reach a step from which on to keep a throughout.",
+    "!b U a": "Reach a, avoiding b until then.",
+    "!b W a": "Avoid b until the first step with a, or throughout if there is none.",
+    "a R b": "Keep b up to and including the first step with a, or throughout if there is none.",
+    "a M b": "Reach a, keeping b up to and including that step.",
+    "a | X(a | X a)": "Reach a within 2 steps.",
+    "a & N(a & N a)": "Keep a for 3 steps.",
+    "a & X b | X(a & X b)": (
+        "Reach within 1 step a step from which on to (have a at that step, and have b at the next step)."
+    ),
+    "X X X a": "Have a after 3 steps.",
+    "N a": "Have a at the next step, if there is one.",
+    "X X G a": "After 2 steps, keep a throughout.",
+    "X true": "Go on for 1 more step.",
+    "N false": "Be at the last step.",
+    "a -> F b": "If a now, reach b.",
+    "F a -> F b": "Either avoid a throughout or reach b.",
+    "F a <-> G b": "Do both or neither of these: reach a, keep b throughout.",
+}
+
+
+@pytest.mark.parametrize(("formula", "sentence"), EXAMPLES.items())
+def test_known_sentences(formula: str, sentence: str) -> None:
+    assert english_text(read_formula(formula)) == sentence
+
+
+@given(formulas(max_leaves=20))
+def test_every_formula_has_a_sentence_that_names_its_atoms(formula: Formula) -> None:
+    assert_sentence(english_text(formula))
+
+
+def test_the_corpus_has_sentences() -> None:
+    for entry in corpus():
+        text = english_text(entry.formula)
+        assert_sentence(text)
+        assert all(name in text for name in entry.formula.atoms())
+
+
+def assert_sentence(text: str) -> None:
+    assert text[0].isupper()
+    assert text.endswith(".")
+    assert text.count("\n") == 0
+    assert "  " not in text
+    assert text.count("(") == text.count(")")
+
+
+def test_a_sentence_says_one_thing_only() -> None:
+    """Small formulas with one sentence are equal on all traces."""
+    table = TruthTable("ab", 4)
+    meanings: dict[str, dict[tuple[int, ...], Formula]] = defaultdict(dict)
+    for formula in (*formulas_up_to(5), *formulas_of_size(6)[::29]):
+        meanings[english_text(formula)].setdefault(table.of(formula), formula)
+    ambiguous = {text: [str(x) for x in found.values()] for text, found in meanings.items() if len(found) > 1}
+    assert not ambiguous
+
+
+@pytest.mark.parametrize(
+    "nest",
+    [
+        f.not_,
+        f.next_,
+        f.eventually,
+        lambda inner: f.then(f.atom("p"), inner),
+        lambda inner: f.until(inner, f.atom("p")),
+        lambda inner: f.implies(f.atom("p"), f.next_(inner)),
+        lambda inner: f.and_(f.atom("q"), f.or_(f.atom("p"), inner)),
+    ],
+    ids=["not", "X", "F", "then", "U", "->", "and or"],
+)
+def test_depth_is_no_problem(nest: object) -> None:
+    assert callable(nest)
+    formula = f.always(f.atom("a"))
+    for _ in range(10_000):
+        formula = nest(formula)
+    assert_sentence(english_text(formula))
