@@ -53,7 +53,12 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
 
 def reading_error(name: str, error: OSError | ValueError) -> TltlError:
     """TLT0001 for a file that the system does not give us."""
-    return TltlError([Diagnostic("TLT0001", f"cannot read `{name}`: {reason(error)}")])
+    way_out = None
+    if isinstance(error, FileNotFoundError):
+        way_out = _neighbour(name)
+    elif isinstance(error, IsADirectoryError):
+        way_out = "name a file in it"
+    return TltlError([Diagnostic("TLT0001", f"cannot read `{name}`: {reason(error)}", help=way_out)])
 
 
 def reason(error: OSError | ValueError) -> str:
@@ -67,6 +72,18 @@ def reason(error: OSError | ValueError) -> str:
     if isinstance(error, OSError) and error.strerror:
         return error.strerror[0].lower() + error.strerror[1:]
     return "its name is not one that the system allows"
+
+
+def _neighbour(name: str) -> str | None:
+    """A file of the same folder with a name much like that one's."""
+    from difflib import get_close_matches
+
+    folder, file = os.path.split(name)  # noqa: PTH206
+    try:
+        close = get_close_matches(file, os.listdir(folder or "."), n=1)  # noqa: PTH208
+    except OSError:
+        return f"there is no folder `{folder}` either"
+    return f"did you mean `{os.path.join(folder, close[0])}`?" if close else None  # noqa: PTH118
 
 
 def _not_utf8(data: bytes, name: str, start: int) -> TltlError:

@@ -188,8 +188,10 @@ def _verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
     verdict = fspa.states[0].verdict
     if verdict == "violated":
         title, code = f"no trace satisfies `{spec.name}`", "TLT0410"
+        way_out = "parts of it contradict each other: weaken one of them"
     elif verdict == "satisfied":
         title, code = f"every trace satisfies `{spec.name}`", "TLT0411"
+        way_out = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
     else:
         return ()
-    return (Diagnostic(code, title, label, severity="warning"),)
+    return (Diagnostic(code, title, label, way_out, severity="warning"),)

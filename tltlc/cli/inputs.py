@@ -46,7 +46,7 @@ class Input:
             if names
             else (f"`{self.name}` holds no spec")
         )
-        way_out = f"name one of them, e.g. `{self.name}:{names[0]}`" if names else None
+        way_out = f"name one of them, e.g. `{self.name}:{names[0]}`" if names else "declare one: `spec NAME { … }`"
         raise TltlError([Diagnostic("TLT0721", title, help=way_out)])
 
 

@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 class CommandLine(click.Group):
     """The group of all commands."""
 
-    def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:  # type: ignore[override]
+    def main(self, args: Sequence[str] | None = None, *_: Any, **extra: Any) -> NoReturn:
         """Run and exit; messages go to standard error, and never is there a traceback."""
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):
@@ -122,7 +122,7 @@ def _plugins() -> Any:
 
 
 def _may_have_plugins(folder: str) -> bool:
-    """Whether a distribution installed in the folder names our group: importing importlib.metadata to ask costs 16 ms."""
+    """Whether a distribution in the folder names our group: asking importlib.metadata costs 16 ms."""
     try:
         names = os.listdir(folder or ".")  # noqa: PTH208 (no pathlib while only help is asked for)
     except OSError:

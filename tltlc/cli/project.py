@@ -81,11 +81,11 @@ def _parse(source: SourceFile) -> dict[str, Any]:
     else:
         import tomli as tomllib
     try:
-        # The TOML of other systems ends its lines with CR LF, which the reader insists on seeing as one.
-        return tomllib.loads(source.text.replace("\r\n", "\n"))
+        table: dict[str, Any] = tomllib.loads(source.text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         message = str(error) or "it is nested too deeply"
         raise TltlError([_syntax_error(source, message)]) from None
+    return table
 
 
 def _syntax_error(source: SourceFile, message: str) -> Diagnostic:

@@ -17,7 +17,7 @@ Examples:
 )
 @click.argument("specs", metavar="SPEC...", nargs=-1, required=True)
 @source_options
-def command(specs: tuple[str, ...], settings: Settings, format: str) -> int:
+def command(specs: tuple[str, ...], settings: Settings, format: str) -> int:  # noqa: A002
     """Report every error and warning of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
     The exit status is 1 where there is an error, and 0 where there are warnings at most.
@@ -30,7 +30,7 @@ def command(specs: tuple[str, ...], settings: Settings, format: str) -> int:
         for spec in specs:
             try:
                 opened = open_input(spec, settings)
-            except TltlError as error:  # noqa: PERF203 (the next file is checked all the same)
+            except TltlError as error:
                 report.add(error.diagnostics)
                 continue
             report.add(opened.diagnostics)

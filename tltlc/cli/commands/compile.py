@@ -33,7 +33,12 @@ Examples:
 @click.option("--spec", "names", metavar="NAME", multiple=True, help="Only this spec of the file (repeatable).")
 @source_options
 def command(
-    spec: str, folder: Path, target_lists: tuple[str, ...], names: tuple[str, ...], settings: Settings, format: str
+    spec: str,
+    folder: Path,
+    target_lists: tuple[str, ...],
+    names: tuple[str, ...],
+    settings: Settings,
+    format: str,  # noqa: A002
 ) -> int:
     """Compile the specs of SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 

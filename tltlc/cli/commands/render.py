@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from tltlc.cli.settings import Settings, source_options
+
+if TYPE_CHECKING:
+    from tltlc.backends import Notation
 
 _TARGET_OF_ENDING = {
     ".svg": "svg",
@@ -50,7 +54,12 @@ Examples:
 )
 @source_options
 def command(
-    spec: str, path: Path | None, target: str | None, notation: str | None, settings: Settings, format: str
+    spec: str,
+    path: Path | None,
+    target: str | None,
+    notation: Notation | None,
+    settings: Settings,
+    format: str,  # noqa: A002
 ) -> int:
     """Draw the automaton of a spec: states with what remains to be done, guards, distances, goal and trap.
 
@@ -68,7 +77,7 @@ def command(
         opened = open_input(spec, settings)
         report.add(opened.diagnostics)
         options = backends.Options(
-            notation=notation or opened.project.notation,  # type: ignore[arg-type]
+            notation=notation or opened.project.notation,
             report=lambda diagnostic: report.add((diagnostic,)),
         )
         for content in backends.emit(kind, opened.one(), options).values():
@@ -76,7 +85,7 @@ def command(
                 write_file(path, content)
                 report.say(f"wrote {path}")
             else:
-                click.get_binary_stream("stdout").write(content.encode() if isinstance(content, str) else content)
+                sys.stdout.buffer.write(content.encode() if isinstance(content, str) else content)
     return report.status
 
 
