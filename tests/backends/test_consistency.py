@@ -1,0 +1,180 @@
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.backends.strategies import automata
+from tests.fixtures import cover_and_hide
+from tltlc.automaton.fspa import Edge, Fspa, Guard
+from tltlc.backends.artefact import guards
+from tltlc.backends.artefact.consistency import problems
+from tltlc.expression import Param, Signal
+
+SAFE = Guard("alive", (((3, True),),))
+
+
+def messages(fspa: Fspa) -> list[str]:
+    return [problem.message for problem in problems(fspa)]
+
+
+def changed(table: str, index: int, **values: Any) -> Fspa:
+    """The Cover and Hide automaton with other values in one row of one of its tables."""
+    fspa = cover_and_hide()
+    rows = list(getattr(fspa, table))
+    rows[index] = dataclasses.replace(rows[index], **values)
+    return dataclasses.replace(fspa, **{table: tuple(rows)})  # type: ignore[arg-type]
+
+
+@settings(max_examples=100, deadline=None)
+@given(automata())
+def test_what_the_compiler_makes_is_consistent(fspa: Fspa) -> None:
+    assert messages(fspa) == []
+
+
+@pytest.mark.parametrize(
+    ("fspa", "expected"),
+    [
+        (changed("signals", 1, name="health"), "two signals are named `health`"),
+        (changed("atoms", 1, name="alive"), "two atoms are named `alive`"),
+        (changed("atoms", 3, expression=Signal("mana")), "there is no signal `mana`"),
+        (changed("atoms", 3, expression=Param("mana")), "there is no param `mana`"),
+        (changed("signals", 3, low=2.0), "the range of `health` is empty"),
+        (changed("params", 0, value=1.0), "the value of `level_size` lies outside its range"),
+        (changed("states", 1, id=0), "state 1 has the id 0"),
+        (dataclasses.replace(cover_and_hide(), exclusive=((0, 4),)), "there are only 4 atoms"),
+        (changed("edges", 3, target=9), "there is no state 9"),
+        (changed("edges", 0, source=9), "there is no state 9"),
+        (changed("edges", 1, target=0), "two edges lead from state 0 to state 0"),
+        (changed("edges", 0, target=4), "the edges are not sorted by source and target"),
+        (changed("edges", 2, guard=Guard("x", (((7, True),),))), "there are only 4 atoms"),
+        (changed("states", 1, distance=1), "the distance of state 1 is 2"),
+        (changed("states", 2, distance=7), "the distance of state 2 is null: it is a trap"),
+        (changed("states", 4, verdict="satisfied"), "the verdict of state 4 is `holding`"),
+        (dataclasses.replace(cover_and_hide(), spec_size=4), "spec_size is 3"),
+        (
+            changed("edges", 11, guard=Guard("true", ((),))),
+            "the guards from state 4 to states 2 and 4 can be true at once",
+        ),
+        (changed("edges", 6, guard=SAFE), "some samples lead nowhere from state 2"),
+        (changed("edges", 11, guard=Guard("x", (((3, True), (3, False)),))), "an implicant names an atom twice"),
+        (
+            changed("edges", 11, guard=Guard("x", (((0, True), (1, True)),))),
+            "an implicant asks for two exclusive atoms at once",
+        ),
+        (
+            changed("edges", 11, guard=Guard("alive", (((3, True),), ((0, True), (3, True))))),
+            "an implicant is contained in another",
+        ),
+        (
+            changed("edges", 0, guard=Guard("x", (((0, False), (3, True)),))),
+            "an implicant is missing, so that the guard's robustness would be wrong",
+        ),
+    ],
+)
+def test_a_contradiction_is_named(fspa: Fspa, expected: str) -> None:
+    assert expected in messages(fspa)
+
+
+def test_a_state_that_no_state_before_it_leads_to_is_found() -> None:
+    fspa = cover_and_hide()
+    edges = tuple(edge for edge in fspa.edges if (edge.source, edge.target) != (1, 3))
+    assert messages(dataclasses.replace(fspa, edges=edges)) == ["state 3 cannot be reached from a state before it"]
+
+
+def test_another_numbering_than_breadth_first_is_found() -> None:
+    fspa = cover_and_hide()
+    # State 2, the trap, is met first from state 3; state 3 already from state 1.
+    edges = tuple(edge for edge in fspa.edges if (edge.source, edge.target) not in {(0, 2), (1, 2)})
+    swapped = sorted(
+        (Edge({2: 3, 3: 2}.get(e.source, e.source), {2: 3, 3: 2}.get(e.target, e.target), e.guard) for e in fspa.edges),
+        key=lambda edge: (edge.source, edge.target),
+    )
+    assert "the states are not numbered breadth-first" in messages(dataclasses.replace(fspa, edges=tuple(swapped)))
+    assert messages(dataclasses.replace(fspa, edges=edges)) == ["state 2 cannot be reached from a state before it"]
+
+
+def test_large_automata_are_checked_only_up_to_the_work_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = changed("edges", 6, guard=SAFE)
+    assert messages(broken)
+    monkeypatch.setattr(guards, "WORK_LIMIT", 10)
+    assert messages(broken) == []
+
+
+cubes = st.dictionaries(st.integers(0, 3), st.booleans(), max_size=4).map(lambda cube: tuple(sorted(cube.items())))
+
+
+def holds(primes: tuple[tuple[tuple[int, bool], ...], ...], sample: tuple[bool, ...]) -> bool:
+    return any(all(sample[atom] is polarity for atom, polarity in prime) for prime in primes)
+
+
+def all_primes(guard: set[tuple[bool, ...]]) -> set[tuple[tuple[int, bool], ...]]:
+    """By definition: the products of literals inside the guard from which no literal can be dropped."""
+    inside = set()
+    for choice in itertools.product((None, False, True), repeat=4):
+        product = tuple((atom, polarity) for atom, polarity in enumerate(choice) if polarity is not None)
+        samples = [s for s in itertools.product((False, True), repeat=4) if holds((product,), s)]
+        if guard.issuperset(samples):
+            inside.add(product)
+    return {p for p in inside if not any(q != p and set(q) < set(p) for q in inside)}
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(cubes, min_size=1, max_size=4, unique=True), st.booleans())
+def test_exactly_the_complete_sets_of_primes_pass(terms: list[tuple[tuple[int, bool], ...]], complete: bool) -> None:
+    samples = set(itertools.product((False, True), repeat=4))
+    guard = {sample for sample in samples if holds(tuple(terms), sample)}
+    primes = tuple(sorted(all_primes(guard))) if complete else tuple(terms)
+    rest = tuple(sorted(all_primes(samples - guard)))
+    fspa = cover_and_hide()
+    states = tuple(dataclasses.replace(fspa.states[2], id=index) for index in range(2))
+    edges = [Edge(0, 0, Guard("g", primes)), Edge(1, 1, Guard("true", ((),)))]
+    if rest:
+        edges.insert(1, Edge(0, 1, Guard("!g", rest)))
+    else:
+        states, edges = states[:1], edges[:1]
+    fspa = dataclasses.replace(fspa, exclusive=(), states=states, edges=tuple(edges), spec_size=0)
+    assert (messages(fspa) == []) == (set(primes) == all_primes(guard))
+
+
+@settings(max_examples=100, deadline=None)
+@given(automata(), st.data())
+def test_a_guard_that_covers_too_little_or_too_much_is_found(fspa: Fspa, data: st.DataObject) -> None:
+    index = data.draw(st.integers(0, len(fspa.edges) - 1))
+    edge = fspa.edges[index]
+    names = len(fspa.atoms)
+    other = Guard(
+        "?",
+        data.draw(
+            st.lists(
+                st.dictionaries(st.integers(0, names - 1), st.booleans(), max_size=2).map(
+                    lambda c: tuple(sorted(c.items()))
+                ),
+                min_size=1,
+                max_size=2,
+                unique=True,
+            ).map(tuple)
+        )
+        if names
+        else ((),),
+    )
+    edges = (*fspa.edges[:index], dataclasses.replace(edge, guard=other), *fspa.edges[index + 1 :])
+    damaged = dataclasses.replace(fspa, edges=edges)
+    letters = [
+        letter
+        for letter in itertools.product((False, True), repeat=names)
+        if all(sum(letter[atom] for atom in group) <= 1 for group in fspa.exclusive)
+    ]
+    partitioned = all(
+        sum(holds(e.guard.primes, letter) for e in damaged.edges_from(state.id)) == 1
+        for state in fspa.states
+        for letter in letters
+    )
+    if not partitioned:
+        assert messages(damaged)
+    if set(other.primes) == set(edge.guard.primes):
+        assert not messages(damaged)

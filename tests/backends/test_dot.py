@@ -1,0 +1,116 @@
+from __future__ import annotations
+
+import dataclasses
+import html
+import re
+from pathlib import Path
+
+import pygraphviz
+import pytest
+from hypothesis import given, settings
+
+from tests.backends.strategies import automata, hostile_automata
+from tests.fixtures import cover_and_hide
+from tltlc import backends
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Options
+from tltlc.backends.dot import FILLS, LINES, graph
+from tltlc.backends.drawing.texts import Guards, visible, wrapped
+
+
+def emitted(fspa: Fspa, options: Options | None = None) -> str:
+    text = backends.emit("dot", fspa, options)[f"{fspa.name}.dot"]
+    assert isinstance(text, str)
+    return text
+
+
+def parsed(text: str) -> pygraphviz.AGraph:
+    return pygraphviz.AGraph(string=text)
+
+
+def words_of(label: str) -> str:
+    """The text that an HTML-like label shows."""
+    return html.unescape(re.sub(r"<[^>]*>", " ", label.replace("<BR/>", " ")))
+
+
+def test_the_graph_of_cover_and_hide() -> None:
+    golden = Path(__file__).with_name("cover_and_hide.dot").read_text(encoding="utf-8")
+    assert emitted(cover_and_hide()) == golden
+
+
+def test_the_picture_shows_what_the_figure_of_the_paper_shows() -> None:
+    fspa, drawn = cover_and_hide(), parsed(emitted(cover_and_hide()))
+    assert len(drawn.nodes()) == 1 + len(fspa.states)
+    assert drawn.has_edge("start", "0")
+    for state in fspa.states:
+        node = drawn.get_node(str(state.id))
+        distance = "∞" if state.distance is None else str(state.distance)
+        assert words_of(node.attr["label"]).split() == [*distance.split(), *state.label.unicode.split()]
+        assert node.attr["color"] == LINES[state.verdict]
+        assert node.attr["fillcolor"] == FILLS[state.verdict]
+        assert (node.attr["peripheries"] or "") == ("2" if state.accepting else "")
+    guards = {
+        (source, target): words_of(drawn.get_edge(source, target).attr["label"]) for source, target in drawn.edges()
+    }
+    assert guards["0", "1"].split() == ["near(s1)", "∧", "alive"]
+    assert guards["0", "0"].split() == ["¬near(s1)", "∧", "alive"]
+    assert guards["2", "2"].split() == ["⊤"]
+
+
+@pytest.mark.parametrize(
+    ("notation", "label", "guard"),
+    [
+        ("unicode", "◇near(exit) ∧ □alive", "¬near(exit) ∧ alive"),
+        ("ascii", "F near(exit) & G alive", "!near(exit) & alive"),
+        ("english", "Eventually near(exit); and always alive.", "not near(exit) and alive"),
+    ],
+)
+def test_notations(notation: backends.Notation, label: str, guard: str) -> None:
+    drawn = parsed(emitted(cover_and_hide(), Options(notation=notation)))
+    assert drawn.get_node("3").attr["tooltip"].endswith(": " + label)
+    assert drawn.get_edge("3", "3").attr["tooltip"] == guard
+
+
+@settings(max_examples=30, deadline=None)
+@given(automata())
+def test_every_state_and_edge_is_drawn_once(fspa: Fspa) -> None:
+    drawn = parsed(emitted(fspa))
+    expected = sorted((str(edge.source), str(edge.target)) for edge in fspa.edges)
+    assert sorted(pair for pair in drawn.edges() if pair[0] != "start") == expected
+    assert len(drawn.nodes()) == len(fspa.states) + 1
+
+
+@settings(max_examples=80, deadline=None)
+@given(hostile_automata())
+def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
+    drawn = parsed(emitted(fspa))
+    assert sorted(drawn.nodes()) == sorted(["start", *(str(state.id) for state in fspa.states)])
+    assert len(drawn.edges()) == len(fspa.edges) + 1
+    for state in fspa.states:
+        attributes = drawn.get_node(str(state.id)).attr
+        shown = words_of(attributes["label"]).split()[1:]
+        assert shown == visible(" ".join(wrapped(state.label.unicode, 30))).split()
+        assert attributes["color"] == LINES[state.verdict]
+
+
+def test_a_sketch_has_no_guards() -> None:
+    drawn = parsed(graph(cover_and_hide(), Options(), guards=False))
+    assert words_of(drawn.get_node("0").attr["label"]).split() == ["3", "0"]
+    assert not drawn.get_edge("0", "1").attr["label"]
+
+
+def test_long_labels_are_wrapped_before_operators_and_cut() -> None:
+    assert wrapped("aaaa & bbbb & cccc", 9) == ["aaaa", "& bbbb", "& cccc"]
+    assert wrapped("aaaa & bbbb & cccc", 13) == ["aaaa & bbbb", "& cccc"]
+    assert wrapped("a " * 100, 1, most_lines=3) == ["a", "a", "a …"]
+    assert wrapped("one_word_that_is_too_long", 5) == ["one_word_that_is_too_long"]
+    assert wrapped("", 5) == [""]
+
+
+def test_names_of_atoms_are_kept_whatever_operators_stand_in_them() -> None:
+    fspa = cover_and_hide()
+    atoms = tuple(
+        dataclasses.replace(a, name=n) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True)
+    )
+    guards = Guards(dataclasses.replace(fspa, atoms=atoms), "unicode")
+    assert guards.text("!x! & (a & b | !true_love) -> true") == "¬x! ∧ (a & b ∨ ¬true_love) ⇒ ⊤"

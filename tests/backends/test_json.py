@@ -1,0 +1,160 @@
+from __future__ import annotations
+
+import dataclasses
+import json
+import unicodedata
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.backends.strategies import automata, expressions, finite, hostile_automata
+from tests.fixtures import cover_and_hide
+from tltlc import backends
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends.artefact.layout import WIDTH, layout
+from tltlc.backends.json import read
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.expression import Const, Expression
+from tltlc.resolve.spec import Atom
+
+
+def emitted(fspa: Fspa) -> str:
+    text = backends.emit("json", fspa)[f"{fspa.name}.fspa.json"]
+    assert isinstance(text, str)
+    return text
+
+
+def test_the_artefact_of_cover_and_hide() -> None:
+    golden = Path(__file__).with_name("cover_and_hide.fspa.json").read_text(encoding="utf-8")
+    assert emitted(cover_and_hide()) == golden
+
+
+def test_what_was_written_is_read() -> None:
+    assert read(emitted(cover_and_hide()), "x.fspa.json") == cover_and_hide()
+
+
+@settings(max_examples=60, deadline=None)
+@given(automata())
+def test_automata_are_read_as_they_were_written(fspa: Fspa) -> None:
+    assert read(emitted(fspa), "x.fspa.json") == fspa
+
+
+@settings(max_examples=60, deadline=None)
+@given(hostile_automata())
+def test_hostile_texts_are_read_as_they_were_written(fspa: Fspa) -> None:
+    text = emitted(fspa)
+    assert read(text, "x.fspa.json") == fspa
+    assert "</" not in text
+    assert "<!" not in text
+    assert not [
+        character for character in text if character != "\n" and unicodedata.category(character) in ("Cc", "Cf")
+    ]
+
+
+@settings(max_examples=60, deadline=None)
+@given(expressions())
+def test_expressions_are_read_as_they_were_written(expression: Expression) -> None:
+    fspa = cover_and_hide()
+    fspa = dataclasses.replace(fspa, atoms=(Atom("near(s1)", expression), *fspa.atoms[1:]))
+    assert read(emitted(fspa), "x.fspa.json") == fspa
+
+
+@given(finite())
+def test_numbers_keep_every_digit(number: float) -> None:
+    fspa = cover_and_hide()
+    fspa = dataclasses.replace(fspa, atoms=(Atom("near(s1)", Const(number)), *fspa.atoms[1:]))
+    (atom, *_) = read(emitted(fspa), "x.fspa.json").atoms
+    assert isinstance(atom.expression, Const)
+    assert repr(atom.expression.value) == repr(number)
+
+
+def test_fields_of_others_are_ignored_and_whole_numbers_may_have_a_point() -> None:
+    document = json.loads(emitted(cover_and_hide()))
+    document["generator"] = {"name": "another"}
+    document["states"][0]["colour"] = "blue"
+    document["spec_size"] = 3.0
+    document["params"][0]["value"] = 20
+    fspa = read(json.dumps(document), "x.fspa.json")
+    assert fspa == cover_and_hide()
+    assert isinstance(fspa.spec_size, int)
+    assert isinstance(fspa.params[0].value, float)
+
+
+def test_a_non_finite_number_is_never_written() -> None:
+    fspa = cover_and_hide()
+    with pytest.raises(ValueError, match="expression"):
+        emitted(dataclasses.replace(fspa, atoms=(Atom("near(s1)", Const(float("inf"))), *fspa.atoms[1:])))
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "title"),
+    [
+        ("", "TLT0601", "is not JSON"),
+        ("{", "TLT0601", "is not JSON"),
+        ('{"format": "fspa", "version": NaN}', "TLT0601", "NaN is no number"),
+        ("[" * 100_000, "TLT0601", "nested too deeply"),
+        ("9" * 10_000, "TLT0601", "too many digits"),
+        ("[]", "TLT0601", "is JSON, but not an artefact"),
+        ('{"format": "gltf"}', "TLT0601", "is JSON, but not an artefact"),
+        ('{"format": "fspa"}', "TLT0602", "does not say its version"),
+        ('{"format": "fspa", "version": true}', "TLT0602", "does not say its version"),
+        ('{"format": "fspa", "version": "1"}', "TLT0602", "does not say its version"),
+        ('{"format": "fspa", "version": 2}', "TLT0602", "has version 2, and only version 1"),
+        ('{"format": "fspa", "version": 1}', "TLT0603", "the artefact lacks 'atoms', 'edges'"),
+    ],
+)
+def test_what_is_no_artefact_is_refused(text: str, code: str, title: str) -> None:
+    with pytest.raises(TltlError) as caught:
+        read(text, "x.fspa.json")
+    (error,) = caught.value.diagnostics
+    assert error.code == code
+    assert title in error.title
+
+
+def test_infinite_traces_are_refused_for_now() -> None:
+    text = emitted(cover_and_hide()).replace('"semantics": "finite"', '"semantics": "infinite"')
+    with pytest.raises(TltlError) as caught:
+        read(text, "x.fspa.json")
+    assert [error.code for error in caught.value.diagnostics] == ["TLT0605"]
+
+
+def test_an_error_points_at_the_value() -> None:
+    text = emitted(cover_and_hide()).replace('"distance": 2', '"distance": "2"')
+    with pytest.raises(TltlError) as caught:
+        read(text, "x.fspa.json")
+    (error,) = caught.value.diagnostics
+    (label,) = error.labels
+    assert error.title == "`states[1].distance` must be integer or null"
+    assert label.source.slice(label.span) == '"2"'
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_damaged_texts_never_give_anything_but_an_error(data: st.DataObject) -> None:
+    text = emitted(cover_and_hide())
+    start = data.draw(st.integers(0, len(text)))
+    end = data.draw(st.integers(start, min(len(text), start + 30)))
+    patch = data.draw(st.sampled_from(["", "0", "-1", "null", '"', "[", "}", ",", "1e400", "true", '"x"', "[]", "{}"]))
+    try:
+        read(text[:start] + patch + text[end:], "x.fspa.json")
+    except TltlError as error:
+        assert all(diagnostic.code.startswith("TLT06") for diagnostic in error.diagnostics)
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers() | finite() | st.text(),
+    lambda v: st.lists(v) | st.dictionaries(st.text(), v),
+)
+
+
+@given(values)
+def test_the_layout_changes_no_value(value: object) -> None:
+    assert json.loads(layout(value)) == json.loads(json.dumps(value))
+
+
+def test_lines_are_short_unless_a_text_is_long() -> None:
+    lines = emitted(cover_and_hide()).splitlines()
+    assert max(map(len, lines)) <= WIDTH
+    assert len(lines) < 250

@@ -1,0 +1,58 @@
+from __future__ import annotations
+
+import re
+
+from hypothesis import given, settings
+
+from tests.backends.strategies import automata, hostile_automata
+from tests.fixtures import cover_and_hide
+from tltlc import backends
+from tltlc.automaton.fspa import Fspa
+
+STATE = re.compile(r'    state "([^"]*)" as s(\d+)')
+EDGE = re.compile(r"    s(\d+) --> s(\d+): ([^:;]*(?:#\d+;[^:;]*)*)")
+CLASS = re.compile(r"    class s(\d+) (satisfied|holding|pending|violated)")
+
+
+def emitted(fspa: Fspa) -> str:
+    text = backends.emit("mermaid", fspa)[f"{fspa.name}.mmd"]
+    assert isinstance(text, str)
+    return text
+
+
+def check(fspa: Fspa) -> None:
+    """Every line is one of the few forms that may occur, and each state and edge stands in exactly one."""
+    lines = emitted(fspa).splitlines()
+    assert lines[:2] == ["stateDiagram-v2", "    direction LR"]
+    rest = [line for line in lines[2:] if not line.startswith("    classDef ")]
+    states = [match for line in rest if (match := STATE.fullmatch(line))]
+    edges = [match for line in rest if (match := EDGE.fullmatch(line))]
+    classes = [match for line in rest if (match := CLASS.fullmatch(line))]
+    assert [int(match[2]) for match in states] == [state.id for state in fspa.states]
+    assert [(int(match[1]), int(match[2])) for match in edges] == [(edge.source, edge.target) for edge in fspa.edges]
+    assert [(int(match[1]), match[2]) for match in classes] == [(state.id, state.verdict) for state in fspa.states]
+    assert len(states) + len(edges) + len(classes) + 1 == len(rest)
+    for match in [*states, *edges]:
+        text = (match[1] if match.re is STATE else match[3]).replace("<br/>", "")
+        assert not re.search(r"""[<>"'`{}\[\]%\\&|:]|(?<!\d);|#(?!\d+;)|-""", text)
+
+
+def test_the_diagram_of_cover_and_hide() -> None:
+    check(cover_and_hide())
+    text = emitted(cover_and_hide())
+    assert '    state "◇near(exit) ∧ □alive<br/>#91;1#93;" as s3' in text
+    assert "    s3 --> s4: near(exit) ∧ alive\n" in text
+    assert "    [*] --> s0\n" in text
+    assert "    class s4 holding\n" in text
+
+
+@settings(max_examples=30, deadline=None)
+@given(automata())
+def test_automata(fspa: Fspa) -> None:
+    check(fspa)
+
+
+@settings(max_examples=80, deadline=None)
+@given(hostile_automata())
+def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
+    check(fspa)

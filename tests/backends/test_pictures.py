@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import sys
+import xml.etree.ElementTree as ET
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from tests.backends.strategies import hostile_automata
+from tests.fixtures import cover_and_hide
+from tltlc import backends
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Options
+from tltlc.backends.drawing import layout
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.logic.formula import and_, atom, eventually
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def collect(goals: int) -> Fspa:
+    """Goals in any order: 2^n states, 3^n edges."""
+    return build(spec_from_formula(and_(*(eventually(atom(f"g{i}")) for i in range(goals))), "collect"))
+
+
+def drawn(fspa: Fspa, options: Options | None = None) -> ET.Element:
+    picture = backends.emit("svg", fspa, options)[f"{fspa.name}.svg"]
+    assert isinstance(picture, bytes)
+    return ET.fromstring(picture)
+
+
+def shown(picture: ET.Element) -> str:
+    return " ".join("".join(text.itertext()) for text in picture.iter(f"{SVG}text"))
+
+
+def test_an_svg_shows_labels_guards_and_distances() -> None:
+    picture = drawn(cover_and_hide())
+    groups = [group.get("class") for group in picture.iter(f"{SVG}g")]
+    assert groups.count("node") == 6
+    assert groups.count("edge") == 13
+    for text in ("◇near(exit) ∧ □alive", "¬near(s1) ∧ alive", "∞", " 3 ", "⊥", "cover_and_hide"):
+        assert text in shown(picture)
+
+
+def test_a_png_is_a_png() -> None:
+    picture = backends.emit("png", cover_and_hide())["cover_and_hide.png"]
+    assert isinstance(picture, bytes)
+    assert picture.startswith(b"\x89PNG\r\n\x1a\n")
+    assert len(picture) > 10_000
+
+
+@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(hostile_automata())
+def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
+    picture = drawn(fspa)
+    assert not list(picture.iter(f"{SVG}script"))
+    allowed = {SVG + name for name in ("svg", "g", "title", "text", "a", "path", "polygon", "ellipse", "polyline")}
+    assert {element.tag for element in picture.iter()} <= allowed
+
+
+def test_tangled_graphs_are_sketched_and_that_is_said() -> None:
+    notes: list[Diagnostic] = []
+    picture = drawn(collect(6), Options(report=notes.append))
+    assert [(note.code, note.severity) for note in notes] == [("TLT0711", "note")]
+    assert "g0" not in shown(picture)
+
+
+def test_without_a_picture_in_time_there_is_the_graph() -> None:
+    notes: list[Diagnostic] = []
+    files = backends.emit("svg", cover_and_hide(), Options(layout_limit_s=0.0001, report=notes.append))
+    assert files == backends.emit("dot", cover_and_hide())
+    assert [note.code for note in notes] == ["TLT0711"]
+
+
+def test_what_the_layout_complains_of_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(layout, "graph", lambda *_, **__: "digraph {")
+    with pytest.raises(TltlError) as caught:
+        backends.emit("svg", cover_and_hide())
+    assert [error.code for error in caught.value.diagnostics] == ["TLT0712"]
+
+
+def test_a_missing_component_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pygraphviz", None)
+    with pytest.raises(TltlError) as caught:
+        backends.emit("svg", cover_and_hide())
+    (error,) = caught.value.diagnostics
+    assert error.code == "TLT0730"
+    assert "pip install" in (error.help or "")

@@ -1,0 +1,111 @@
+from __future__ import annotations
+
+import copy
+import json
+import random
+from collections.abc import Iterator
+from typing import Any
+
+import jsonschema
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.backends.strategies import automata
+from tests.fixtures import cover_and_hide
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends.artefact.encode import encode
+from tltlc.backends.artefact.errors import JsonSchemaValueException
+from tltlc.backends.artefact.generate import FOLDER, validator_source
+from tltlc.backends.artefact.validator import validate
+
+SCHEMA = json.loads((FOLDER / "fspa.schema.json").read_text(encoding="utf-8"))
+REFERENCE = jsonschema.Draft7Validator(SCHEMA)
+
+WRONG = (None, True, -1, 1.5, "", "x", [], {}, [[]], 10**400, {"op": "+"}, {"const": 1, "op": "abs"})
+
+
+def accepts(document: Any) -> bool:
+    try:
+        validate(document)
+    except JsonSchemaValueException:
+        return False
+    return True
+
+
+def test_the_validator_is_the_one_that_the_schema_gives() -> None:
+    assert (FOLDER / "validator.py").read_text(encoding="utf-8") == validator_source()
+
+
+def test_the_schema_is_a_schema() -> None:
+    jsonschema.Draft7Validator.check_schema(SCHEMA)
+
+
+@settings(max_examples=30, deadline=None)
+@given(automata())
+def test_what_the_compiler_makes_fits(fspa: Fspa) -> None:
+    document = encode(fspa)
+    assert accepts(document)
+    assert REFERENCE.is_valid(json.loads(json.dumps(document)))
+
+
+def places(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    yield path
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        yield from places(item, (*path, key))
+
+
+DOCUMENT = json.loads(json.dumps(encode(cover_and_hide())))
+PLACES = tuple(places(DOCUMENT))[1:]
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.sampled_from(PLACES), st.sampled_from(("remove", "add", *range(len(WRONG)))))
+def test_both_validators_agree_on_damaged_artefacts(path: tuple[str | int, ...], damage: str | int) -> None:
+    document = copy.deepcopy(DOCUMENT)
+    parent = document
+    for step in path[:-1]:
+        parent = parent[step]
+    if damage == "remove":
+        del parent[path[-1]]
+    elif damage == "add":
+        if isinstance(parent, dict):
+            parent["extra"] = 1
+        else:
+            parent.append(random.Random(0).choice(WRONG))
+    else:
+        parent[path[-1]] = copy.deepcopy(WRONG[int(damage)])
+    assert accepts(document) == REFERENCE.is_valid(document)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        {},
+        {"op": "+", "args": [{"const": 1}]},
+        {"op": "neg", "args": [{"const": 1}, {"const": 2}]},
+        {"op": "min", "args": [{"const": 1}]},
+        {"op": "clamp", "args": [{"const": 1}, {"const": 1}]},
+        {"op": "<", "args": [{"const": 1}, {"const": 1}]},
+        {"op": "system", "args": [{"const": 1}]},
+        {"op": "+", "args": [{"const": 1}, {"const": 1}], "signal": "x"},
+        {"when": [[{"const": 1}, {"const": 1}]], "otherwise": {"const": 1}},
+        {"when": [[{"op": "<", "args": [{"const": 1}]}, {"const": 1}]], "otherwise": {"const": 1}},
+        {"when": [[{"op": "not", "args": [{"const": 1}]}, {"const": 1}]], "otherwise": {"const": 1}},
+        {"when": [[{"op": "<", "args": [{"const": 1}, {"const": 2}]}, {"const": 1}]]},
+        {"otherwise": {"const": 1}},
+    ],
+)
+def test_expressions_that_mean_nothing_are_refused(expression: dict[str, Any]) -> None:
+    document = copy.deepcopy(DOCUMENT)
+    document["atoms"][0]["expression"] = expression
+    assert not accepts(document)
+    assert not REFERENCE.is_valid(document)
+
+
+@pytest.mark.parametrize("name", ["../x", "a b", "", "a.b", "1a", "a\n", "naïve"])
+def test_names_of_specs_are_plain(name: str) -> None:
+    document = copy.deepcopy(DOCUMENT)
+    document["spec"]["name"] = name
+    assert not accepts(document)
