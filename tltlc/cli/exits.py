@@ -73,8 +73,8 @@ def report(error: Exception) -> int:
         return INTERRUPTED
     if isinstance(error, click.ClickException):
         error = TltlError([_usage(error)])
-    if isinstance(error, ModuleNotFoundError) and error.name in _COMPONENTS:
-        error = missing_component("this command", error.name, error.name)
+    if isinstance(error, ModuleNotFoundError) and (component := (error.name or "").partition(".")[0]) in _COMPONENTS:
+        error = missing_component("this command", component, component)
     if isinstance(error, TltlError):
         from tltlc.cli.report import show
 

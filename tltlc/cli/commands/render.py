@@ -80,8 +80,10 @@ def command(
             notation=notation or opened.project.notation,
             report=lambda diagnostic: report.add((diagnostic,)),
         )
-        for content in backends.emit(kind, opened.one(), options).values():
+        for name, content in backends.emit(kind, opened.one(), options).items():
             if path is not None:
+                if kind != "dot" and name.endswith(".dot"):
+                    path = path.with_suffix(".dot")  # the layout took too long, and this is the graph itself
                 write_file(path, content)
                 report.say(f"wrote {path}")
             else:

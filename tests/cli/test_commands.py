@@ -1,0 +1,75 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tltlc.cli.main import BUILT_IN
+
+
+@pytest.mark.parametrize("command", BUILT_IN)
+def test_help_has_examples(command: str, tltlc) -> None:  # type: ignore[no-untyped-def]
+    shown = tltlc(command, "--help")
+    assert shown.status == 0
+    assert f"tltlc {command}" in shown.out.split("Options:", 1)[1] or command == "completion"
+    # What `tltlc --help` says of it and what it says of itself are both there.
+    assert BUILT_IN[command] in tltlc("--help").out
+
+
+def test_version(tltlc) -> None:  # type: ignore[no-untyped-def]
+    import tltlc as package
+
+    assert tltlc("--version").out == f"tltlc {package.__version__}\n"
+
+
+def test_list_predicates(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    rows = json.loads(tltlc("list", "predicates", "--json").out)
+    near = next(row for row in rows if row["name"] == "near")
+    assert near["library"] == "spatial"
+    assert near["signature"] == "near(target: entity, close: length = 1 m, far: length = level_size)"
+    assert near["doc"].startswith("Closeness to `target`")
+    assert {row["library"] for row in rows} == {"core", "spatial", "stealth"}
+    Path("mine").mkdir()
+    Path("mine/dash.tltl").write_text("signal v: speed in [0, 9]\n/// Quick.\npredicate fast in [0, 1] = v / 9\n")
+    assert "dash\tfast\tQuick.\n" in tltlc("list", "predicates", "--library", "mine").out
+
+
+def test_list_targets_and_codes(tltlc) -> None:  # type: ignore[no-untyped-def]
+    names = {row["name"] for row in json.loads(tltlc("list", "targets", "--json").out)}
+    assert names >= {"json", "dot", "python", "mermaid", "svg", "png"}
+    assert "TLT0001\ta file cannot be read\n" in tltlc("list", "codes").out
+
+
+@pytest.mark.parametrize("code", ["TLT0001", "tlt0001", "0001"])
+def test_explain(code: str, tltlc) -> None:  # type: ignore[no-untyped-def]
+    assert tltlc("explain", code).out.startswith("# TLT0001: a file cannot be read\n")
+
+
+def test_explain_suggests(tltlc) -> None:  # type: ignore[no-untyped-def]
+    assert "Did you mean" in tltlc("explain", "TLT0006").err
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion(shell: str, tltlc, process) -> None:  # type: ignore[no-untyped-def]
+    assert "_TLTLC_COMPLETE" in tltlc("completion", shell).out
+    words = {"COMP_WORDS": "tltlc comp", "COMP_CWORD": "1" if shell != "fish" else "comp"}
+    found = process(_TLTLC_COMPLETE=f"{shell}_complete", **words)
+    assert "compile" in found.out
+    assert "completion" in found.out
+    assert "render" not in found.out
+
+
+def test_new(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    assert tltlc("new", "my game").status == 0
+    files = {path.name: path.read_text() for path in Path("my game").iterdir()}
+    assert sorted(files) == ["README.md", "first_level.csv", "first_level.tltl", "tltl.toml"]
+    assert tltlc("check", "my game/first_level.tltl").status == 0
+    assert tltlc("compile", "my game/first_level.tltl", "-o", "build").status == 0
+    assert tltlc("test", "my game").status == 0
+    assert tltlc("monitor", "my game/first_level.tltl", "my game/first_level.csv").status == 0
+    assert tltlc("new", "my game").status == 2
+    assert {path.name: path.read_text() for path in Path("my game").iterdir()} == files
+    Path("empty").mkdir()
+    assert tltlc("new", "empty").status == 0
+    assert tltlc("new", "hide.tltl").status == 2

@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import EXAMPLE, HIDE, ROOT
+
+
+def test_clean_and_warnings_are_0(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    clean = tltlc("check", "hide.tltl")
+    assert (clean.status, clean.out) == (0, "")
+    assert clean.err == "hide.tltl: 1 spec, nothing to report\n"
+    Path("warned.tltl").write_text("signal a: bool  spec never = F a & G !a")
+    warned = tltlc("check", "warned.tltl")
+    assert warned.status == 0
+    assert "warning[TLT0410]" in warned.err
+
+
+def test_errors_are_1(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("broken.tltl").write_text("spec hide = G !seen")
+    Path("import.tltl").write_text("import nowhere\n" + HIDE)
+    Path("latin.tltl").write_bytes(b"// \xe9")
+    for name in ("broken.tltl", "import.tltl", "latin.tltl"):
+        assert tltlc("check", name).status == 1, name
+
+
+def test_every_file_is_checked(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    found = tltlc("check", "missing.tltl", "hide.tltl")
+    assert found.status == 3
+    assert "hide.tltl: 1 spec" in found.err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        ("check",),
+        ("bogus",),
+        ("check", "--bogus", "hide.tltl"),
+        ("check", "--format", "yaml", "hide.tltl"),
+        ("check", "--param", "x", "hide.tltl"),
+        ("check", "--param", "x=1", "--param", "x=2", "hide.tltl"),
+        ("check", "--state-budget", "0", "hide.tltl"),
+        ("check", "hide.tltl:other"),
+        ("compile", "hide.tltl", "-t", "jsno"),
+        ("compile", "hide.tltl", "--spec", "other"),
+        ("render", "hide.tltl", "-o", "hide.bmp"),
+        ("explain", "TLT9999"),
+        ("list", "colours"),
+        ("new", "."),
+    ],
+)
+def test_wrong_usage_is_2(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    before = sorted(inside.iterdir())
+    assert tltlc(*arguments).status == 2
+    assert sorted(inside.iterdir()) == before
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("check", "missing.tltl"),
+        ("check", "."),
+        ("check", "nul\0byte.tltl"),
+        ("check", "n" * 300 + ".tltl"),
+        ("check", "--library", "nowhere", "hide.tltl"),
+        ("compile", "hide.tltl", "-t", "json", "-o", "hide.tltl"),
+        ("compile", "hide.tltl", "-t", "json", "-o", "hide.tltl/deeper"),
+        ("render", "hide.tltl", "-o", "nowhere/hide.svg"),
+        ("render", "hide.tltl", "-t", "dot", "-o", "."),
+    ],
+)
+def test_unreadable_is_3(arguments: tuple[str, ...], tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    found = tltlc(*arguments)
+    assert found.status == 3
+    assert found.err.startswith("error[TLT000")
+    assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
+
+
+def test_a_bug_is_70_without_a_traceback(tltlc, inside: Path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    def broken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("secret")
+
+    monkeypatch.setattr("tltlc.pipeline.compile_source", broken)
+    found = tltlc("check", "hide.tltl")
+    assert found.status == 70
+    assert found.err.startswith("error: a bug in tltlc stopped this command (reference ")
+    assert "Traceback" not in found.err
+    assert tltlc("check", "hide.tltl").err == found.err
+    monkeypatch.setenv("TLTLC_DEBUG", "1")
+    assert "ZeroDivisionError: secret" in tltlc("check", "hide.tltl").err
+
+
+def test_a_closed_pipe_is_quiet(inside: Path) -> None:
+    command = f"'{sys.executable}' -m tltlc render '{EXAMPLE}' -t dot; echo $? >&2"
+    done = subprocess.run(
+        ["bash", "-c", f"({command}) | (exec 0<&-; sleep 1)"],
+        capture_output=True,
+        timeout=60,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        check=True,
+    )
+    assert done.stderr.decode() == "141\n"
+
+
+def test_an_interrupt_is_quiet(inside: Path) -> None:
+    command = [sys.executable, "-m", "tltlc", "check", "-"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
+    ) as running:
+        # It sits in the read of standard input by then; earlier would be Python's own start-up.
+        try:
+            running.wait(2)
+        except subprocess.TimeoutExpired:
+            running.send_signal(signal.SIGINT)
+        out, err = running.communicate(timeout=30)
+    assert (running.returncode, out, err) == (130, b"", b"")

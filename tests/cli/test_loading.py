@@ -1,0 +1,71 @@
+"""What a command loads, and what it must not: the start of the process is a cost that everybody feels."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import EXAMPLE, ROOT
+
+HEAVY = {
+    "sympy", "networkx", "graphviz", "pygraphviz", "rich", "lark", "jsonschema", "fastjsonschema", "numpy", "torch",
+    "importlib.metadata", "subprocess", "asyncio", "http", "xml", "multiprocessing", "unittest",
+}  # fmt: skip
+
+
+def loaded(*arguments: str | Path, folder: Path) -> set[str]:
+    """The modules in a process at the end of a command."""
+    program = (
+        "import sys, atexit\n"
+        "atexit.register(lambda: sys.stdout.write('\\nMODULES ' + ' '.join(sys.modules)))\n"
+        f"sys.path.insert(0, {str(ROOT)!r})\n"
+        "from tltlc.cli.main import main\n"
+        "main(sys.argv[1:])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, *map(str, arguments)],
+        capture_output=True,
+        cwd=folder,
+        timeout=60,
+        check=True,
+        # The cache of predicate checks is filled by the first run.
+        env={**os.environ, "XDG_CACHE_HOME": str(folder / "cache")},
+    )
+    return set(done.stdout.decode().rpartition("\nMODULES ")[2].split())
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [("compile", EXAMPLE), ("check", EXAMPLE), ("--help",), ("--version",), ("list", "codes"), ("explain", "TLT0001")],
+    ids=lambda arguments: arguments[0],
+)
+def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Path) -> None:
+    loaded("check", EXAMPLE, folder=tmp_path)
+    assert not loaded(*arguments, folder=tmp_path) & HEAVY
+
+
+def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
+    modules = {name for name in loaded("--help", folder=tmp_path) if name.startswith("tltlc")}
+    assert modules <= {
+        "tltlc", "tltlc.cli", "tltlc.cli.main", "tltlc.cli.exits", "tltlc.diagnostics", "tltlc.diagnostics.diagnostic", "tltlc.source",
+    }  # fmt: skip
+
+
+def test_the_facade_loads_nothing(tmp_path: Path) -> None:
+    program = "import sys; sys.path.insert(0, sys.argv[1]); import tltlc; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program, str(ROOT)], capture_output=True, check=True, text=True)
+    assert {name for name in done.stdout.split() if name.startswith("tltlc")} == {"tltlc"}
+
+
+def test_the_facade_offers_what_it_says() -> None:
+    import tltlc
+
+    for name in tltlc.__all__:
+        assert getattr(tltlc, name) is not None
+        assert name in dir(tltlc)
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        tltlc.nonsense  # type: ignore[attr-defined] # noqa: B018

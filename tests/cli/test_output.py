@@ -1,0 +1,79 @@
+from __future__ import annotations
+
+import json
+import os
+import pty
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import EXAMPLE, ROOT
+
+
+@pytest.fixture
+def broken(inside: Path) -> Path:
+    Path("broken.tltl").write_text("signal a: bool\nspec never = F a & G !a\nspec x = F b\nspec y = F c\n")
+    return inside
+
+
+def test_text_goes_to_standard_error(tltlc, broken: Path) -> None:  # type: ignore[no-untyped-def]
+    found = tltlc("check", "broken.tltl")
+    assert found.out == ""
+    assert found.err.count("error[TLT0201]") == 2
+    assert "\x1b" not in found.err
+
+
+def test_documents_go_to_standard_output(tltlc, broken: Path) -> None:  # type: ignore[no-untyped-def]
+    for form in ("json", "sarif"):
+        found = tltlc("check", "--format", form, "broken.tltl", "hide.tltl")
+        assert (found.status, found.err) == (1, "")
+        assert "TLT0201" in json.dumps(json.loads(found.out))
+        clean = tltlc("check", "--format", form, "hide.tltl")
+        assert (clean.status, clean.err) == (0, "")
+        assert "TLT" not in json.dumps(json.loads(clean.out))
+    workflow = tltlc("check", "--format", "github", "broken.tltl")
+    assert workflow.out.count("::error ") == 2
+
+
+def test_results_and_documents_do_not_mix(tltlc, broken: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("never.tltl").write_text("signal a: bool\nspec never = F a & G !a\n")
+    found = tltlc("render", "never.tltl", "-t", "dot", "--format", "json")
+    assert found.out.startswith("digraph")
+    assert "TLT0410" in json.dumps(json.loads(found.err))
+
+
+@pytest.mark.parametrize(("environment", "coloured"), [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)])
+def test_colour_only_on_a_terminal(environment: dict[str, str], coloured: bool, broken: Path) -> None:
+    ours, theirs = pty.openpty()
+    variables = {key: value for key, value in os.environ.items() if key != "NO_COLOR"}
+    subprocess.run(
+        [sys.executable, "-m", "tltlc", "check", "broken.tltl"],
+        stderr=theirs,
+        env={**variables, "TERM": "xterm", "PYTHONPATH": str(ROOT), **environment},
+        timeout=60,
+        check=False,
+    )
+    os.close(theirs)
+    shown = os.read(ours, 10_000)
+    os.close(ours)
+    assert b"TLT0201" in shown
+    assert (b"\x1b[" in shown) == coloured
+
+
+def test_a_terminal_without_unicode(process, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    drawn = process("render", EXAMPLE, "-t", "dot", PYTHONIOENCODING="ascii")
+    assert drawn.status == 0
+    Path("é.tltl").write_text("spec x = F ∧")
+    assert process("check", "é.tltl", PYTHONIOENCODING="ascii").status == 1
+
+
+def test_pictures(tltlc, process, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    assert tltlc("render", EXAMPLE, "-o", "a.svg").err == "wrote a.svg\n"
+    assert "<svg" in Path("a.svg").read_text()
+    assert tltlc("render", EXAMPLE, "-o", "a.PNG").status == 0
+    assert Path("a.PNG").read_bytes().startswith(b"\x89PNG")
+    assert tltlc("render", EXAMPLE, "-t", "mermaid").out.startswith("stateDiagram-v2")
+    assert "G alive" in tltlc("render", EXAMPLE, "-t", "dot", "--notation", "ascii").out
+    assert "□alive" in tltlc("render", EXAMPLE, "-t", "dot").out

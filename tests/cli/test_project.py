@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltlc.cli.project import Project, project_for, read_project
+from tltlc.diagnostics.diagnostic import TltlError
+
+
+def test_no_project(inside: Path) -> None:
+    assert project_for("hide.tltl") == Project()
+    assert project_for("-") == Project()
+
+
+def test_the_nearest_project_upwards(inside: Path) -> None:
+    Path("levels/deep").mkdir(parents=True)
+    Path("predicates").mkdir()
+    Path("tltl.toml").write_text('libraries = ["predicates"]\r\ntargets = ["dot"]\r\n[style]\r\nnotation = "ascii"\r\n')
+    assert project_for("levels/deep/x.tltl") == Project((inside / "predicates",), ("dot",), "ascii")
+    Path("levels/tltl.toml").write_text("")
+    assert project_for("levels/deep/x.tltl") == Project()
+
+
+def test_what_it_says_is_done(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("predicates").mkdir()
+    Path("predicates/mine.tltl").write_text("signal health in [0, 1]\npredicate fit in [0, 1] = health\n")
+    Path("level").mkdir()
+    Path("level/one.tltl").write_text("import mine\nspec one = G fit\n")
+    assert tltlc("check", "level/one.tltl").status == 1
+    assert tltlc("check", "level/one.tltl", "--library", "predicates").status == 0
+    Path("tltl.toml").write_text('libraries = ["predicates"]\ntargets = ["dot"]\n[style]\nnotation = "english"\n')
+    assert tltlc("compile", "level/one.tltl").status == 0
+    assert not Path("one.fspa.json").exists()
+    assert "Always fit" in Path("one.dot").read_text()
+    assert tltlc("compile", "level/one.tltl", "-t", "json").status == 0
+    assert Path("one.fspa.json").exists()
+    assert "fit" in tltlc("list", "predicates").out
+
+
+def test_a_wrong_target_is_found(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("tltl.toml").write_text('targets = ["jsno"]')
+    assert "did you mean `json`?" in tltlc("compile", "hide.tltl").err
+
+
+@given(st.text(max_size=60) | st.from_regex(r"\A(libraries|targets|style|\[style\]\n?notation) ?=? ?[\[\"\{0-9a-z\]\},. ]*\Z"))
+def test_any_text_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, text: str) -> None:
+    path = tmp_path_factory.getbasetemp() / "tltl.toml"
+    path.write_bytes(text.encode())
+    try:
+        read_project(path)
+    except TltlError as error:
+        assert {diagnostic.code for diagnostic in error.diagnostics} <= {"TLT0003", "TLT0701", "TLT0702", "TLT0703"}
