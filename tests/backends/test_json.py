@@ -102,7 +102,7 @@ def test_a_non_finite_number_is_never_written() -> None:
         ('{"format": "fspa", "version": true}', "TLT0602", "does not say its version"),
         ('{"format": "fspa", "version": "1"}', "TLT0602", "does not say its version"),
         ('{"format": "fspa", "version": 2}', "TLT0602", "has version 2, and only version 1"),
-        ('{"format": "fspa", "version": 1}', "TLT0603", "the artefact lacks 'atoms', 'edges'"),
+        ('{"format": "fspa", "version": 1}', "TLT0603", "the artefact lacks `atoms`, `edges`"),
     ],
 )
 def test_what_is_no_artefact_is_refused(text: str, code: str, title: str) -> None:
@@ -126,7 +126,7 @@ def test_an_error_points_at_the_value() -> None:
         read(text, "x.fspa.json")
     (error,) = caught.value.diagnostics
     (label,) = error.labels
-    assert error.title == "`states[1].distance` must be integer or null"
+    assert error.title == "`states[1].distance` must be a whole number or null"
     assert label.source.slice(label.span) == '"2"'
 
 

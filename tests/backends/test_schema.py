@@ -18,6 +18,7 @@ from tltlc.backends.artefact.encode import encode
 from tltlc.backends.artefact.errors import JsonSchemaValueException
 from tltlc.backends.artefact.generate import FOLDER, validator_source
 from tltlc.backends.artefact.validator import validate
+from tltlc.backends.artefact.wording import worded
 
 SCHEMA = json.loads((FOLDER / "fspa.schema.json").read_text(encoding="utf-8"))
 REFERENCE = jsonschema.Draft7Validator(SCHEMA)
@@ -109,3 +110,39 @@ def test_names_of_specs_are_plain(name: str) -> None:
     document = copy.deepcopy(DOCUMENT)
     document["spec"]["name"] = name
     assert not accepts(document)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "title"),
+    [
+        (("states", 0, "accepting"), 0, "`states[0].accepting` must be true or false"),
+        (("spec", "judge"), "me", "`spec.judge` must be `goal` or `limit`"),
+        (("edges", 0, "guard", "primes"), [], "`edges[0].guard.primes` must hold at least 1 values"),
+        (("atoms", 3, "expression", "b"), 1, "`atoms[3].expression` holds fields that do not go together"),
+        (("atoms", 3, "expression"), {"b": 1}, "`atoms[3].expression` may not hold `b`"),
+        (("states", 0), {"id": 0}, "`states[0]` lacks `accepting`, `distance`, `label` and `verdict`"),
+    ],
+)
+def test_errors_are_in_plain_words(path: tuple[str | int, ...], value: object, title: str) -> None:
+    document = copy.deepcopy(DOCUMENT)
+    parent = document
+    for step in path[:-1]:
+        parent = parent[step]
+    parent[path[-1]] = value
+    with pytest.raises(JsonSchemaValueException) as caught:
+        validate(document)
+    assert worded(caught.value) == title
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.sampled_from(PLACES), st.sampled_from(WRONG))
+def test_every_error_has_words(path: tuple[str | int, ...], wrong: object) -> None:
+    document = copy.deepcopy(DOCUMENT)
+    parent = document
+    for step in path[:-1]:
+        parent = parent[step]
+    parent[path[-1]] = copy.deepcopy(wrong)
+    try:
+        validate(document)
+    except JsonSchemaValueException as error:
+        assert not {"properties", "integer", "array", "[]", "'"} & set(worded(error).split())

@@ -64,7 +64,7 @@ def _document(source: SourceFile) -> dict[str, Any]:
     try:
         document = json.loads(source.text, parse_constant=_no_constant)
     except json.JSONDecodeError as error:
-        where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _lower_first(error.msg))
+        where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _remark(error.msg))
         raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,))]) from None
     except _NoNumberError as error:
         raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON: {error} is no number")]) from None
@@ -95,8 +95,9 @@ def _no_constant(constant: str) -> None:
     raise _NoNumberError(constant)
 
 
-def _lower_first(text: str) -> str:
-    return text[:1].lower() + text[1:]
+def _remark(message: str) -> str:
+    """The parser's words, fit to stand behind a caret."""
+    return (message[:1].lower() + message[1:]).removesuffix(" at").removesuffix(" starting")
 
 
 def _other_version(source: SourceFile, version: object) -> Diagnostic:
@@ -107,12 +108,9 @@ def _other_version(source: SourceFile, version: object) -> Diagnostic:
 
 
 def _broken_schema(source: SourceFile, error: JsonSchemaValueException) -> Diagnostic:
-    path = path_of(error.place)
-    place = f"`{error.place.removeprefix('data').removeprefix('.')}`" if path else "the artefact"
-    remark = str(error).removeprefix(error.place).strip()
-    if error.rule == "required":
-        remark = "lacks " + remark.removeprefix("must contain ").removesuffix(" properties").strip("[]")
-    return _problem(source, "TLT0603", f"{place} {remark}", path)
+    from tltlc.backends.artefact.wording import worded
+
+    return _problem(source, "TLT0603", worded(error), path_of(error.place))
 
 
 def _problem(source: SourceFile, code: str, title: str, path: Path, way_out: str | None = RECOMPILE) -> Diagnostic:

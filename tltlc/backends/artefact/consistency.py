@@ -129,13 +129,19 @@ def _distances(fspa: Fspa) -> Iterator[Problem]:
     for state in fspa.states:
         distance = to_goal.get(state.id)
         if state.distance != distance:
-            yield Problem(("states", state.id, "distance"), f"the distance of state {state.id} is {_said(distance)}")
+            yield Problem(
+                ("states", state.id, "distance"),
+                f"the distance of state {state.id} is {_said(distance)}, not {_said(state.distance)}",
+            )
         verdict = _verdict(state.accepting, distance, to_failure.get(state.id))
         if state.verdict != verdict:
-            yield Problem(("states", state.id, "verdict"), f"the verdict of state {state.id} is `{verdict}`")
+            yield Problem(
+                ("states", state.id, "verdict"),
+                f"the verdict of state {state.id} is `{verdict}`, not `{state.verdict}`",
+            )
     size = max(to_goal.values(), default=0)
     if fspa.spec_size != size:
-        yield Problem(("spec_size",), f"spec_size is {size}")
+        yield Problem(("spec_size",), f"spec_size is {size}, not {fspa.spec_size}")
 
 
 def _steps_to(fspa: Fspa, goals: Iterable[int]) -> dict[int, int]:
@@ -160,7 +166,7 @@ def _verdict(accepting: bool, to_goal: int | None, to_failure: int | None) -> Ve
 
 
 def _said(distance: int | None) -> str:
-    return "null: it is a trap" if distance is None else str(distance)
+    return "null" if distance is None else str(distance)
 
 
 def _guards(fspa: Fspa) -> Iterator[Problem]:
