@@ -19,11 +19,6 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
     bound = expr.bound
     assert bound is not None
     source = env.scope.source
-    for end in (bound.low, bound.high):
-        if bound.words and end is not None and end.unit is None:
-            digits = source.slice(end.span)
-            title = "a bound in words needs a unit"
-            raise problem("TLT0312", title, source, end.span, advice=f"write `{digits} steps` or `{digits} s`")
     high = samples(bound.high, env)
     low = samples(bound.low, env) if bound.low is not None else 0
     if expr.op in ("X", "N"):

@@ -7,6 +7,7 @@ from math import inf
 from tltlc.expression import Const, Expression, Op
 from tltlc.grammar.tree import Binary
 from tltlc.logic.formula import Formula, atom, not_
+from tltlc.resolve import units
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity, same_dimension
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, number_text
@@ -69,13 +70,14 @@ def _check(x: Quantity, op: str, c: float, negated: bool, expr: Binary, env: Env
 
 
 def _unbounded(x: Quantity, needed: list[bool], expr: Binary, env: Env) -> ResolutionError:
+    unit = f" {units.si_unit(x.dimension)}" if x.dimension and units.si_unit(x.dimension) else ""
     ends = " and ".join(word for word, missing in zip(("upper", "lower"), needed, strict=True) if missing)
     return problem(
         "TLT0311",
         f"`{x.text}` has no {ends} bound to scale this comparison by",
         env.scope.source,
         expr.span,
-        advice="declare a range, e.g. `in [0, 100]`, where the signal or param is declared, or use a predicate",
+        advice=f"declare a range, e.g. `in [0{unit}, 100{unit}]`, where it is declared, or use a predicate",
     )
 
 

@@ -101,7 +101,7 @@ class Context:
             f"`{names[0]}` is defined by itself: " + " -> ".join(names),
             source,
             span,
-            advice="a definition may only use others that do not lead back to it; to repeat, use `always` or `until`",
+            advice="a definition may only use others that do not lead back to it",
         )
 
     def tree_size(self, formula: Formula) -> int:
@@ -128,10 +128,14 @@ class Context:
 
 def too_large(what: str, source: SourceFile, span: Span) -> ResolutionError:
     """The problem of an expansion past the limit; ``what`` names the bound, let or quantifier."""
+    if what.startswith("the bound"):
+        advice = "choose a smaller bound or a slower clock, or let a signal count the time"
+    else:
+        advice = "it multiplies with each use inside another: say the same with fewer of them"
     return problem(
         "TLT0315",
         f"{what} expands to more than {LARGEST_EXPANSION:,} parts",
         source,
         span,
-        advice="choose a smaller bound or a slower clock, or let a signal count the time",
+        advice=advice,
     )

@@ -211,7 +211,11 @@ def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, use
         context.expanding[key] = declaration.name
         body = yield _formula(declaration.body, inside)
         del context.expanding[key]
-        context.values[memo] = context.checked_size(body, f"the let `{declaration.name}`", source, span)
+        try:
+            context.values[memo] = context.checked_size(body, f"the let `{declaration.name}`", source, span)
+        except ResolutionError:
+            context.broken.add(key)
+            raise
     found: Formula = context.values[memo]
     return found
 

@@ -23,6 +23,8 @@ class Loaded:
     module: Module
     title: str
     imports: tuple[tuple[Import, Loaded], ...]
+    complete: bool
+    """Whether the file could be read without error, and all that it imports."""
 
 
 def load(module: Module, options: ResolveOptions, log: Log) -> tuple[Loaded, ...]:
@@ -38,23 +40,24 @@ def load(module: Module, options: ResolveOptions, log: Log) -> tuple[Loaded, ...
         declaration = next(visit.pending, None)
         if declaration is None:
             stack.pop()
-            loaded = Loaded(visit.module, visit.title, tuple(visit.found))
+            loaded = Loaded(visit.module, visit.title, tuple(visit.found), visit.complete)
             order.append(loaded)
             done[visit.path] = loaded
             if stack and visit.reason:
-                stack[-1].found.append((visit.reason, loaded))
+                stack[-1].add(visit.reason, loaded)
             continue
         source = visit.module.source
         try:
             path, shown = _find(declaration, source, options)
             if path in done:
-                visit.found.append((declaration, done[path]))
+                visit.add(declaration, done[path])
             elif any(path == other.path for other in stack):
                 raise _cycle(declaration, source, path, stack)
             else:
-                stack.append(_Visit(_parse(path, shown, declaration, source, log), path, path.stem, declaration))
+                stack.append(_parse(path, shown, declaration, source, log))
         except ResolutionError as failure:
             log.add(failure.diagnostic)
+            visit.complete = False
     return tuple(order)
 
 
@@ -71,11 +74,17 @@ class _Visit:
     path: Path
     title: str
     reason: Import | None = None
+    complete: bool = True
     found: list[tuple[Import, Loaded]] = field(default_factory=list)
     pending: Iterator[Import] = field(init=False)
 
     def __post_init__(self) -> None:
         self.pending = iter([d for d in self.module.declarations if isinstance(d, Import)])
+
+    def add(self, declaration: Import, loaded: Loaded) -> None:
+        """Notes what an import led to."""
+        self.found.append((declaration, loaded))
+        self.complete = self.complete and loaded.complete
 
 
 def _path_of(source: SourceFile) -> Path:
@@ -153,7 +162,7 @@ def _shown(path: Path) -> str:
     return f"{STANDARD_LIBRARY_NAME}/{inside.as_posix()}"
 
 
-def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log: Log) -> Module:
+def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log: Log) -> _Visit:
     from tltlc.grammar.parser import parse
 
     try:
@@ -165,7 +174,8 @@ def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log:
     module, diagnostics = parse(text)
     for diagnostic in diagnostics:
         log.add(diagnostic)
-    return module
+    complete = all(diagnostic.severity != "error" for diagnostic in diagnostics)
+    return _Visit(module, path, path.stem, declaration, complete)
 
 
 def _cycle(declaration: Import, source: SourceFile, path: Path, stack: list[_Visit]) -> ResolutionError:

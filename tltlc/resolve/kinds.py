@@ -14,10 +14,15 @@ _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then",
 
 
 def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> Binding:
-    """What a name stands for in a scope; raises ResolutionError (TLT0201) with a suggestion where it is unknown."""
+    """What a name stands for in a scope; raises ResolutionError (TLT0201) with a suggestion where it is unknown.
+
+    Nothing is said where an import has failed that may have brought the name.
+    """
     binding = env.scope.names.get(use.name)
     if binding is not None:
         return binding
+    if env.scope.incomplete:
+        raise ResolutionError(None)
     span = use.name_span if isinstance(use, Call) else use.span
     hint = suggestion(use.name, env.scope, wanted, env.local)
     library = None if hint else library_with(use.name)

@@ -19,6 +19,7 @@ from tltlc.resolve.quantities import mismatch, of_signal, quantity
 from tltlc.resolve.scope import Binding, Scope
 from tltlc.resolve.spec import Signal, ValueType
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, constant
+from tltlc.source import Span
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,19 +51,28 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
 
 
 def check_unused(binding: Binding, env: Env) -> None:
-    """Instantiates a predicate with symbolic arguments, so that its body is checked even if nothing uses it."""
+    """Instantiates a predicate with symbolic arguments, so that its body is checked even if nothing uses it.
+
+    Its range is checked only if it needs no numbers: those decide what the range is.
+    """
     declaration = binding.declaration
     assert isinstance(declaration, PredicateDecl)
     if any(key[0] == id(declaration) for key in env.context.instances):
         return
     values: dict[str, Value] = {}
+    needs_numbers = False
     for parameter in declaration.parameters:
         if parameter.default is not None:
             inside = env.within(binding.scope, dict(values))
             values[parameter.name] = argument_value(parameter, parameter.default, inside, binding, 0)
         else:
             values[parameter.name] = _symbolic(parameter, binding, env)
-    _instantiate(declaration.name, declaration, binding.scope, values, env, 0)
+            needs_numbers = needs_numbers or parameter.type != "entity"
+    if needs_numbers:
+        declared_range(declaration, binding.scope, env)
+        _body(declaration, binding.scope, values, env, 0)
+    else:
+        _instantiate(declaration.name, declaration, binding.scope, values, env, 0)
 
 
 def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Binding, depth: int) -> Value:
@@ -106,7 +116,9 @@ def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, sc
     known = [*units.TYPES, "entity"]
     close = get_close_matches(name, known, n=1)
     advice = f"did you mean `{close[0]}`?" if close else f"the types are {', '.join(known)}"
-    return problem("TLT0211", f"there is no type `{name}`", scope.source, at.span, advice=advice)
+    start = scope.source.text.find(name, at.name_span.end, at.span.end)
+    span = Span(start, start + len(name)) if start >= 0 else at.span
+    return problem("TLT0211", f"there is no type `{name}`", scope.source, span, advice=advice)
 
 
 def _symbolic(parameter: Parameter, binding: Binding, env: Env) -> Value:

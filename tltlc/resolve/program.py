@@ -84,13 +84,6 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
             continue
         name = declaration.name
         resolved = spec(declaration, groups, env)
-        if "." in name:
-            title = f"the name of a spec has no dots: `{name}`"
-            advice = f"write `{name.replace('.', '_')}`"
-            env.context.log.add(
-                problem("TLT0218", title, scope.source, declaration.name_span, advice=advice).diagnostic
-            )
-            resolved = None
         if name in found:
             first = Label(scope.source, places[name].name_span, "first declared here")
             twice = problem(

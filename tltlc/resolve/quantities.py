@@ -83,7 +83,7 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
         if value.is_bool:
             return Condition(">", (value.expression, Const(0.5))), value.text
     raise problem(
-        "TLT0303",
+        "TLT0318",
         "`when` needs a comparison",
         env.scope.source,
         expr.span,
@@ -111,8 +111,6 @@ def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
 
 
 def _number(expr: Number, env: Env) -> Quantity:
-    if abs(expr.value) == inf:
-        raise problem("TLT0303", "`inf` may only stand at the end of a range", env.scope.source, expr.span)
     found = units.in_si(expr.value, expr.unit)
     if found is None:
         raise problem(
@@ -144,6 +142,8 @@ def _named(expr: Name | Call, env: Env, depth: int) -> Quantity:
             expr.span,
             "only numbers and their arithmetic",
         )
+    if expr.name == "inf" and "inf" not in env.scope.names:
+        raise problem("TLT0303", "`inf` may only stand at the end of a range", env.scope.source, expr.span)
     binding = lookup(expr, env, ("signal", "param", "predicate"), "signal or param")
     if binding.kind == "param":
         match(expr, binding, (), env.scope)

@@ -44,6 +44,8 @@ class Scope:
 
     module: Module
     title: str
+    incomplete: bool = False
+    """Whether a failed import may have brought further names."""
     names: dict[str, Binding] = field(default_factory=dict, repr=False)
 
     @property
@@ -56,7 +58,7 @@ def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
     """One scope per module, in the same order, which has imported modules first."""
     scopes: dict[int, Scope] = {}
     for loaded in modules:
-        scope = Scope(loaded.module, loaded.title)
+        scope = Scope(loaded.module, loaded.title, not loaded.complete)
         scopes[id(loaded)] = scope
         for binding in _own(scope):
             log.add(_declare(scope, binding))
@@ -158,7 +160,7 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
             scope.source,
             known.span,
             "declared here",
-            advice=f"rename it, or import with another name in front: `import {binding.via} as …`",
+            advice=f"rename it, or give the other one a prefix: `import {binding.via} as {_short(binding.via)}`",
             other=(Label(binding.scope.source, binding.span, f"and in {binding.via}"),),
         ).diagnostic
     return problem(
@@ -166,7 +168,7 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
         f"both {known.via} and {binding.via} offer `{name}`",
         scope.source,
         span,
-        advice=f"give one of them another name in front, e.g. `import {binding.via} as {str(binding.via)[:2]}`",
+        advice=f"give one of them another name in front, e.g. `import {binding.via} as {_short(binding.via)}`",
         other=(
             Label(known.scope.source, known.span, f"the one of {known.via}"),
             Label(binding.scope.source, binding.span, f"the one of {binding.via}"),
@@ -180,3 +182,9 @@ def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str,
     close = get_close_matches(wanted.name, list(offered), n=1)
     hint = f"did you mean `{close[0]}`?" if close else ""
     return problem("TLT0205", f"{library} offers no `{wanted.name}`", scope.source, wanted.span, hint).diagnostic
+
+
+def _short(library: str | None) -> str:
+    """A short name to put in front of a library's own."""
+    letters = "".join(c for c in (library or "").rsplit("/", 1)[-1] if c.isalpha())
+    return letters[:2] or "lib"

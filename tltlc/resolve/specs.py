@@ -18,11 +18,12 @@ from tltlc.resolve.spec import Judge, Part, Spec
 from tltlc.resolve.values import Env
 
 _ONCE = ("level", "limit", "judge", "semantics")
-_CHOICES = {"judge": ("goal", "limit"), "semantics": ("finite", "infinite")}
 
 
 def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -> Spec | None:
-    """The resolved spec, or None where a clause is in error; every such clause is reported to the log.
+    """The resolved spec, or None where a clause is in error or none asks for anything.
+
+    Every clause in error is reported to the log.
 
     ``groups`` are the names of the atoms of each ``exclusive``; those of which the formula has at least
     two are part of the spec.
@@ -43,8 +44,6 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
         except ResolutionError as failure:
             log.add(failure.diagnostic)
             complete = False
-    if complete and not parts:
-        log.add(_empty(declaration, env).diagnostic)
     limit = None
     try:
         limit = _limit(metadata.get("limit"), env)
@@ -125,7 +124,7 @@ def _part(whole: Formula, clause: Clause, env: Env) -> Part:
 
 
 def _remember(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
-    """Keeps a clause of metadata; raises ResolutionError where it is repeated or has no such choice."""
+    """Keeps a clause of metadata; raises ResolutionError where it is repeated."""
     source = env.scope.source
     if clause.kind in metadata:
         raise problem(
@@ -137,10 +136,6 @@ def _remember(clause: Clause, metadata: dict[str, Clause], env: Env) -> None:
             other=(Label(source, metadata[clause.kind].span, "the first one"),),
         )
     metadata[clause.kind] = clause
-    choices = _CHOICES.get(clause.kind)
-    if choices and isinstance(clause.value, Name) and clause.value.name not in choices:
-        title = f"`{clause.kind}` is {' or '.join(f'`{choice}`' for choice in choices)}"
-        raise problem("TLT0215", title, source, clause.value.span, f"found `{clause.value.name}`")
 
 
 def _limit(clause: Clause | None, env: Env) -> int | None:
@@ -159,18 +154,6 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
 
 def _word(clause: Clause | None) -> str | None:
     return clause.value.name if clause is not None and isinstance(clause.value, Name) else None
-
-
-def _empty(declaration: SpecDecl, env: Env) -> ResolutionError:
-    if any(clause.kind in _READERS for clause in declaration.clauses):
-        return ResolutionError(None)
-    return problem(
-        "TLT0213",
-        f"the spec `{declaration.name}` asks for nothing",
-        env.scope.source,
-        declaration.name_span,
-        advice="add a clause, e.g. `reach near(exit)` or `keep alive`",
-    )
 
 
 def _variables(expression: Expression) -> list[SignalNode | ParamNode]:

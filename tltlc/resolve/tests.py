@@ -10,8 +10,6 @@ from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.spec import Expect, Spec, Step, Test
 from tltlc.resolve.values import Env
 
-_VERDICTS = ("satisfied", "holding", "pending", "violated")
-
 
 def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env) -> Test | None:
     """The resolved test, or None where something in it is in error or its spec is.
@@ -43,11 +41,6 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
 
 def _step(item: TestStep, spec: Spec, env: Env) -> Step:
     source = env.scope.source
-    if not item.atoms:
-        advice = "name the atoms that hold, e.g. `step alive`, or `step not alive`"
-        raise problem("TLT0217", "this step names no atom", source, item.span, advice=advice)
-    if item.times < 1:
-        raise problem("TLT0217", "a step is repeated at least once", source, item.span)
     values: dict[str, bool] = {}
     for written in (part for atom in item.atoms for part in conjuncts(atom)):
         name, holds = _literal(written, env)
@@ -73,9 +66,6 @@ def _literal(written: Expr, env: Env) -> tuple[str, bool]:
 
 def _expect(item: TestExpect, env: Env) -> Expect:
     source = env.scope.source
-    if item.kind == "verdict" and item.value not in _VERDICTS:
-        title = f"there is no verdict `{item.value}`"
-        raise problem("TLT0217", title, source, item.span, advice=f"the verdicts are {', '.join(_VERDICTS)}")
     if item.kind == "progress" and not (isinstance(item.value, (int, float)) and 0 <= item.value <= 1):
         raise problem("TLT0217", "progress lies in [0, 1]", source, item.span)
     kind = cast(Literal["verdict", "progress", "state"], item.kind)

@@ -152,4 +152,4 @@ def _where(values: Mapping[str, float]) -> str:
 
 
 def _number(value: float) -> str:
-    return f"{round(value, 12):.6g}"
+    return f"{round(value, 12) + 0.0:.6g}"  # adding 0 turns -0 into 0
