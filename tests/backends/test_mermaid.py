@@ -32,6 +32,7 @@ def check(fspa: Fspa) -> None:
     assert [(int(match[1]), int(match[2])) for match in edges] == [(edge.source, edge.target) for edge in fspa.edges]
     assert [(int(match[1]), match[2]) for match in classes] == [(state.id, state.verdict) for state in fspa.states]
     assert len(states) + len(edges) + len(classes) + 1 == len(rest)
+    assert sum("direction" in line.lower() for line in lines) == 1
     for match in [*states, *edges]:
         text = (match[1] if match.re is STATE else match[3]).replace("<br/>", "")
         assert not re.search(r"""[<>"'`{}\[\]%\\&|:]|(?<!\d);|#(?!\d+;)|-""", text)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from tltlc.automaton.fspa import Edge, Fspa, State
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import Guards, label, visible, wrapped
@@ -43,7 +45,9 @@ def _edge(edge: Edge, text: str) -> str:
 
 def _escaped(text: str) -> str:
     """Text with everything but letters, digits and a few marks as Mermaid's ``#38;``, so that nothing in it counts."""
-    return "".join(
+    escaped = "".join(
         character if character.isalnum() or character in _PLAIN else f"#{ord(character)};"
         for character in visible(text)
     )
+    # Mermaid takes any line with `direction LR` in it for that statement.
+    return re.sub("direction", lambda match: f"#{ord(match.group()[0])};{match.group()[1:]}", escaped, flags=re.I)
