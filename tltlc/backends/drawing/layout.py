@@ -41,7 +41,8 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
             return {name: picture}
     picture = _laid_out(sketch, picture_format, "sfdp", options.layout_limit_s)
     if picture is not None:
-        title = f"the picture of `{fspa.name}` shows its {len(fspa.states)} states by number, without guards: it is too tangled"
+        cut = f"shows its {len(fspa.states)} states by number, without guards"
+        title = f"the picture of `{fspa.name}` {cut}: it is too tangled"
         options.report(Diagnostic("TLT0711", title, help=WHOLE_GRAPH, severity="note"))
         return {name: picture}
     title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
