@@ -30,8 +30,8 @@ def test_the_paper_says_these_labels(tltlc, inside: Path) -> None:  # type: igno
     states = json.loads(Path("cover_and_hide.fspa.json").read_text())["states"]
     a, b, c = "near(s1)", "near(s2)", "near(exit)"
     assert {state["label"]["ascii"] for state in states} == {
-        f"F ({a} & X F ({b} & X F {c})) & G alive",
-        f"F ({b} & X F {c}) & G alive",
+        f"F({a} & X F({b} & X F {c})) & G alive",
+        f"F({b} & X F {c}) & G alive",
         f"F {c} & G alive",
         "G alive",
         "false",

@@ -44,7 +44,9 @@ def test_results_and_documents_do_not_mix(tltlc, broken: Path) -> None:  # type:
     assert "TLT0410" in json.dumps(json.loads(found.err))
 
 
-@pytest.mark.parametrize(("environment", "coloured"), [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)])
+@pytest.mark.parametrize(
+    ("environment", "coloured"), [({}, True), ({"NO_COLOR": "1"}, False), ({"TERM": "dumb"}, False)]
+)
 def test_colour_only_on_a_terminal(environment: dict[str, str], coloured: bool, broken: Path) -> None:
     ours, theirs = pty.openpty()
     variables = {key: value for key, value in os.environ.items() if key != "NO_COLOR"}
