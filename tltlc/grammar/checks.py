@@ -64,7 +64,8 @@ def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.Bound) -> 
     if formula.op in _BOUND_OPERATORS[word]:
         return
     operator = source.slice(formula.op_span)
-    title = f"`{operator}` takes no bound with `{word}`"
+    how = f"with `{word}`" if bound.words else "in brackets"
+    title = f"`{operator}` takes no bound {how}"
     yield _error(source, "TLT0111", title, bound.span, _BOUND_HELP[formula.op])
 
 

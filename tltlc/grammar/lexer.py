@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from tltlc.grammar.tables import Tables, load
 from tltlc.grammar.tree import Comment
 from tltlc.source import Span
 
-END = "$END"
-BAD = "BAD"
+MAX_TOKENS: Final = 1 << 17
+"""How many tokens are read: a file with more is refused, so that no file keeps a reader waiting."""
+
+END: Final = "$END"
+BAD: Final = "BAD"
 """The type of a token that the language does not know: a strange sign, an unfinished text."""
 
 
@@ -41,7 +44,7 @@ class Tokens(NamedTuple):
 
 
 def tokenize(text: str) -> Tokens:
-    """The tokens of a text; never fails, what it cannot read is a ``BAD`` token."""
+    """The tokens of a text, at most one more than :data:`MAX_TOKENS`; what it cannot read is a ``BAD`` token."""
     tables = load()
     words, signs = tables.words, tables.signs
     tokens: list[Token] = []
@@ -52,6 +55,8 @@ def tokenize(text: str) -> Tokens:
         kind = match.lastgroup or BAD
         if kind == "SPACE":
             continue
+        if len(tokens) >= MAX_TOKENS:
+            break
         start, end = match.span()
         piece = match.group()
         if kind == "COMMENT":
@@ -88,7 +93,7 @@ def _pattern() -> re.Pattern[str]:
     return re.compile(
         rf"(?P<SPACE>{patterns['SPACE']}|\A\ufeff)"
         rf"|(?P<NAME>{patterns['NAME']}(?![^\W{letters}]))"
-        rf"|(?P<NUMBER>{patterns['NUMBER']})(?:[ \t]*(?P<UNIT>{units}))?"
+        rf"|(?P<NUMBER>{patterns['NUMBER']})(?:\s*(?P<UNIT>{units}))?"
         rf"|(?P<COMMENT>{patterns['COMMENT']})"
         rf"|(?P<STRING>{patterns['STRING']})"
         rf"|(?P<BAD>==|!=|/\*|\"[^\"\n]*|[^\W0-9{letters}]\w*)"

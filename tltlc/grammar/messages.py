@@ -150,7 +150,7 @@ def _strange(place: _Place) -> Diagnostic | None:
     if text == "/*":
         return place.error("TLT0104", "`/*` means nothing here", "comments begin with `//` and end with the line")
     if text[0].isalpha():
-        return place.error("TLT0104", f"`{text}` is no name", "names are ASCII letters, digits and `_`")
+        return place.error("TLT0104", f"{shown(token)} is no name", "names are ASCII letters, digits and `_`")
     helps = {
         ";": "leave it out: nothing is needed between clauses",
         "'": 'texts stand in double quotes: "…"',
@@ -193,7 +193,7 @@ def _unknown_keyword(place: _Place) -> Diagnostic | None:
         return place.error("TLT0107", f"`{token.text}` stands only inside a spec", help_)
     if place.start == "declaration" and token.text in TEST_ITEMS:
         return place.error("TLT0107", f"`{token.text}` stands only inside a test", DECLARATIONS["test"])
-    near = closest(token.text, list(keywords)) if token.type == "NAME" else None
+    near = closest(token.text, tuple(keywords)) if token.type == "NAME" else None
     message = f"did you mean `{near}`?" if near else ""
     listed = ", ".join(f"`{word}`" for word in keywords)
     title = f"no {noun} begins with {shown(token)}"
@@ -256,10 +256,10 @@ def _misspelt_operator(place: _Place) -> Diagnostic | None:
     if re.fullmatch("[FGXN]{2,}", before.text):
         letters = " ".join(before.text)
         return place.error("TLT0101", f"`{before.text}` is read as one name", f"write `{letters}`", span=before.span)
-    words = [word for word, terminal in load().words.items() if terminal in _INFIX and len(word) > 1]
+    words = tuple(word for word, terminal in load().words.items() if terminal in _INFIX and len(word) > 1)
     near = closest(token.text, words)
     if near is None:
-        temporal = closest(before.text, [word for word in load().words if len(word) > 3])
+        temporal = closest(before.text, tuple(word for word in load().words if len(word) > 3))
         if temporal and before.type == "NAME":
             message = f"did you mean `{temporal}`?"
             return place.error("TLT0101", f"`{before.text}` is no operator", None, message, before.span)

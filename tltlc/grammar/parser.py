@@ -11,7 +11,7 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import checks, lalr, nesting
 from tltlc.grammar.builder import Builder
-from tltlc.grammar.lexer import Tokens, tokenize
+from tltlc.grammar.lexer import MAX_TOKENS, Tokens, tokenize
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Declaration, Expr, Module
 from tltlc.source import SourceFile, Span
@@ -22,9 +22,9 @@ MAX_CHARACTERS: Final = 1 << 20
 
 def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
     """The declarations of a file that could be read, and everything wrong with its syntax; never raises."""
-    if len(source.text) > MAX_CHARACTERS:
+    lexed = _tokens(source)
+    if lexed is None:
         return Module(source, (), ()), (_too_large(source),)
-    lexed = tokenize(source.text)
     declarations, diagnostics = _declarations(source, lexed)
     in_order = sorted(diagnostics, key=lambda diagnostic: diagnostic.labels[0].span.start)
     return Module(source, declarations, tuple(lexed.comments)), tuple(in_order)
@@ -32,9 +32,9 @@ def parse(source: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
 
 def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ...]]:
     """One formula, or None where it cannot be read, and everything wrong with its syntax; never raises."""
-    if len(source.text) > MAX_CHARACTERS:
+    lexed = _tokens(source)
+    if lexed is None:
         return None, (_too_large(source),)
-    lexed = tokenize(source.text)
     too_deep = nesting.deep_brackets(source, lexed.tokens)
     if too_deep:
         return None, (too_deep,)
@@ -49,6 +49,14 @@ def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ..
     if too_deep:
         return None, (too_deep,)
     return formula, (*builder.diagnostics, *checks.check_formula(source, formula))
+
+
+def _tokens(source: SourceFile) -> Tokens | None:
+    """The tokens of a text, None where it is too large."""
+    if len(source.text) > MAX_CHARACTERS:
+        return None
+    lexed = tokenize(source.text)
+    return lexed if len(lexed.tokens) <= MAX_TOKENS else None
 
 
 def _declarations(source: SourceFile, lexed: Tokens) -> tuple[tuple[Declaration, ...], tuple[Diagnostic, ...]]:
@@ -67,5 +75,5 @@ def _declarations(source: SourceFile, lexed: Tokens) -> tuple[tuple[Declaration,
 
 
 def _too_large(source: SourceFile) -> Diagnostic:
-    title = f"`{source.name}` is larger than 1 MiB"
+    title = f"`{source.name}` is larger than 1 MiB or {MAX_TOKENS} words and signs"
     return Diagnostic("TLT0004", title, (Label(source, Span(0, 0)),), "split it: `import` other files")

@@ -21,7 +21,7 @@ from tltlc.source import SourceFile
 MAX_ERRORS: Final = 200
 """How many errors are enough: a text with more is no specification."""
 
-_ENDS: Final = {"NAME", "NUMBER", "UNIT", "STRING", "TRUE", "FALSE", "RPAR", "RSQB", "RBRACE", "LBRACE", "BAD", "LIMIT"}
+_ENDS: Final = {"NAME", "NUMBER", "UNIT", "STRING", "TRUE", "FALSE", "RPAR", "RSQB", "RBRACE", "LBRACE", "LIMIT"}
 _STARTS: Final = {
     "NAME",
     "NUMBER",
@@ -60,6 +60,8 @@ class _Reader:
     def read_declaration(self, piece: list[Token]) -> None:
         """Read the tokens of one declaration; a broken block still gives its good clauses."""
         before = len(self.diagnostics)
+        if not _is_block(piece) and self._refuse_deep(piece):
+            return
         declaration = self._read_block(piece) if _is_block(piece) else self._read("declaration", piece)
         if declaration is None:
             return
@@ -94,6 +96,8 @@ class _Reader:
 
     def _read_line(self, line: list[Token], start: str) -> list[Any]:
         """The clauses in one piece of a block: mostly one, two where an unknown word follows a whole clause."""
+        if self._refuse_deep(line):
+            return []
         error = self._attempt(start, line)
         if not isinstance(error, lalr.UnexpectedTokenError):
             return [error]
@@ -125,12 +129,17 @@ class _Reader:
         return node
 
     def _refuse(self, piece: list[Token], start: str, error: lalr.UnexpectedTokenError | None) -> None:
-        """Report a broken piece: too deep a nesting explains it better than the token where reading ended."""
-        tokens = _ended(piece)
-        deep = nesting.deep_brackets(self._source, tokens)
+        """Report a broken piece; without an error, its first token is what nobody expected."""
         if error is None:
             error = lalr.UnexpectedTokenError(0, [load().starts[start]])
-        self.diagnostics.append(deep or messages.unexpected(self._source, tokens, error, start))
+        self.diagnostics.append(messages.unexpected(self._source, _ended(piece), error, start))
+
+    def _refuse_deep(self, piece: list[Token]) -> bool:
+        """Report a piece whose brackets nest too deep; whether it is one."""
+        deep = nesting.deep_brackets(self._source, piece)
+        if deep:
+            self.diagnostics.append(deep)
+        return deep is not None
 
 
 def _ended(piece: list[Token]) -> list[Token]:
@@ -139,7 +148,9 @@ def _ended(piece: list[Token]) -> list[Token]:
 
 
 def _is_block(piece: list[Token]) -> bool:
-    return piece[0].type in ("SPEC", "TEST") and any(token.type == "LBRACE" for token in piece)
+    """Whether a piece is a spec or test in braces: ``spec NAME = …`` is none, braces or not."""
+    head = next((token.type for token in piece if token.type in ("LBRACE", "EQUAL")), None)
+    return piece[0].type in ("SPEC", "TEST") and head == "LBRACE"
 
 
 def _declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[Token]]:
@@ -183,6 +194,8 @@ def _begins(
     if token.text in keywords and (token.type != "NAME" or keywords is TEST_ITEMS):
         if token.type == "ENTITY" and before.type == "COLON":
             return False
+        if token.type == "LIMIT" and before.text == "at" and not (first and tokens[index - 2].type != "JUDGE"):
+            return False
         return first or (within_lines and before.type in _ENDS)
     # A word that is no keyword, at the start of a line and with another word behind it: a misspelt keyword.
     if not first or not within_lines or token.type not in ("NAME", BAD) or not token.text[0].isalpha():
@@ -190,7 +203,7 @@ def _begins(
     following = tokens[index + 1] if index + 1 < len(tokens) else token
     if following.type not in _STARTS or following.text in load().soft or _first_on_line(source, tokens, index + 1):
         return False
-    return before.type in _ENDS or (before.text in keywords and closest(token.text, list(keywords)) is not None)
+    return before.type in _ENDS or closest(token.text, tuple(keywords)) is not None
 
 
 def _first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Final
 
 DECLARATIONS: Final = {
@@ -39,7 +40,8 @@ SEMANTICS: Final = ("finite", "infinite")
 VERDICTS: Final = ("satisfied", "holding", "pending", "violated")
 
 
-def closest(word: str, known: list[str] | tuple[str, ...]) -> str | None:
+@lru_cache(maxsize=1000)
+def closest(word: str, known: tuple[str, ...]) -> str | None:
     """The known word that ``word`` is most likely a misspelling of, if any."""
     from difflib import get_close_matches
 

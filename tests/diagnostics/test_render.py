@@ -1,0 +1,262 @@
+"""The formats of diagnostics, each on the same few diagnostics."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import jsonschema
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.formats.text import columns
+from tltlc.diagnostics.render import FORMATS, render
+from tltlc.source import SourceFile, Span
+
+
+def diagnostic(text: str, marked: str, message: str = "", **more: object) -> Diagnostic:
+    start = text.index(marked)
+    label = Label(SourceFile("a.tltl", text), Span(start, start + len(marked)), message)
+    return Diagnostic("TLT0101", "a title", (label,), **more)  # type: ignore[arg-type]
+
+
+def test_text() -> None:
+    shown = render([diagnostic("\nkeep a", "a", "a remark", help="one way out\nand another")])
+    assert shown == (
+        "error[TLT0101]: a title\n"
+        "  a.tltl:2:6\n"
+        "2 | keep a\n"
+        "  |      ^ a remark\n"
+        "  help: one way out\n"
+        "        and another\n"
+    )
+
+
+def test_text_of_several_is_parted_by_empty_lines() -> None:
+    one = Diagnostic("TLT0001", "no place", severity="warning")
+    assert render([one, one]) == "warning[TLT0001]: no place\n\nwarning[TLT0001]: no place\n"
+    assert render([]) == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "marked", "line", "caret"),
+    [
+        ("\tkeep\ta", "a", "    keep    a", "            ^"),
+        ("ab\tkeep", "\tkeep", "ab  keep", "  ^^^^^^"),
+        ("漢字 keep", "keep", "漢字 keep", "     ^^^^"),
+        ("keep 漢字", "漢字", "keep 漢字", "     ^^^^"),
+        ("e\u0301 keep", "keep", "e\ufffd keep" if not "\u0301".isprintable() else "e\u0301 keep", "  ^^^^"),
+        ("a\x1b[31m keep", "keep", "a\ufffd[31m keep", "       ^^^^"),
+        ("keep", "", "keep", "^"),
+    ],
+)
+def test_carets(text: str, marked: str, line: str, caret: str) -> None:
+    shown = render([diagnostic(text, marked)]).splitlines()
+    assert shown[2:4] == [f"1 | {line}", f"  | {caret}"]
+
+
+def test_caret_of_several_lines() -> None:
+    shown = render([diagnostic("spec a =\n  b\n  & c\n", "b\n  & c", "here")]).splitlines()
+    assert shown[2:4] == ["2 |   b", "  |   ^ (to line 3) here"]
+
+
+def test_long_lines_are_cut_around_the_place() -> None:
+    for marked in ("@", "@" * 3000):
+        shown = render([diagnostic("x" * 5000 + marked + "y" * 5000, marked)]).splitlines()
+        assert max(map(len, shown)) < 180
+        caret = shown[3].index("^")
+        assert shown[2][caret] == "@"
+
+
+def test_several_places() -> None:
+    source, other = SourceFile("a.tltl", "\n" * 9 + "one"), SourceFile("b.tltl", "two")
+    labels = (Label(source, Span(9, 12), "here"), Label(other, Span(0, 3), "first here"))
+    assert render([Diagnostic("TLT0201", "twice", labels)]).splitlines() == [
+        "error[TLT0201]: twice",
+        "  a.tltl:10:1",
+        "10 | one",
+        "   | ^^^ here",
+        "  b.tltl:1:1",
+        " 1 | two",
+        "   | ^^^ first here",
+    ]
+
+
+def test_colour_only_adds_codes() -> None:
+    plain = render([diagnostic("keep a", "a", "remark", help="help")])
+    coloured = render([diagnostic("keep a", "a", "remark", help="help")], color=True)
+    assert "\x1b[" not in plain
+    assert "\x1b[1;31merror[TLT0101]\x1b[0m" in coloured
+    for code in ("0", "1", "2", "1;31"):
+        coloured = coloured.replace(f"\x1b[{code}m", "")
+    assert coloured == plain
+
+
+@given(st.text(), st.integers(0, 50), st.integers(0, 50), st.text(max_size=5), st.sampled_from(FORMATS))
+def test_every_format_takes_every_text(text: str, start: int, length: int, name: str, format_: str) -> None:
+    start = min(start, len(text))
+    label = Label(SourceFile(name, text), Span(start, min(len(text), start + length)), text)
+    shown = render([Diagnostic("TLT0101", text, (label,), text)], format_)
+    assert "\x1b" not in shown.replace(text, "") or format_ == "github"
+    if format_ == "text":
+        lines = shown.splitlines()
+        assert all(line.isprintable() for line in lines)
+
+
+@given(st.text(alphabet=st.characters(categories=["L", "N", "P", "M"])))
+def test_columns_add_up(text: str) -> None:
+    assert columns(text) == sum(columns(sign) for sign in text)
+
+
+def test_json() -> None:
+    shown = json.loads(render([diagnostic("a\nkeep é", "é", "remark", help="help")], "json"))
+    assert shown == {
+        "diagnostics": [
+            {
+                "code": "TLT0101",
+                "severity": "error",
+                "title": "a title",
+                "help": "help",
+                "labels": [
+                    {
+                        "file": "a.tltl",
+                        "start": {"line": 2, "column": 6, "offset": 7},
+                        "end": {"line": 2, "column": 7, "offset": 8},
+                        "message": "remark",
+                    }
+                ],
+            }
+        ]
+    }
+
+
+POSITION = {"type": "integer", "minimum": 1}
+LOCATION = {
+    "type": "object",
+    "required": ["physicalLocation"],
+    "additionalProperties": False,
+    "properties": {
+        "message": {"type": "object", "required": ["text"]},
+        "physicalLocation": {
+            "type": "object",
+            "required": ["artifactLocation", "region"],
+            "additionalProperties": False,
+            "properties": {
+                "artifactLocation": {
+                    "type": "object",
+                    "required": ["uri"],
+                    "additionalProperties": False,
+                    "properties": {"uri": {"type": "string", "pattern": r"^[A-Za-z0-9._~:/%+-]+$"}},
+                },
+                "region": {
+                    "type": "object",
+                    "additionalProperties": False,
+                    "properties": dict.fromkeys(["startLine", "startColumn", "endLine", "endColumn"], POSITION),
+                },
+            },
+        },
+    },
+}
+SARIF = {
+    "type": "object",
+    "required": ["version", "runs"],
+    "additionalProperties": False,
+    "properties": {
+        "$schema": {"type": "string", "format": "uri"},
+        "version": {"const": "2.1.0"},
+        "runs": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "required": ["tool"],
+                "additionalProperties": False,
+                "properties": {
+                    "columnKind": {"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
+                    "tool": {
+                        "type": "object",
+                        "required": ["driver"],
+                        "properties": {
+                            "driver": {
+                                "type": "object",
+                                "required": ["name"],
+                                "properties": {
+                                    "rules": {
+                                        "type": "array",
+                                        "uniqueItems": True,
+                                        "items": {"type": "object", "required": ["id"]},
+                                    }
+                                },
+                            }
+                        },
+                    },
+                    "results": {
+                        "type": "array",
+                        "items": {
+                            "type": "object",
+                            "required": ["message"],
+                            "additionalProperties": False,
+                            "properties": {
+                                "ruleId": {"type": "string"},
+                                "ruleIndex": {"type": "integer", "minimum": 0},
+                                "level": {"enum": ["none", "note", "warning", "error"]},
+                                "message": {"type": "object", "required": ["text"]},
+                                "locations": {"type": "array", "items": LOCATION},
+                                "relatedLocations": {"type": "array", "items": LOCATION},
+                            },
+                        },
+                    },
+                },
+            },
+        },
+    },
+}
+"""The part of the SARIF 2.1.0 schema that speaks of what we write, stricter in places."""
+
+
+def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = ["level one/ä.tltl", str(tmp_path / "below.tltl"), str(tmp_path.parent / "above.tltl"), "<stdin>"]
+    labels = [Label(SourceFile(name, "keep a"), Span(5, 6), "here") for name in names]
+    found = [Diagnostic("TLT0101", "a title", (label,), "help") for label in labels]
+    found.append(Diagnostic("TLT0001", "no place", severity="warning"))
+    found.append(Diagnostic("TLT0101", "two places", (labels[0], labels[1]), severity="note"))
+    log = json.loads(render(found, "sarif"))
+    jsonschema.validate(log, SARIF)
+    (run,) = log["runs"]
+    rules = run["tool"]["driver"]["rules"]
+    assert [rule["id"] for rule in rules] == ["TLT0001", "TLT0101"]
+    assert rules[1]["shortDescription"] == {"text": "something else was expected"}
+    for result in run["results"]:
+        assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
+    uris = [
+        location["physicalLocation"]["artifactLocation"]["uri"]
+        for result in run["results"][:4]
+        for location in result["locations"]
+    ]
+    above = f"file://{tmp_path.parent}/above.tltl".replace(os.sep, "/")
+    assert uris == ["level%20one/%C3%A4.tltl", "below.tltl", above, "%3Cstdin%3E"]
+    assert run["results"][0]["message"]["text"] == "a title\nhere\nhelp"
+    assert [result["level"] for result in run["results"]] == ["error"] * 4 + ["warning", "note"]
+    assert len(run["results"][5]["relatedLocations"]) == 1
+
+
+def test_github() -> None:
+    source = SourceFile("a:b,c.tltl", "one\nkeep é%\nlast")
+    found = [
+        Diagnostic("TLT0101", "50% of\r\nit", (Label(source, Span(9, 11), "here"),), "help"),
+        Diagnostic("TLT0410", "long", (Label(source, Span(0, 8)),), severity="warning"),
+        Diagnostic("TLT0001", "no place", severity="note"),
+    ]
+    assert render(found, "github").splitlines() == [
+        "::error file=a%3Ab%2Cc.tltl,line=2,endLine=2,col=6,endColumn=7,title=TLT0101::50%25 of%0D%0Ait%0Ahere%0Ahelp",
+        "::warning file=a%3Ab%2Cc.tltl,line=1,endLine=2,title=TLT0410::long",
+        "::notice title=TLT0001::no place",
+    ]
+
+
+def test_unknown_format() -> None:
+    with pytest.raises(ValueError, match="one of text, json, sarif, github"):
+        render([], "xml")

@@ -1,0 +1,67 @@
+"""Every error message as its reader sees it: ``error/CODE[_variant]/`` holds the files and the expected text.
+
+``cmd`` holds the arguments after ``tltlc`` (by default ``check input.tltl``), ``expected.txt`` what then stands
+on standard error.  ``UPDATE_GOLDEN=1`` in the environment writes the expected texts anew: read what changed.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tltlc.cli.main import main
+from tltlc.diagnostics.codes import codes, page, title
+
+ROOT = Path(__file__).parents[2]
+CASES = sorted(path for path in (Path(__file__).parent / "error").iterdir() if path.is_dir())
+CODE = re.compile(r"TLT[0-9]{4}")
+NEEDS_ANOTHER_INSTALLATION = {"TLT0712", "TLT0730"}
+"""Codes that no file causes; tests/backends and tests/cli show their messages."""
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_message(
+    case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # A command may write: it works on a copy.
+    folder = tmp_path / "case"
+    shutil.copytree(case, folder)
+    (folder / "expected.txt").unlink(missing_ok=True)
+    monkeypatch.chdir(folder)
+    command = folder / "cmd"
+    arguments = shlex.split(command.read_text() if command.exists() else "check input.tltl")
+    with pytest.raises(SystemExit) as exit_:
+        main(arguments)
+    found = capsys.readouterr().err.replace(str(tmp_path), "TMP")
+    expected = case / "expected.txt"
+    if os.environ.get("UPDATE_GOLDEN") == "1":
+        expected.write_text(found, encoding="utf-8")
+    assert found == expected.read_text(encoding="utf-8")
+    assert CODE.match(case.name)[0] in found  # type: ignore[index]
+    assert exit_.value.code in (0, 1, 2, 3, 4)
+    assert "Traceback" not in found
+    # The names of the grammar's terminals are no words of the language.
+    assert not re.search(r"\b(LPAR|RPAR|LSQB|LBRACE|NAME_|COLON|AT_MOST|WEAK_NEXT)\b|\$END|__", found)
+
+
+def test_every_code_has_a_golden_message() -> None:
+    assert {case.name[:7] for case in CASES} == set(codes()) - NEEDS_ANOTHER_INSTALLATION
+
+
+def test_every_code_in_the_source_has_a_page_and_every_page_is_used() -> None:
+    used = {code for path in (ROOT / "tltlc").rglob("*.py") for code in CODE.findall(path.read_text(encoding="utf-8"))}
+    assert used == set(codes())
+
+
+@pytest.mark.parametrize("code", codes())
+def test_page(code: str) -> None:
+    text = page(code)
+    assert text.startswith(f"# {code}: {title(code)}\n")
+    assert "\n## Example\n" in text
+    assert "\n## How to mend it\n" in text
+    assert code >= "TLT0500" or "\n```tltl\n" in text

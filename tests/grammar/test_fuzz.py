@@ -1,0 +1,128 @@
+"""No text makes the parser raise, or takes it long."""
+
+import random
+import re
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tltlc.diagnostics.codes import codes
+from tltlc.diagnostics.render import FORMATS, render
+from tltlc.grammar.parser import MAX_CHARACTERS, parse, parse_formula
+from tltlc.grammar.tables import load
+from tltlc.source import SourceFile
+
+TEXT = Path(__file__).with_name("everything.tltl").read_text(encoding="utf-8")
+TABLES = load()
+WORDS = [
+    *TABLES.words,
+    *TABLES.signs,
+    *TABLES.soft,
+    "a",
+    "b",
+    "1",
+    "20 steps",
+    '"t"',
+    "//",
+    "\n",
+    "@",
+    '"',
+    "é",
+    "{",
+    "}",
+]
+
+
+def check(text: str) -> None:
+    source = SourceFile("a.tltl", text)
+    for diagnostics in (parse(source)[1], parse_formula(source)[1]):
+        for diagnostic in diagnostics:
+            assert diagnostic.code in codes()
+            assert diagnostic.severity == "error"
+            (label,) = diagnostic.labels
+            assert 0 <= label.span.start <= label.span.end <= len(text)
+            own_words = re.sub("`[^`]*`", "", diagnostic.title)
+            assert not re.search(r"\$|_|[A-Z]{2}", own_words), "the name of a terminal"
+        for format_ in FORMATS:
+            render(diagnostics, format_)
+
+
+@given(st.text())
+def test_any_text(text: str) -> None:
+    check(text)
+
+
+@given(st.lists(st.sampled_from(WORDS), max_size=40), st.sampled_from(["", " ", "\n"]))
+def test_words_of_the_language_in_any_order(words: list[str], between: str) -> None:
+    check(between.join(words))
+
+
+@settings(max_examples=200)
+@given(st.randoms(use_true_random=False), st.integers(1, 5))
+def test_mutated_specs(generator: random.Random, times: int) -> None:
+    text = TEXT
+    for _ in range(times):
+        start = generator.randrange(len(text))
+        end = min(len(text), start + generator.choice([0, 1, 3, 20]))
+        text = text[:start] + generator.choice(["", " ", *WORDS]) + text[end:]
+    check(text)
+
+
+BIG = MAX_CHARACTERS // 8
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "spec s = " + "!" * BIG + "a",
+        "spec s = " + "(" * BIG,
+        "spec s = " + "a & " * BIG + "a",
+        "spec s = " + "a then " * 10_000 + "a",
+        "spec s = " + "a -> " * 10_000 + "a",
+        "predicate p = " + "when a: " * 10_000,
+        "spec s = " + "f(" * 10_000,
+        "a b\n" * BIG,
+        "spec a { keep a }\n" * 20_000,
+        "spec a {\n" * 20_000,
+        "spec a {\n" + "keep\n" * 20_000,
+        "spec a {\n" + "kepe a\n" * 20_000 + "}",
+        "spec a {\n keep b" + " &\na b" * 20_000 + "}",
+        "{}" * BIG,
+        '"' * BIG,
+        "1" * MAX_CHARACTERS,
+        "aé" * BIG,
+        "x" * (MAX_CHARACTERS + 1),
+        "\n" * MAX_CHARACTERS,
+    ],
+    ids=lambda text: repr(text[:12]),
+)
+def test_large_texts_end_within_seconds(text: str) -> None:
+    start = time.perf_counter()
+    _, diagnostics = parse(SourceFile("a", text))
+    render(diagnostics)
+    assert time.perf_counter() - start < 5
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("(" * 200 + "a" + ")" * 200, None),
+        ("(" * 201 + "a" + ")" * 201, "TLT0103"),
+        ("!" * 999 + "a", None),
+        ("!" * 1000 + "a", "TLT0103"),
+        (" & ".join("a" for _ in range(1000)), None),
+        (" & ".join("a" for _ in range(10_000)), "TLT0103"),
+        (" then ".join("a" for _ in range(10_000)), "TLT0103"),
+        ("a " * MAX_CHARACTERS, "TLT0004"),
+    ],
+    ids=lambda part: repr(part)[:12],
+)
+def test_limits(text: str, code: str | None) -> None:
+    formula, diagnostics = parse_formula(SourceFile("a", text))
+    assert [diagnostic.code for diagnostic in diagnostics] == ([code] if code else [])
+    assert (formula is None) == (code is not None)
+    declaration, diagnostics = parse(SourceFile("a", f"entity b\nspec s = {text}"))
+    assert [diagnostic.code for diagnostic in diagnostics] == ([code] if code else [])

@@ -1,0 +1,73 @@
+from dataclasses import fields, is_dataclass
+
+import pytest
+
+from tests.grammar.reading import brackets, read
+from tltlc.grammar.tables import load
+
+UNARY = {
+    "NOT": ("!", "not ¬"),
+    "EVENTUALLY": ("F", "eventually <> ◇"),
+    "ALWAYS": ("G", "always [] □"),
+    "NEXT": ("X", "next ○"),
+    "WEAK_NEXT": ("N", "weak_next"),
+}
+BINARY = {
+    "AND": ("&", "and && ∧"),
+    "OR": ("|", "or || ∨"),
+    "IMPLIES": ("->", "implies ⇒ →"),
+    "IFF": ("<->", "iff ⇔ ↔"),
+    "UNTIL": ("U", "until 𝒰"),
+    "WEAK_UNTIL": ("W", "weak_until"),
+    "RELEASE": ("R", "release"),
+    "STRONG_RELEASE": ("M", "strong_release"),
+}
+CONSTANTS = {"TRUE": ("true", "⊤"), "FALSE": ("false", "⊥")}
+
+
+@pytest.mark.parametrize(("letter", "others"), UNARY.values())
+def test_unary(letter: str, others: str) -> None:
+    for other in others.split():
+        assert brackets(read(f"a & {other} b")) == brackets(read(f"a & {letter} b"))
+
+
+@pytest.mark.parametrize(("letter", "others"), BINARY.values())
+def test_binary(letter: str, others: str) -> None:
+    for other in others.split():
+        assert brackets(read(f"a {other} b")) == brackets(read(f"a {letter} b"))
+
+
+@pytest.mark.parametrize(("letter", "others"), CONSTANTS.values())
+def test_constants(letter: str, others: str) -> None:
+    for other in others.split():
+        assert brackets(read(other)) == brackets(read(letter))
+
+
+@pytest.mark.parametrize("terminal", [*UNARY, *BINARY, *CONSTANTS])
+def test_no_spelling_is_left_out(terminal: str) -> None:
+    letter, others = {**UNARY, **BINARY, **CONSTANTS}[terminal]
+    tables = load()
+    spellings = {text for text, name in {**tables.words, **tables.signs}.items() if name == terminal}
+    assert spellings == {letter, *others.split()}
+
+
+def test_signs_need_no_spaces() -> None:
+    assert brackets(read("a𝒰b∧¬c⇒□d&&[]e||<>f<->!g")) == brackets(read("a U b & !c -> G d & G e | F f <-> !g"))
+
+
+def test_spans_cover_the_text() -> None:
+    text = "  F (a & near(s1, close = 3 m)) U all x in (s1): b "
+    formula = read(text)
+
+    def walk(node: object) -> None:
+        if is_dataclass(node) and hasattr(node, "span"):
+            assert text[node.span.start : node.span.end].strip() == text[node.span.start : node.span.end] != ""
+            for field in fields(node):
+                value = getattr(node, field.name)
+                for part in value if isinstance(value, tuple) else [value]:
+                    if hasattr(part, "span"):
+                        assert node.span.start <= part.span.start <= part.span.end <= node.span.end
+                        walk(part)
+
+    walk(formula)
+    assert text[formula.span.start : formula.span.end] == text.strip()

@@ -1,0 +1,47 @@
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from tltlc.grammar import tables
+
+
+@pytest.fixture
+def fresh() -> Iterator[None]:
+    tables.load.cache_clear()
+    yield
+    tables.load.cache_clear()
+
+
+def test_shipped_tables_are_those_of_the_grammar() -> None:
+    """Lark builds them in strict mode, so this also fails on any conflict of the grammar."""
+    with open(tables.GRAMMAR, "rb") as grammar, open(tables.TABLES, encoding="utf-8") as shipped:
+        assert tables.as_text(tables.build(grammar.read())) == shipped.read()
+
+
+@pytest.mark.parametrize("content", [b"", b"{}", b"[]", b'{"checksum": 0}', b"\xff\x00"])
+def test_useless_tables_are_built_anew(
+    fresh: None, content: bytes, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    good = tables.load()
+    tables.load.cache_clear()
+    path = tmp_path_factory.mktemp("tables") / "tables.json"
+    path.write_bytes(content)
+    monkeypatch.setattr(tables, "TABLES", str(path))
+    assert tables.load() == good
+
+
+def test_a_conflict_is_refused() -> None:
+    with pytest.raises(Exception, match="conflict"):
+        tables.build(b'module: e\n?declaration: e\nclause: e\ntest_item: e\nexpression: e\ne: e "+" e | "a"\n')
+
+
+def test_parsing_needs_no_lark() -> None:
+    code = (
+        "import sys; from tltlc.grammar.parser import parse; from tltlc.source import SourceFile;"
+        "parse(SourceFile('a', 'spec a = F b')); parse(SourceFile('a', 'spec a = F'));"
+        "print([name for name in ('lark', 'sympy', 'pathlib') if name in sys.modules])"
+    )
+    shown = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, check=True)
+    assert shown.stdout == "[]\n"
