@@ -15,12 +15,12 @@ from tests.cli.conftest import ROOT
 from tltlc.cli.main import main
 
 SPECS = [path.read_text() for path in sorted([*ROOT.glob("examples/*.tltl"), *ROOT.glob("stdlib_predicates/*.tltl")])]
-WORDS = [
-    *"spec test for { } ( ) [ ] , : = import signal predicate in let all any when otherwise then and or not".split(),
-    *"F G X U W R M N reach keep avoid require level limit judge goal -> <-> ! & | + - * / ^ < <= 1 0 -1 1e999".split(),
-    *"3 m s % Hz steps inf true near alive s1 s2 exit within for after next eventually always /// //".split(),
-    *("\n", '"', "\\", "\0", "é", "𝒰", "◇", "□", "∧"),
-]
+WORDS_OF_THE_LANGUAGE = (
+    "spec test for { } ( ) [ ] , : = import signal predicate in let all any when otherwise then and or not "
+    "F G X U W R M N reach keep avoid require level limit judge goal -> <-> ! & | + - * / ^ < <= 1 0 -1 1e999 "
+    "3 m s % Hz steps inf true near alive s1 s2 exit within for after next eventually always /// //"
+)
+WORDS = [*WORDS_OF_THE_LANGUAGE.split(), "\n", '"', "\\", "\0", "é", "𝒰", "◇", "□", "∧"]
 EACH = settings(deadline=5000, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
