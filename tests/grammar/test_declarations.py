@@ -79,7 +79,7 @@ def test_spec() -> None:
     assert block.block
     assert block.doc == "Button 1, then button 2, then the exit."
     kinds = [clause.kind for clause in block.clauses]
-    assert kinds == "level limit judge semantics tag reach keep avoid require require".split()
+    assert kinds == ["level", "limit", "judge", "semantics", "tag", "reach", "keep", "avoid", "require", "require"]
     by_kind = {clause.kind: clause for clause in block.clauses}
     assert isinstance(by_kind["judge"].value, tree.Name)
     assert by_kind["judge"].value.name == "limit"

@@ -124,5 +124,5 @@ def test_limits(text: str, code: str | None) -> None:
     formula, diagnostics = parse_formula(SourceFile("a", text))
     assert [diagnostic.code for diagnostic in diagnostics] == ([code] if code else [])
     assert (formula is None) == (code is not None)
-    declaration, diagnostics = parse(SourceFile("a", f"entity b\nspec s = {text}"))
+    _, diagnostics = parse(SourceFile("a", f"entity b\nspec s = {text}"))
     assert [diagnostic.code for diagnostic in diagnostics] == ([code] if code else [])

@@ -200,7 +200,9 @@ def _begins(
     # A word that is no keyword, at the start of a line and with another word behind it: a misspelt keyword.
     if not first or not within_lines or token.type not in ("NAME", BAD) or not token.text[0].isalpha():
         return False
-    following = tokens[index + 1] if index + 1 < len(tokens) else token
+    if index + 1 == len(tokens):
+        return False
+    following = tokens[index + 1]
     if following.type not in _STARTS or following.text in load().soft or _first_on_line(source, tokens, index + 1):
         return False
     return before.type in _ENDS or closest(token.text, tuple(keywords)) is not None
