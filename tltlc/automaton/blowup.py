@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from tltlc.automaton.diagrams import Diagrams, OutOfNodes
+from tltlc.automaton.diagrams import Diagrams, OutOfSteps
 from tltlc.automaton.guards import PRIME_LIMIT, TooManyPrimes
 from tltlc.automaton.machine import OutOfStates, machine
 from tltlc.automaton.successors import Successors
@@ -53,9 +53,9 @@ def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
 def _size(part: Part, spec: Spec) -> int:
     """The states of one part's automaton, at most :data:`_PART_BUDGET`."""
     normal = negation_normal_form(part.formula)
-    successors = Successors([atom.name for atom in spec.atoms], Diagrams(node_limit=200_000))
+    successors = Successors([atom.name for atom in spec.atoms], Diagrams(step_limit=100_000))
     successors.number_variables(normal)
     try:
         return len(machine(successors, successors.obligation(normal), _PART_BUDGET).transitions)
-    except (OutOfStates, OutOfNodes):
+    except (OutOfStates, OutOfSteps):
         return _PART_BUDGET

@@ -10,17 +10,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tltlc.automaton.blowup import blow_up, recursion_room
 from tltlc.automaton.composition import minimal_machine as compose
-from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfNodes
+from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfSteps
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
-from tltlc.automaton.labels import Labels, length
+from tltlc.automaton.labels import Labels, length, simplified
 from tltlc.automaton.machine import Machine, OutOfStates
 from tltlc.automaton.successors import Successors
 from tltlc.expression import Signal as SignalValue
 from tltlc.logic.formula import Formula, rebuild
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.printer import ascii_text, english_text, unicode_text
-from tltlc.logic.rewrite import simplify
 from tltlc.resolve.spec import Atom, Judge, Signal, Spec
 from tltlc.source import SourceFile, Span
 
@@ -37,7 +36,7 @@ def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
     with recursion_room():
         try:
             return _build(spec, state_budget)
-        except (OutOfStates, OutOfNodes, TooManyPrimes, RecursionError) as reason:
+        except (OutOfStates, OutOfSteps, TooManyPrimes, RecursionError) as reason:
             raise blow_up(spec, reason, state_budget) from None
 
 
@@ -57,7 +56,10 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
     names = [atom.name for atom in spec.atoms]
     successors, minimal, allowed = minimal_machine(spec.formula, names, state_budget, spec.exclusive)
     diagrams = successors.diagrams
-    targets = _states(minimal, diagrams)
+    targets = {
+        leaf: [target for target in diagrams.leaves(minimal.transitions[diagrams.low[leaf]]) if target != IMPOSSIBLE]
+        for leaf in state_leaves(minimal, diagrams)
+    }
     distance = _distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
     order = _breadth_first(next(iter(targets)), targets, distance)
     verdicts = _verdicts(targets, distance, accepting=lambda leaf: diagrams.high[leaf] == 1)
@@ -133,24 +135,16 @@ def _allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> 
 # A state is a leaf: what remains, and whether the trace may end here.
 
 
-def _states(minimal: Machine, diagrams: Diagrams) -> dict[int, list[int]]:
-    """The successors of every state, the initial one first.
+def state_leaves(minimal: Machine, diagrams: Diagrams) -> list[int]:
+    """The states of the automaton, the initial one first.
 
     No trace is empty, so the initial state may accept or not: it is shared with a state that is
     reached, the rejecting one where both are.
     """
-    reached = {leaf for transition in minimal.transitions.values() for leaf in diagrams.leaves(transition)}
-    initial = diagrams.leaf(minimal.initial, 0)
-    if initial not in reached and diagrams.leaf(minimal.initial, 1) in reached:
-        initial = diagrams.leaf(minimal.initial, 1)
-    targets: dict[int, list[int]] = {}
-    queue = [initial]
-    for leaf in queue:
-        if leaf not in targets:
-            transition = minimal.transitions[diagrams.low[leaf]]
-            targets[leaf] = [target for target in diagrams.leaves(transition) if target != IMPOSSIBLE]
-            queue.extend(targets[leaf])
-    return targets
+    reached = diagrams.leaves(*minimal.transitions.values())
+    rejecting, accepting = diagrams.leaf(minimal.initial, 0), diagrams.leaf(minimal.initial, 1)
+    initial = accepting if accepting in reached and rejecting not in reached else rejecting
+    return [initial, *(leaf for leaf in reached if leaf not in (initial, IMPOSSIBLE))]
 
 
 def _distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
@@ -230,7 +224,7 @@ def _labels(
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
     in_source = {negation_normal_form(part): part for part in source.walk() if part.op in ("implies", "iff")}
     formulas = {state: _restored(labels.label(state), in_source) for state in minimal.transitions}
-    own = simplify(source)
+    own = simplified(source)
     if length(own) <= length(formulas[minimal.initial]):
         formulas[minimal.initial] = own
     texts = {state: _text(formula) for state, formula in formulas.items()}

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from heapq import heapify, heappop, heappush
 
-from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, REJECT, TRUE, OutOfNodes
+from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, REJECT, TRUE, OutOfSteps
 from tltlc.automaton.machine import Machine, OutOfStates, machine
 from tltlc.automaton.successors import Successors
 from tltlc.logic.formula import Formula
 
-WHOLE_NODES = 20_000
-"""Nodes that exploration as a whole may make before the parts are tried: a few hundredths of a second."""
+WHOLE_STEPS = 40_000
+"""Steps that exploration as a whole may take before the parts are tried: a few hundredths of a second."""
 
 
 def minimal_machine(successors: Successors, formula: Formula, state_budget: int, allowed: int = ACCEPT) -> Machine:
@@ -23,19 +23,14 @@ def minimal_machine(successors: Successors, formula: Formula, state_budget: int,
 
     Raises as :func:`tltlc.automaton.machine.machine` does.
     """
-    diagrams = successors.diagrams
     whole = successors.obligation(formula)
     if formula.op not in ("and", "or"):
         return machine(successors, whole, state_budget, allowed)
-    node_limit = diagrams.node_limit
-    diagrams.node_limit = min(node_limit, len(diagrams.atom) + WHOLE_NODES)
     try:
-        return machine(successors, whole, state_budget, allowed)
-    except (OutOfStates, OutOfNodes):
-        pass
-    finally:
-        diagrams.node_limit = node_limit
-    return _by_parts(successors, formula, state_budget, allowed)
+        with successors.diagrams.at_most(WHOLE_STEPS):
+            return machine(successors, whole, state_budget, allowed)
+    except (OutOfStates, OutOfSteps):
+        return _by_parts(successors, formula, state_budget, allowed)
 
 
 def _by_parts(successors: Successors, formula: Formula, state_budget: int, allowed: int) -> Machine:

@@ -15,7 +15,8 @@ No operation enumerates letters; all are memoised.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Final
 
 FALSE: Final = 0
@@ -34,8 +35,8 @@ LEAF: Final = 1 << 40
 """The ``atom`` of a leaf: greater than every index of an atom."""
 
 
-class OutOfNodes(Exception):
-    """Raised when the diagrams outgrow their limit: the formula blows up."""
+class OutOfSteps(Exception):
+    """Raised when an operation has taken more steps than the tables allow: the formula blows up."""
 
 
 class Diagrams:
@@ -43,11 +44,12 @@ class Diagrams:
 
     ``atom[n]``, ``low[n]`` and ``high[n]`` describe transition ``n``; for a leaf, ``low`` is the
     obligation and ``high`` 1 where the trace may end.  ``variable``, ``absent``, ``present``
-    describe obligations alike.  At most ``node_limit`` transitions are made, then
-    :class:`OutOfNodes` is raised.
+    describe obligations alike.  Each of the four operations may take ``step_limit`` steps in all,
+    then :class:`OutOfSteps` is raised; a step is remembered, so the limit bounds memory too.
     """
 
     __slots__ = (
+        "_memos",
         "_nodes",
         "_obligations",
         "absent",
@@ -59,13 +61,14 @@ class Diagrams:
         "high",
         "low",
         "node",
-        "node_limit",
         "present",
+        "step_limit",
         "variable",
     )
 
-    def __init__(self, node_limit: int = 4_000_000) -> None:
-        self.node_limit = node_limit
+    def __init__(self, step_limit: int = 2_000_000) -> None:
+        self.step_limit = step_limit
+        self._memos: list[dict[tuple[int, int], int]] = []
         self.variable: list[int] = [LEAF, LEAF]
         self.absent: list[int] = [FALSE, TRUE]
         self.present: list[int] = [FALSE, TRUE]
@@ -81,6 +84,16 @@ class Diagrams:
         self.disjoin: Callable[[int, int], int] = self._transition_operation(
             ACCEPT, REJECT, self.either, conjunction=False
         )
+
+    @contextmanager
+    def at_most(self, steps: int) -> Iterator[None]:
+        """Let what happens inside take no more than so many further steps of each operation."""
+        before = self.step_limit
+        self.step_limit = min(before, max(map(len, self._memos)) + steps)
+        try:
+            yield
+        finally:
+            self.step_limit = before
 
     # --- making nodes -------------------------------------------------------------------------
 
@@ -105,8 +118,6 @@ class Diagrams:
 
     def _add(self, key: tuple[int, int, int]) -> int:
         number = len(self.atom)
-        if number >= self.node_limit:
-            raise OutOfNodes
         self._nodes[key] = number
         self.atom.append(key[0])
         self.low.append(key[1])
@@ -132,6 +143,7 @@ class Diagrams:
     def _obligation_operation(self, absorbing: int, neutral: int) -> Callable[[int, int], int]:
         variable, absent, present, make = self.variable, self.absent, self.present, self.obligation
         memo: dict[tuple[int, int], int] = {}
+        self._memos.append(memo)
 
         def operate(x: int, y: int) -> int:
             if x == y or y == neutral:
@@ -143,6 +155,8 @@ class Diagrams:
             key = (x, y) if x < y else (y, x)
             result = memo.get(key)
             if result is None:
+                if len(memo) >= self.step_limit:
+                    raise OutOfSteps
                 vx, vy = variable[x], variable[y]
                 if vx == vy:
                     result = make(vx, operate(absent[x], absent[y]), operate(present[x], present[y]))
@@ -160,6 +174,7 @@ class Diagrams:
     ) -> Callable[[int, int], int]:
         atom, low, high, nodes, add, leaf = self.atom, self.low, self.high, self._nodes, self._add, self.leaf
         memo: dict[tuple[int, int], int] = {}
+        self._memos.append(memo)
 
         def operate(x: int, y: int) -> int:
             if x == y or y == neutral:
@@ -172,6 +187,8 @@ class Diagrams:
             result = memo.get(key)
             if result is not None:
                 return result
+            if len(memo) >= self.step_limit:
+                raise OutOfSteps
             ax, ay = atom[x], atom[y]
             if ax == ay:
                 if ax == LEAF:
@@ -238,12 +255,12 @@ class Diagrams:
 
         return rebuild(transition)
 
-    def leaves(self, transition: int) -> list[int]:
-        """The distinct leaves of a transition, left to right."""
+    def leaves(self, *transitions: int) -> list[int]:
+        """The distinct leaves of transitions, left to right."""
         atom, low, high = self.atom, self.low, self.high
         found: list[int] = []
-        seen = {transition}
-        stack = [transition]
+        stack = list(dict.fromkeys(reversed(transitions)))
+        seen = set(stack)
         while stack:
             n = stack.pop()
             if atom[n] == LEAF:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from tltlc.automaton.diagrams import ACCEPT, FALSE, TRUE
+from tltlc.automaton.diagrams import ACCEPT, FALSE, TRUE, OutOfSteps
 from tltlc.automaton.machine import Machine, equivalent
 from tltlc.automaton.successors import Successors
 from tltlc.logic import formula as build
@@ -19,8 +19,17 @@ from tltlc.logic.rewrite import simplify
 _TERM_LIMIT = 64
 """Sums of products with more terms are written as nested case distinctions instead."""
 
+_MEMBERS = 12
 _CANDIDATES = 3
-"""How many obligations of a state are written out and shortened; the shortest result wins."""
+"""Of the first obligations that a state stands for, as many are written out, and as many of the shortest shortened."""
+
+_LONGEST_SIMPLIFIED = 200
+_LONGEST_PROVED = 60
+"""Labels with more nodes than that are not rewritten, or not tried operand by operand: nobody reads them."""
+
+_PROOF_STEPS = 2_000
+_COST_OF_GIVING_UP = 30
+"""A proof is given up after so many steps, and then counts as so many more."""
 
 _Term = frozenset[tuple[int, bool]]
 
@@ -28,27 +37,28 @@ _Term = frozenset[tuple[int, bool]]
 class Labels:
     """The labels of one machine's states.
 
-    ``work`` bounds the pairs of states that all proofs together may look at; when it is spent, labels
-    stay as they are.  A count and not a clock, so that equal input gives equal output.
+    ``work`` bounds the proofs tried for all labels together; when it is spent, labels stay as they
+    are.  A count and not a clock, so that equal input gives equal output.
     """
 
-    __slots__ = ("_allowed", "_machine", "_members", "_position", "_successors", "_work")
+    __slots__ = ("_allowed", "_machine", "_members", "_position", "_successors", "_sums", "_work")
 
     def __init__(
-        self, successors: Successors, machine: Machine, source: Formula, allowed: int = ACCEPT, work: int = 50_000
+        self, successors: Successors, machine: Machine, source: Formula, allowed: int = ACCEPT, work: int = 3_000
     ) -> None:
         self._successors = successors
         self._machine = machine
         self._allowed = allowed
         self._work = work
         self._position = {part: index for index, part in enumerate(source.walk())}
+        self._sums: dict[int, list[_Term] | None] = {FALSE: [], TRUE: [frozenset()]}
         self._members: dict[int, list[int]] = {}
         for obligation, state in machine.representative.items():
             self._members.setdefault(state, []).append(obligation)
 
     def label(self, state: int) -> Formula:
         """The shortest label found for a state of the machine, in negation normal form."""
-        written = sorted((self.written(obligation) for obligation in self._members[state]), key=length)
+        written = sorted((self.written(obligation) for obligation in self._members[state][:_MEMBERS]), key=length)
         return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=length)
 
     def written(self, obligation: int) -> Formula:
@@ -128,24 +138,26 @@ class Labels:
 
     def _terms(self, obligation: int) -> list[_Term] | None:
         """A sum of products of the obligation, or None where it has too many terms."""
-        if obligation == FALSE:
-            return []
-        if obligation == TRUE:
-            return [frozenset()]
+        if obligation in self._sums:
+            return self._sums[obligation]
         diagrams = self._successors.diagrams
         variable = diagrams.variable[obligation]
         absent, present = diagrams.absent[obligation], diagrams.present[obligation]
-        # A temporal variable only ever helps: where it is absent the rest holds without it.
         shared = diagrams.both(absent, present)
-        parts = [self._terms(shared), self._terms(absent), self._terms(present)]
-        if any(part is None or len(part) > _TERM_LIMIT for part in parts):
-            return None
-        common, without, alone = (part or [] for part in parts)
-        return [
-            *(term | {(variable, True)} for term in alone if not any(other <= term for other in common)),
-            *(term | {(variable, False)} for term in without if not any(other <= term for other in common)),
-            *common,
-        ]
+        common, alone = self._terms(shared), self._terms(present)
+        # A temporal variable only ever helps: then `shared` is `absent`, and no term asks for its absence.
+        without = common if shared == absent else self._terms(absent)
+        terms: list[_Term] | None = None
+        if common is not None and alone is not None and without is not None:
+            terms = [
+                *(term | {(variable, True)} for term in alone if not any(other <= term for other in common)),
+                *(term | {(variable, False)} for term in without if not any(other <= term for other in common)),
+                *common,
+            ]
+            if len(terms) > _TERM_LIMIT:
+                terms = None
+        self._sums[obligation] = terms
+        return terms
 
     def _literal(self, variable: int, polarity: bool) -> tuple[int, Formula]:
         formula = self._successors.formulas[variable]
@@ -157,9 +169,9 @@ class Labels:
     # --- shortening ---------------------------------------------------------------------------
 
     def _shortened(self, formula: Formula, state: int) -> Formula:
-        formula = simplify(formula)
+        formula = simplified(formula)
         tried: set[Formula] = set()
-        progress = True
+        progress = length(formula) <= _LONGEST_PROVED
         while progress and self._work > 0:
             progress = False
             for shorter in sorted({simplify(f): None for f in _with_one_operand_less(formula)}, key=length):
@@ -172,11 +184,20 @@ class Labels:
         return formula
 
     def _proved(self, formula: Formula, state: int) -> bool:
-        budget = min(self._work, 4 * len(self._machine.transitions) + 16)
-        obligation = self._successors.obligation(formula)
-        answer, used = equivalent(self._successors, self._machine, obligation, state, budget, self._allowed)
-        self._work -= used
-        return answer
+        self._work -= 1
+        try:
+            with self._successors.diagrams.at_most(_PROOF_STEPS):
+                return equivalent(
+                    self._successors, self._machine, self._successors.obligation(formula), state, self._allowed
+                )
+        except OutOfSteps:
+            self._work -= _COST_OF_GIVING_UP
+            return False
+
+
+def simplified(formula: Formula) -> Formula:
+    """The formula after the named rewrites, unless it is too long for anybody to read."""
+    return formula if length(formula) > _LONGEST_SIMPLIFIED else simplify(formula)
 
 
 def length(formula: Formula) -> int:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, Diagrams, OutOfNodes
+from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, Diagrams, OutOfSteps
 from tltlc.automaton.successors import Successors
 
 
@@ -36,12 +36,12 @@ def machine(successors: Successors, obligation: int, state_budget: int, allowed:
     """The minimal machine of an obligation over the letters that ``allowed`` (see ``Diagrams.constrain``) accepts.
 
     Raises :class:`OutOfStates` where more than ``state_budget`` obligations are reached and
-    :class:`OutOfNodes` where their transitions outgrow the table.
+    :class:`OutOfSteps` where their transitions take too many steps.
     """
     try:
         return minimise(successors, explore(successors, obligation, state_budget, allowed))
     except RecursionError:
-        raise OutOfNodes from None
+        raise OutOfSteps from None
 
 
 def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:
@@ -193,12 +193,11 @@ def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[
     )
 
 
-def equivalent(
-    successors: Successors, machine: Machine, left: int, right: int, pair_budget: int, allowed: int = ACCEPT
-) -> tuple[bool, int]:
-    """Whether two obligations are proved to have equal languages, and how many pairs of states that took.
+def equivalent(successors: Successors, machine: Machine, left: int, right: int, allowed: int = ACCEPT) -> bool:
+    """Whether two obligations have equal languages.
 
-    False where they differ, and where ``pair_budget`` runs out before the proof.  The union-find form of Hopcroft and Karp's test (1971), started from what ``machine`` knows to be equal.
+    The union-find form of Hopcroft and Karp's test (1971), started from what ``machine`` knows to be
+    equal.  Raises :class:`OutOfSteps` as its transitions may.
     """
     diagrams = successors.diagrams
     atom, low, high = diagrams.atom, diagrams.low, diagrams.high
@@ -218,15 +217,11 @@ def equivalent(
         transition = successors.of_obligation(state)
         return transition if allowed == ACCEPT else diagrams.constrain(transition, allowed)
 
-    used = 0
     pending = [(left, right)]
     while pending:
         x, y = map(find, pending.pop())
         if x == y:
             continue
-        used += 1
-        if used > pair_budget:
-            return False, used
         parent[y] = x
         stack = [(transition_of(x), transition_of(y))]
         visited = set(stack)
@@ -237,7 +232,7 @@ def equivalent(
             am, an = atom[m], atom[n]
             if am == an == LEAF:
                 if high[m] != high[n] or m == IMPOSSIBLE or n == IMPOSSIBLE:
-                    return False, used
+                    return False
                 pending.append((low[m], low[n]))
                 continue
             lows = (low[m] if am <= an else m, low[n] if an <= am else n)
@@ -246,4 +241,4 @@ def equivalent(
                 if pair not in visited:
                     visited.add(pair)
                     stack.append(pair)
-    return True, used
+    return True

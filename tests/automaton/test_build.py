@@ -1,0 +1,255 @@
+"""The automaton against the oracle, and every claim of semantics section 3 against brute force."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.automaton.letters import holds, letters, minimal_size, named, run, table, traces
+from tests.logic.strategies import formulas
+from tests.reference_formulas import read_formula
+from tltlc.automaton.build import build, default_judge, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.logic import oracle
+from tltlc.logic.formula import Formula
+
+SMALL = formulas(atoms=("a", "b"), max_leaves=6)
+WIDE = formulas(atoms=("a", "b", "c"), max_leaves=8)
+GROUPS = st.sampled_from([(), (("a", "b"),), (("a", "b", "c"),), (("a", "b"), ("b", "c"))])
+
+
+def compiled(formula: Formula | str, *exclusive: tuple[str, ...]) -> Fspa:
+    if isinstance(formula, str):
+        formula = read_formula(formula)
+    return build(spec_from_formula(formula, exclusive=exclusive))
+
+
+def labels(fspa: Fspa) -> list[str]:
+    return [state.label.ascii for state in fspa.states]
+
+
+# --- the language ---------------------------------------------------------------------------------
+
+
+@given(SMALL)
+@settings(max_examples=300)
+def test_accepts_what_the_formula_holds_of(formula: Formula) -> None:
+    fspa = compiled(formula)
+    for trace in traces(fspa, 4):
+        assert fspa.states[run(fspa, trace)].accepting == oracle.holds(formula, named(fspa, trace)), trace
+
+
+@given(WIDE, GROUPS)
+@settings(max_examples=150)
+def test_accepts_what_the_formula_holds_of_where_atoms_exclude_each_other(
+    formula: Formula, groups: tuple[tuple[str, ...], ...]
+) -> None:
+    fspa = compiled(formula, *groups)
+    for trace in islice(traces(fspa, 3), 600):
+        assert fspa.states[run(fspa, trace)].accepting == oracle.holds(formula, named(fspa, trace)), trace
+
+
+@given(WIDE, GROUPS)
+@settings(max_examples=150)
+def test_complete_deterministic_and_minimal(formula: Formula, groups: tuple[tuple[str, ...], ...]) -> None:
+    """No automaton of this language is smaller, however the empty trace is judged (size convention)."""
+    fspa = compiled(formula, *groups)
+    table(fspa)  # asserts that exactly one guard is true of each letter
+    accepting = {state.id for state in fspa.states if state.accepting}
+    assert len(fspa.states) == minimal_size(fspa, accepting)
+    with_initial_split = _initial_split(fspa)
+    for empty_accepted in (False, True):
+        marked = accepting | ({len(fspa.states)} if empty_accepted else set())
+        assert len(fspa.states) <= _minimal_from(with_initial_split, marked)
+
+
+def _initial_split(fspa: Fspa) -> dict[int, list[int]]:
+    """The transition table with a fresh initial state, the last one, that moves as state 0 does."""
+    moves = {state: list(row.values()) for state, row in table(fspa).items()}
+    return moves | {len(fspa.states): moves[0]}
+
+
+def _minimal_from(moves: dict[int, list[int]], accepting: set[int]) -> int:
+    initial = len(moves) - 1
+    reached, queue = {initial}, [initial]
+    for state in queue:
+        for target in moves[state]:
+            if target not in reached:
+                reached.add(target)
+                queue.append(target)
+    block = {state: int(state in accepting) for state in reached}
+    while True:
+        signature = {state: (block[state], *(block[target] for target in moves[state])) for state in reached}
+        numbers = {key: number for number, key in enumerate(dict.fromkeys(signature.values()))}
+        if len(numbers) == len(set(block.values())):
+            return len(numbers)
+        block = {state: numbers[key] for state, key in signature.items()}
+
+
+@pytest.mark.parametrize(("text", "empty"), [("F a & F b", False), ("G a", True), ("X true", False), ("a", False)])
+def test_the_initial_state_rejects_the_empty_trace_unless_that_costs_a_state(text: str, empty: bool) -> None:
+    assert compiled(text).states[0].accepting is empty
+
+
+# --- distances, verdicts, order -------------------------------------------------------------------
+
+
+@given(WIDE, GROUPS)
+@settings(max_examples=150)
+def test_distances_and_verdicts_are_what_reachability_says(
+    formula: Formula, groups: tuple[tuple[str, ...], ...]
+) -> None:
+    fspa = compiled(formula, *groups)
+    moves = table(fspa)
+    for state in fspa.states:
+        layers, seen = [{state.id}], {state.id}
+        while layers[-1]:
+            layers.append({target for source in layers[-1] for target in moves[source].values()} - seen)
+            seen |= layers[-1]
+        depths = [depth for depth, layer in enumerate(layers) if any(fspa.states[q].accepting for q in layer)]
+        assert state.distance == (min(depths) if depths else None)
+        if not depths:
+            expected = "violated"
+        elif all(fspa.states[reached].accepting for reached in seen):
+            expected = "satisfied"
+        else:
+            expected = "holding" if state.accepting else "pending"
+        assert state.verdict == expected
+    assert fspa.spec_size == max((state.distance or 0 for state in fspa.states), default=0)
+
+
+@given(WIDE)
+@settings(max_examples=100)
+def test_states_are_numbered_breadth_first_and_edges_sorted(formula: Formula) -> None:
+    fspa = compiled(formula)
+    pairs = [(edge.source, edge.target) for edge in fspa.edges]
+    assert pairs == sorted(set(pairs))
+    depth = {0: 0}
+    for source, target in sorted(pairs, key=lambda pair: pair[0]):
+        depth.setdefault(target, depth[source] + 1)
+    assert [depth[state.id] for state in fspa.states] == sorted(depth.values())
+
+
+@given(WIDE)
+@settings(max_examples=50)
+def test_equal_input_gives_equal_output(formula: Formula) -> None:
+    assert compiled(formula) == compiled(formula)
+
+
+# --- guards ---------------------------------------------------------------------------------------
+
+
+@given(WIDE, GROUPS)
+@settings(max_examples=100)
+def test_guards_hold_all_primes_and_their_text_says_the_same(
+    formula: Formula, groups: tuple[tuple[str, ...], ...]
+) -> None:
+    fspa = compiled(formula, *groups)
+    possible = letters(fspa)
+    for edge in fspa.edges:
+        taken = {letter for letter in possible if holds(edge, letter)}
+        assert set(edge.guard.primes) == _primes_by_brute_force(fspa, taken)
+        text = read_formula(edge.guard.text)
+        names = [atom.name for atom in fspa.atoms]
+        for letter in possible:
+            true = {name for name, value in zip(names, letter, strict=True) if value}
+            assert oracle.holds(text, [true]) == (letter in taken)
+
+
+def _primes_by_brute_force(fspa: Fspa, taken: set[tuple[bool, ...]]) -> set[tuple[tuple[int, bool], ...]]:
+    """All cubes inside ``taken`` or the impossible letters, that meet a possible one, and are maximal so."""
+    count = len(fspa.atoms)
+    possible = set(letters(fspa))
+    implicants = []
+    for code in range(3**count):
+        cube = tuple((atom, bool(code // 3**atom % 3 - 1)) for atom in range(count) if code // 3**atom % 3)
+        inside = {letter for letter in possible if all(letter[atom] == polarity for atom, polarity in cube)}
+        # Contained in the guard or the impossible letters <=> its possible letters are in the guard.
+        if inside <= taken:
+            implicants.append((cube, bool(inside)))
+    prime = [
+        (cube, meets)
+        for cube, meets in implicants
+        if not any(set(other) < set(cube) for other, _ in implicants)
+    ]
+    return {cube for cube, meets in prime if meets}
+
+
+# --- labels ---------------------------------------------------------------------------------------
+
+
+@given(SMALL)
+@settings(max_examples=150)
+def test_a_label_says_what_the_rest_of_the_trace_must_meet(formula: Formula) -> None:
+    fspa = compiled(formula)
+    for state in fspa.states:
+        label = read_formula(state.label.ascii)
+        for rest in traces(fspa, 3):
+            after = fspa.states[run(fspa, rest, state.id)]
+            assert after.accepting == oracle.holds(label, named(fspa, rest)), (state, rest)
+
+
+def test_labels_of_cover_and_hide_are_those_of_the_paper() -> None:
+    """Fig. 3 of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024."""
+    fspa = compiled("F(a & X F(b & X F c)) & G p")
+    assert sorted(labels(fspa), key=len, reverse=True) == [
+        "F(a & X F(b & X F c)) & G p",
+        "F(b & X F c) & G p",
+        "F c & G p",
+        "false",
+        "G p",
+    ]
+    assert fspa.spec_size == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "states"),
+    [
+        ("F(s1 & X F(s2 & X F e)) & G p", 5),
+        ("F(s1 & X F(s2 & X F e))", 4),
+        ("F(s1 & X F(s2 & X F(s3 & X F((r & er) | (l & el))))) & G p", 6),
+        ("F(s1 & X F(s2 & X F(s3 & X F((r -> er) & (l -> el))))) & G p", 6),
+    ],
+)
+def test_sizes_of_the_papers_specifications(text: str, states: int) -> None:
+    assert len(compiled(text).states) == states
+
+
+def test_labels_keep_the_operators_of_the_source() -> None:
+    assert labels(compiled("F(a & X F((r -> er) & (l -> el)))")) == [
+        "F(a & X F((r -> er) & (l -> el)))",
+        "F((r -> er) & (l -> el))",
+        "true",
+    ]
+
+
+def test_labels_are_shortened_where_the_automaton_proves_it() -> None:
+    assert labels(compiled("F(a & F(b & F c))")) == ["F(a & F(b & F c))", "true", "F(b & F c)", "F c"]
+
+
+def test_exclusive_atoms_make_skipping_impossible() -> None:
+    assert compiled("F a & F b").spec_size == 1
+    assert compiled("F a & F b", ("a", "b")).spec_size == 2
+
+
+# --- judge ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "judge"),
+    [
+        ("G p", "limit"),
+        ("a & G b", "limit"),
+        ("G(a -> F b)", "limit"),
+        ("F e & G p", "goal"),
+        ("a U b", "goal"),
+        ("a W b", "limit"),
+        ("!F a", "limit"),
+        ("!G a", "goal"),
+    ],
+)
+def test_default_judge(text: str, judge: str) -> None:
+    assert default_judge(read_formula(text)) == judge
