@@ -14,7 +14,7 @@ from functools import reduce
 from operator import add, ge, gt, le, lt, mul, neg, sub, truediv
 from typing import Final
 
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression import Condition, Const, Expression, Param, Signal, When
 
 MULTIPLIED_EXPONENTS: Final = {2.0: 2, 3.0: 3}
 """The constant exponents that mean a product, and of how many factors."""
