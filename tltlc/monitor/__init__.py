@@ -1,0 +1,9 @@
+"""Run an automaton on samples: atoms, transition, progress and reward, one sample after the other."""
+
+from __future__ import annotations
+
+from tltlc.monitor.monitor import Monitor, Step
+from tltlc.monitor.reward import RewardOptions
+from tltlc.monitor.samples import MonitorError
+
+__all__ = ["Monitor", "MonitorError", "RewardOptions", "Step"]

@@ -1,0 +1,113 @@
+"""The monitor: an automaton that runs on samples, one step after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, SupportsFloat
+
+from tltlc.automaton.fspa import Fspa, Verdict
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.monitor.guards import bounding_atom, holds, robustness
+from tltlc.monitor.reward import RewardOptions, RewardStep, reward_step
+from tltlc.monitor.samples import Samples, check_exclusive
+from tltlc.monitor.tables import tables
+
+
+class Step(NamedTuple):
+    """What one sample did.
+
+    ``state``, its ``label`` (what remains to be satisfied), its ``verdict`` and whether it is ``accepting`` speak of
+    the prefix so far.  ``done``: an episode ends here, or ended before.  ``progress`` is the best so far, in
+    [0, 1].  ``reward`` is that of the step, 0 past the end of the episode.  ``robustness`` is that of the edge taken,
+    in [-1, 1].  ``limiting`` is the atom that bounds the nearest edge that would have improved the distance, None
+    where the automaton moved or nothing improves.
+    """
+
+    state: int
+    label: str
+    verdict: Verdict
+    accepting: bool
+    done: bool
+    progress: float
+    reward: float
+    robustness: float
+    limiting: str | None
+
+
+class Monitor:
+    """Runs an automaton over one trace after another.
+
+    ``params`` override values of params, in SI units.  ``notices`` collects warnings about clamped values, each
+    given once.  After :meth:`step`, ``values`` holds the values of the atoms, in order.
+
+    Raises:
+        MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
+    """
+
+    def __init__(
+        self, fspa: Fspa, params: Mapping[str, float] | None = None, reward: RewardOptions | None = None
+    ) -> None:
+        self.fspa = fspa
+        self.notices: list[Diagnostic] = []
+        self._samples = Samples(fspa, params, self.notices)
+        self._tables = tables(fspa)
+        self._options = reward or RewardOptions()
+        self._names = tuple(atom.name for atom in fspa.atoms)
+        self.reset()
+
+    def reset(self) -> None:
+        """Go back to the state before the first sample."""
+        self.state = 0
+        self.steps = 0
+        self.progress = 0.0
+        self.done = False
+        self.values: tuple[float, ...] = ()
+        self._memory: Any = None
+
+    def step(self, signals: Mapping[str, SupportsFloat]) -> Step:
+        """Take one sample: the signals by name, numbers in SI units or bools; names that no atom uses are ignored.
+
+        Raises:
+            MonitorError: TLT0611 missing and TLT0612 unusable signals, TLT0613 an atom without a value,
+                TLT0614 exclusive atoms that hold at once.  The state stays.
+        """
+        return self.step_atoms(self._samples.atom_values(signals, self.steps + 1))
+
+    def step_atoms(self, values: Sequence[float]) -> Step:
+        """Take one sample that is given as the values of the atoms, in order, each in [-1, 1].
+
+        Raises:
+            MonitorError: TLT0614 exclusive atoms that hold at once.  The state stays.
+        """
+        check_exclusive(self.fspa, values, self.steps + 1)
+        source = self.state
+        taken = next(edge for edge in self._tables.edges[source] if holds(edge.guard, values))
+        target = self.fspa.states[taken.target]
+        outcome = reward_step(self._tables, source, target.id, values, self.progress, self.steps + 1, self._options)
+        reward = 0.0 if self.done else self._reward(source, target.id, values, outcome)
+        improving = self._tables.improving[source] if source == target.id else ()
+
+        self.state, self.steps, self.values = target.id, self.steps + 1, tuple(values)
+        self.progress = outcome.progress
+        self.done = self.done or outcome.done
+        return Step(
+            state=target.id,
+            label=target.label.ascii,
+            verdict=target.verdict,
+            accepting=target.accepting,
+            done=self.done,
+            progress=self.progress,
+            reward=reward,
+            # Adding 0 turns -0 into 0, so that every monitor prints the same.
+            robustness=robustness(taken.guard, values) + 0.0,
+            limiting=self._names[bounding_atom([edge.guard for edge in improving], values)] if improving else None,
+        )
+
+    def _reward(self, source: int, target: int, values: Sequence[float], outcome: RewardStep) -> float:
+        if self._options.mode == "progress":
+            return outcome.reward
+        from tltlc.monitor.reward_modes import Transition, mode_function
+
+        transition = Transition(source, target, values, outcome.done, outcome.success)
+        reward, self._memory = mode_function(self._options.mode)(self._tables, transition, self._options, self._memory)
+        return reward

@@ -1,0 +1,133 @@
+"""Algorithm 1 of Gutiérrez-Sánchez et al., IEEE Trans. Games 2024: progress, reward and the end of an episode."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from tltlc.monitor.guards import robustness
+from tltlc.monitor.tables import Tables
+
+Mode = Literal["progress", "sparse", "edge", "potential"]
+
+
+@dataclass(frozen=True, slots=True)
+class RewardOptions:
+    """How steps are rewarded and episodes end (semantics, section 4).
+
+    ``mode`` names the reward; those beside ``progress`` are in :mod:`tltlc.monitor.reward_modes`.
+    ``termination``: ``entry`` ends an episode on entry into an accepting or trap state, ``paper`` one step
+    later as the listing does, judged at the goal whatever the spec says.  ``gamma`` in (0, 1] is the discount of
+    mode ``potential`` and of the ``discounted`` terminal penalty.
+    """
+
+    mode: Mode = "progress"
+    termination: Literal["entry", "paper"] = "entry"
+    terminal_penalty: Literal["undiscounted", "discounted"] = "undiscounted"
+    gamma: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class RewardStep:
+    """The outcome of one step: its ``reward``, the best ``progress`` so far, in [0, 1], and whether the episode ends.
+
+    ``success`` speaks of an episode that ends here; elsewhere it is False.
+    """
+
+    reward: float
+    progress: float
+    done: bool
+    success: bool
+
+
+def reward_step(
+    tables: Tables,
+    state: int,
+    target: int,
+    values: Sequence[float],
+    best: float,
+    step: int,
+    options: RewardOptions | None = None,
+) -> RewardStep:
+    """One pass through the loop of Algorithm 1 (lines 11 to 29), from ``state`` to ``target``.
+
+    ``values`` are those of the atoms at the sample that moved the automaton (line 8); ``best`` is the best
+    progress before it (``episode progress``); ``step`` counts the samples of the episode, this one included.
+    With ``T`` the spec's limit in steps, the order of operations is::
+
+        reward = max(0, progress - best)          lines 25 to 28
+        reward = reward - 1 / T                   line 29, where there is a limit
+        reward = reward - terminal penalty        line 20, on a violation, where there is a limit
+
+    Deviations from the listing:
+
+    ▲ line 10: the caller moved the automaton by truth, not by the highest robustness.
+    ▲ lines 12 to 23: the episode ends on entry into an accepting or trap state, not one step later;
+      ``termination="paper"`` runs the lines as they stand.
+    ▲ line 11: where S is 0 nothing is divided; a trap has no progress, so that none is gained there.
+    ▲ line 14: the robustness that is added is capped at 0.
+    ▲ a spec that is judged at its limit (``judge``) ends at T, or before where its verdict is settled; its progress is
+      the share of T survived.
+    """
+    options = options or RewardOptions()
+    limit = tables.fspa.limit_steps
+    done, success = _end(tables, state, target, step, options)
+    progress = max(best, step_progress(tables, state, target, values, step, options))
+    reward = progress - best
+    if limit is not None:
+        reward -= 1 / limit
+        if done and tables.fspa.states[target].verdict == "violated":
+            reward -= _terminal_penalty(limit, step, options)
+    return RewardStep(reward, progress, done, success)
+
+
+def step_progress(
+    tables: Tables, state: int, target: int, values: Sequence[float], step: int, options: RewardOptions
+) -> float:
+    """The progress of this step alone (``step progress``), in [0, 1]: lines 11 to 18."""
+    if tables.fspa.judge == "limit" and options.termination == "entry":
+        return _share_survived(tables, target, step)
+    progress = tables.base_progress[target]
+    if state == target and tables.improving[target]:
+        progress += approach(tables, target, values)
+    return progress
+
+
+def approach(tables: Tables, state: int, values: Sequence[float]) -> float:
+    """What line 14 adds: how near the best edge is that improves, as a share of the spec's size."""
+    nearest = max(robustness(edge.guard, values) for edge in tables.improving[state])
+    return (1.0 + min(0.0, nearest)) / tables.fspa.spec_size
+
+
+def _share_survived(tables: Tables, target: int, step: int) -> float:
+    """The share of the limit that the spec has outlived; of no limit, 0 as long as anything can still happen."""
+    verdict, limit = tables.fspa.states[target].verdict, tables.fspa.limit_steps
+    if verdict == "satisfied":
+        return 1.0
+    if verdict == "violated" or limit is None:
+        return 0.0
+    return min(step, limit) / limit
+
+
+def _end(tables: Tables, state: int, target: int, step: int, options: RewardOptions) -> tuple[bool, bool]:
+    """Whether the episode ends, and if so whether in success."""
+    fspa, reached = tables.fspa, tables.fspa.states[target]
+    settled = reached.verdict in ("satisfied", "violated")
+    if options.termination == "paper":
+        # Lines 12 to 21: it ends where the automaton stayed and no edge improves.
+        ends = state == target and not tables.improving[target]
+    elif fspa.judge == "goal":
+        ends = reached.accepting or settled
+    else:
+        ends = settled
+    done = ends or (fspa.limit_steps is not None and step >= fspa.limit_steps)
+    return done, done and reached.accepting
+
+
+def _terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
+    """The step penalties that the violation saved: ``(T - t) / T``, or what they are worth discounted to this step."""
+    left, gamma = limit - step, options.gamma
+    if options.terminal_penalty == "undiscounted" or gamma == 1.0:
+        return left / limit
+    return float((1 - gamma**left) / ((1 - gamma) * limit))

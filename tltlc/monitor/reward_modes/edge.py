@@ -1,0 +1,22 @@
+"""The robustness of leaving the state, at every step (Li, Serlin, Yang, Belta, Science Robotics 2019)."""
+
+from __future__ import annotations
+
+from tltlc.monitor.guards import robustness
+from tltlc.monitor.reward import RewardOptions
+from tltlc.monitor.reward_modes import Transition
+from tltlc.monitor.tables import Tables
+
+
+def reward(tables: Tables, transition: Transition, _: RewardOptions, memory: None) -> tuple[float, None]:
+    """The robustness of the disjunction of the edges that leave the state, in [-1, 1]; of no edges, 0.
+
+    ▲ Edges into a trap are left out: the disjunction would pay for a violation.
+    """
+    states = tables.fspa.states
+    leaving = [
+        robustness(edge.guard, transition.values)
+        for edge in tables.edges[transition.state]
+        if edge.target != transition.state and states[edge.target].distance is not None
+    ]
+    return max(leaving, default=0.0) + 0.0, memory

@@ -1,0 +1,28 @@
+"""Success, shaped by progress as a potential: the optimal policies stay those of success alone.
+
+Ng, Harada, Russell, Policy invariance under reward transformations, ICML 1999.
+"""
+
+from __future__ import annotations
+
+from tltlc.monitor.reward import RewardOptions, approach
+from tltlc.monitor.reward_modes import Transition
+from tltlc.monitor.tables import Tables
+
+
+def reward(tables: Tables, transition: Transition, options: RewardOptions, memory: float | None) -> tuple[float, float]:
+    """``1`` on success, plus ``gamma * potential after - potential before``.
+
+    The potential of a state at a sample is its base progress and what line 14 of Algorithm 1 adds, moved or
+    not.  It is 0 where the episode has ended; before the first sample it is the base progress of the
+    initial state.
+    """
+    before = tables.base_progress[0] if memory is None else memory
+    after = 0.0 if transition.done else _potential(tables, transition)
+    return float(transition.success) + options.gamma * after - before, after
+
+
+def _potential(tables: Tables, transition: Transition) -> float:
+    state = transition.target
+    base = tables.base_progress[state]
+    return base + approach(tables, state, transition.values) if tables.improving[state] else base

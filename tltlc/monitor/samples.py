@@ -1,0 +1,153 @@
+"""From what the game supplies to the values of the atoms: checks, clamping, predicates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import isfinite
+from typing import Final, SupportsFloat
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.expression_python import compile_expressions
+from tltlc.resolve.spec import Param, Signal
+
+ROUNDING: Final = 1e-9
+"""How far outside [-1, 1] the value of an atom may be before it is worth a notice."""
+
+
+class MonitorError(TltlError):
+    """A sample that no automaton can take, or a param that does not fit; the state stays as it was."""
+
+
+class Samples:
+    """Computes the values of the atoms of an automaton from samples of its signals.
+
+    ``notices`` receives a warning, once per signal or atom, where a value had to be clamped.
+    """
+
+    def __init__(self, fspa: Fspa, params: Mapping[str, float] | None, notices: list[Diagnostic]) -> None:
+        self._fspa, self._notices = fspa, notices
+        self._names = tuple(signal.name for signal in fspa.signals)
+        self._noticed: set[tuple[str, str]] = set()
+        values = param_values(fspa.params, params or {})
+        self._atoms: tuple[Callable[..., float], ...] = compile_expressions(
+            [atom.expression for atom in fspa.atoms], self._names, values
+        )
+
+    def atom_values(self, signals: Mapping[str, SupportsFloat], step: int) -> tuple[float, ...]:
+        """The values of the atoms, each in [-1, 1], at a sample.
+
+        ``step`` is the number of the sample, from 1, for messages.
+
+        Raises:
+            MonitorError: TLT0611 signals are missing, TLT0612 one has no finite value, TLT0613 an atom has none.
+        """
+        missing = [name for name in self._names if name not in signals]
+        if missing:
+            raise _error("TLT0611", step, f"no value for {listed(missing)}")
+        sample = [self._number(signal, signals[signal.name], step) for signal in self._fspa.signals]
+        values = [self._value(index, sample, step) for index in range(len(self._atoms))]
+        return tuple(self._in_range(index, value, step) for index, value in enumerate(values))
+
+    def _number(self, signal: Signal, given: SupportsFloat, step: int) -> float:
+        """The value of a signal as a number in its range."""
+        value = _finite(signal, given, step)
+        low, high = signal.low, signal.high
+        if signal.type == "bool":
+            if value not in (0.0, 1.0):
+                raise _error("TLT0612", step, f"the signal `{signal.name}` is {shown(value)}, not true or false")
+            return value
+        nearest = low if low is not None and value < low else high if high is not None and value > high else value
+        if nearest != value:
+            text = f"the signal `{signal.name}` is {shown(value)}, outside {range_text(low, high)}"
+            self._notice("TLT0615", signal.name, step, f"{text}: it counts as {shown(nearest)}")
+        return nearest
+
+    def _value(self, index: int, sample: Sequence[float], step: int) -> float:
+        name = self._fspa.atoms[index].name
+        try:
+            return self._atoms[index](*sample)
+        except ZeroDivisionError:
+            raise _error("TLT0613", step, f"the atom `{name}` divides by zero") from None
+        except OverflowError:
+            raise _error("TLT0613", step, f"the atom `{name}` is too large to compute") from None
+        except ValueError:
+            raise _error("TLT0613", step, f"the atom `{name}` takes a root or power that does not exist") from None
+
+    def _in_range(self, index: int, value: float, step: int) -> float:
+        if -1.0 <= value <= 1.0:
+            return value
+        name = self._fspa.atoms[index].name
+        if not isfinite(value):
+            raise _error("TLT0613", step, f"the atom `{name}` is too large to compute")
+        nearest = 1.0 if value > 0.0 else -1.0
+        if abs(value - nearest) > ROUNDING:
+            text = f"the atom `{name}` is {shown(value)}, outside [-1, 1]"
+            self._notice("TLT0616", name, step, f"{text}: it counts as {shown(nearest)}")
+        return nearest
+
+    def _notice(self, code: str, name: str, step: int, text: str) -> None:
+        if (code, name) not in self._noticed:
+            self._noticed.add((code, name))
+            self._notices.append(Diagnostic(code, f"step {step}: {text}", severity="warning"))
+
+
+def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[str, float]:
+    """The value of every param: the given one, else its own.
+
+    Raises:
+        MonitorError: TLT0308 no param of that name, or no finite number; TLT0307 outside its range.
+    """
+    known = {param.name: param for param in params}
+    for name, value in given.items():
+        if name not in known:
+            raise MonitorError([Diagnostic("TLT0308", f"there is no param `{name}` to set")])
+        low, high = known[name].low, known[name].high
+        if not isfinite(value):
+            raise MonitorError([Diagnostic("TLT0308", f"the param `{name}` cannot be {shown(value)}")])
+        if (low is not None and value < low) or (high is not None and value > high):
+            text = f"the param `{name}` cannot be {shown(value)}: its range is {range_text(low, high)}"
+            raise MonitorError([Diagnostic("TLT0307", text)])
+    return {name: float(given.get(name, param.value)) for name, param in known.items()}
+
+
+def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:
+    """Raises MonitorError (TLT0614) where two atoms that a declaration calls exclusive hold at once."""
+    for group in fspa.exclusive:
+        holding = [fspa.atoms[atom].name for atom in group if values[atom] > 0.0]
+        if len(holding) > 1:
+            declaration = ", ".join(fspa.atoms[atom].name for atom in group)
+            raise _error("TLT0614", step, f"{listed(holding)} hold at once, against `exclusive {declaration}`")
+
+
+def shown(value: float) -> str:
+    """A number for a message: the shortest text that reads back as the same number."""
+    text = repr(float(value))
+    return text[:-2] if text.endswith(".0") else text
+
+
+def range_text(low: float | None, high: float | None) -> str:
+    """``[0, inf]`` and the like."""
+    return f"[{'-inf' if low is None else shown(low)}, {'inf' if high is None else shown(high)}]"
+
+
+def listed(names: Sequence[str]) -> str:
+    """The names in backquotes, the last one behind ``and``."""
+    quoted = [f"`{name}`" for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
+
+
+def _finite(signal: Signal, given: SupportsFloat, step: int) -> float:
+    if isinstance(given, str) or not hasattr(given, "__float__"):
+        raise _error("TLT0612", step, f"the signal `{signal.name}` is no number")
+    try:
+        value = float(given)
+    except OverflowError:
+        raise _error("TLT0612", step, f"the signal `{signal.name}` is too large for a number") from None
+    if not isfinite(value):
+        raise _error("TLT0612", step, f"the signal `{signal.name}` is {value}, not a finite number")
+    return value
+
+
+def _error(code: str, step: int, text: str) -> MonitorError:
+    return MonitorError([Diagnostic(code, f"step {step}: {text}")])

@@ -1,0 +1,46 @@
+"""What a monitor looks up at every step, computed once from the automaton."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tltlc.automaton.fspa import Edge, Fspa
+
+
+@dataclass(frozen=True, slots=True)
+class Tables:
+    """Per state, by its number: the edges that leave it, those of them that improve, and its base progress.
+
+    An edge improves if its target has a smaller distance than its source.  ``base_progress`` is in [0, 1].
+    """
+
+    fspa: Fspa
+    edges: tuple[tuple[Edge, ...], ...]
+    improving: tuple[tuple[Edge, ...], ...]
+    base_progress: tuple[float, ...]
+
+
+def tables(fspa: Fspa) -> Tables:
+    """The tables of an automaton."""
+    edges: list[list[Edge]] = [[] for _ in fspa.states]
+    for edge in fspa.edges:
+        edges[edge.source].append(edge)
+    improving = [[edge for edge in leaving if _improves(fspa, edge)] for leaving in edges]
+    return Tables(
+        fspa,
+        tuple(map(tuple, edges)),
+        tuple(map(tuple, improving)),
+        tuple(_base_progress(state.distance, fspa.spec_size) for state in fspa.states),
+    )
+
+
+def _improves(fspa: Fspa, edge: Edge) -> bool:
+    before, after = fspa.states[edge.source].distance, fspa.states[edge.target].distance
+    return before is not None and after is not None and after < before
+
+
+def _base_progress(distance: int | None, spec_size: int) -> float:
+    """``(S - d) / S``, line 11 of Algorithm 1; 0 in a trap, 1 in a goal where S is 0 (▲ the paper divides)."""
+    if distance is None:
+        return 0.0
+    return (spec_size - distance) / spec_size if spec_size else 1.0
