@@ -1,0 +1,64 @@
+"""Run an automaton over a whole trace, row by row."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import SupportsFloat
+
+from tltlc.automaton.fspa import Fspa, Verdict
+from tltlc.monitor.monitor import Monitor, Step
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One step of a run: its number, from 1, what the monitor said, and the values of the atoms in order."""
+
+    number: int
+    step: Step
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a whole trace was judged: whether its end is accepted, and the verdict of the last state."""
+
+    accepted: bool
+    verdict: Verdict
+    steps: int
+    progress: float
+    total_reward: float
+
+
+def run(monitor: Monitor, trace: Iterable[Mapping[str, SupportsFloat]]) -> Iterator[Row]:
+    """A row per sample, as the samples come in; the monitor is reset before the first one.
+
+    Raises:
+        TltlError: what :meth:`Monitor.step` and the trace raise.
+    """
+    monitor.reset()
+    for number, sample in enumerate(trace, start=1):
+        step = monitor.step(sample)
+        yield Row(number, step, monitor.values)
+
+
+def header(fspa: Fspa) -> tuple[str, ...]:
+    """The names of the columns that :func:`cells` fills."""
+    return ("step", "state", "verdict", "progress", "reward", *(atom.name for atom in fspa.atoms))
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """A row as text, numbers with 17 significant digits."""
+    numbers = (row.step.progress, row.step.reward, *row.values)
+    return (str(row.number), str(row.step.state), row.step.verdict, *(f"{number + 0.0:.17g}" for number in numbers))
+
+
+def outcome(rows: Iterable[Row]) -> Outcome:
+    """The judgement of a trace that ends after the last of the rows, of which there is at least one."""
+    total = 0.0
+    last: Row | None = None
+    for last in rows:
+        total += last.step.reward
+    if last is None:
+        raise ValueError("a trace has at least one sample")
+    return Outcome(last.step.accepting, last.step.verdict, last.number, last.step.progress, total)

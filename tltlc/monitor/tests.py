@@ -1,0 +1,99 @@
+"""Run the ``test`` blocks of a program: traces in atoms, and what must hold of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from operator import ge, gt, le, lt
+from typing import Final
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.monitor.monitor import Monitor, Step
+from tltlc.monitor.samples import MonitorError, shown
+from tltlc.resolve.spec import Expect, Program, Test
+
+_COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}
+
+_TOLERANCE: Final = 1e-12
+"""Progress adds up in floating point: ``progress >= 0.3`` is met by 0.1 + 0.2, and ``progress < 0.3`` is not."""
+
+
+@dataclass(frozen=True, slots=True)
+class TestResult:
+    """A test and what went wrong in it: nothing, the first expectation that failed, or a sample that cannot be."""
+
+    test: Test
+    failure: Diagnostic | None
+
+    @property
+    def passed(self) -> bool:
+        """Whether every expectation held."""
+        return self.failure is None
+
+
+def run_tests(program: Program, automata: Iterable[Fspa]) -> tuple[TestResult, ...]:
+    """The results of the tests of a program, in order; those of specs without an automaton are left out."""
+    by_name = {fspa.name: fspa for fspa in automata}
+    return tuple(run_test(test, by_name[test.spec]) for test in program.tests if test.spec in by_name)
+
+
+def run_test(test: Test, fspa: Fspa) -> TestResult:
+    """The result of one test: an atom that a step names has the robustness 1, every other one -1.
+
+    Each expectation judges the prefix so far.  Diagnostics: TLT0640 it does not hold, TLT0614 a step in which
+    exclusive atoms hold.
+    """
+    monitor = Monitor(fspa)
+    last: Step | None = None
+    for item in test.items:
+        if isinstance(item, Expect):
+            failure = _unmet(item, last, fspa)
+            if failure is not None:
+                return TestResult(test, failure)
+            continue
+        values = [1.0 if atom.name in item.holds else -1.0 for atom in fspa.atoms]
+        try:
+            for _ in range(item.times):
+                last = monitor.step_atoms(values)
+        except MonitorError as error:
+            label = Label(test.source, test.span, "in this test")
+            return TestResult(test, replace(error.diagnostics[0], labels=(label,)))
+    return TestResult(test, None)
+
+
+def _unmet(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
+    """What is wrong, or None where the expectation holds."""
+    if step is None:
+        return _failure(expect, "a trace has at least one sample", "put a `step` before the first `expect`")
+    if expect.kind == "verdict":
+        if expect.value != step.verdict:
+            return _failure(expect, f"it is {step.verdict}", _remains(step))
+    elif expect.kind == "progress":
+        if not _compares(step.progress, expect):
+            return _failure(expect, f"the progress is {shown(step.progress)}", _remains(step))
+    else:
+        label = fspa.states[step.state].label
+        if _squeezed(str(expect.value)) not in map(_squeezed, (label.ascii, label.unicode, label.english)):
+            return _failure(expect, f"the state is `{label.ascii}`")
+    return None
+
+
+def _compares(progress: float, expect: Expect) -> bool:
+    value = float(expect.value)
+    if abs(progress - value) <= _TOLERANCE:
+        progress = value
+    return bool(_COMPARISONS[expect.comparison or ">="](progress, value))
+
+
+def _squeezed(label: str) -> str:
+    """A label without white space: `F (a)` and `F(a)` are the same."""
+    return "".join(label.split())
+
+
+def _remains(step: Step) -> str | None:
+    return f"what remains is `{step.label}`" if step.label not in ("true", "false") else None
+
+
+def _failure(expect: Expect, remark: str, help: str | None = None) -> Diagnostic:  # noqa: A002
+    return Diagnostic("TLT0640", "this expectation does not hold", (Label(expect.source, expect.span, remark),), help)
