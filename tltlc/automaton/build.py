@@ -13,17 +13,21 @@ from tltlc.automaton.composition import minimal_machine as compose
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfSteps
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
-from tltlc.automaton.labels import Labels, length, simplified
+from tltlc.automaton.labels import Labels, simplified
 from tltlc.automaton.machine import Machine, OutOfStates
 from tltlc.automaton.successors import Successors
 from tltlc.expression import Signal as SignalValue
 from tltlc.logic.formula import Formula, rebuild
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.printer import ascii_text, english_text, unicode_text
+from tltlc.logic.rewrite import size
 from tltlc.resolve.spec import Atom, Judge, Signal, Spec
 from tltlc.source import SourceFile, Span
 
 DEFAULT_STATE_BUDGET = 50_000
+
+_LONGEST_IN_ENGLISH = 2_000
+"""Characters of a formula above which no sentence would be read."""
 
 
 def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
@@ -225,7 +229,7 @@ def _labels(
     in_source = {negation_normal_form(part): part for part in source.walk() if part.op in ("implies", "iff")}
     formulas = {state: _restored(labels.label(state), in_source) for state in minimal.transitions}
     own = simplified(source)
-    if length(own) <= length(formulas[minimal.initial]):
+    if size(own) <= size(formulas[minimal.initial]):
         formulas[minimal.initial] = own
     texts = {state: _text(formula) for state, formula in formulas.items()}
     return {leaf: _at_the_end(texts[diagrams.low[leaf]], diagrams.high[leaf] == 1) for leaf in order}
@@ -240,7 +244,9 @@ def _restored(formula: Formula, in_source: Mapping[Formula, Formula]) -> Formula
 
 
 def _text(formula: Formula) -> Text:
-    return Text(ascii_text(formula), unicode_text(formula), english_text(formula))
+    ascii = ascii_text(formula)
+    english = english_text(formula) if len(ascii) <= _LONGEST_IN_ENGLISH else f"Satisfy {ascii}."
+    return Text(ascii, unicode_text(formula), english)
 
 
 def _at_the_end(label: Text, accepting: bool) -> Text:

@@ -25,13 +25,15 @@ class TooManyPrimes(Exception):
 class Guards:
     """Guards over one table of diagrams, under the letters that ``allowed`` accepts."""
 
-    __slots__ = ("_allowed", "_by_leaf", "_diagrams", "_primes")
+    __slots__ = ("_allowed", "_by_leaf", "_covers", "_diagrams", "_negations", "_primes")
 
     def __init__(self, diagrams: Diagrams, allowed: int = ACCEPT) -> None:
         self._diagrams = diagrams
         self._allowed = allowed
         self._by_leaf: dict[int, dict[int, int]] = {}
         self._primes: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
+        self._covers: dict[tuple[int, int], tuple[tuple[Cube, ...], int]] = {}
+        self._negations: dict[int, int] = {ACCEPT: REJECT, REJECT: ACCEPT}
 
     def by_leaf(self, transition: int) -> dict[int, int]:
         """The guard of each leaf of a transition, ``IMPOSSIBLE`` left out."""
@@ -72,10 +74,12 @@ class Guards:
 
         Letters that ``exclusive`` rules out are free, they go where the formula gets shorter.
         """
-        products = self._irredundant(guard, self._upper(guard))
-        outside = self._negation(self._upper(guard))
-        sums = self._irredundant(outside, self._negation(guard))
-        if sum(map(len, sums)) < sum(map(len, products)):
+        products, _ = self._irredundant(guard, self._upper(guard))
+        # A single product is as short as it gets.
+        sums: tuple[Cube, ...] = ()
+        if len(products) > 1:
+            sums, _ = self._irredundant(self._negation(self._upper(guard)), self._negation(guard))
+        if sums and sum(map(len, sums)) < sum(map(len, products)):
             negated = [tuple(literal ^ 1 for literal in cube) for cube in sums]
             return build.and_(*(build.or_(*_literals(cube, names)) for cube in sorted(negated)))
         return build.or_(*(build.and_(*_literals(cube, names)) for cube in sorted(products)))
@@ -89,7 +93,7 @@ class Guards:
         return self._diagrams.disjoin(guard, self._negation(self._allowed))
 
     def _negation(self, guard: int) -> int:
-        return self._diagrams.relabel(guard, lambda leaf: REJECT if leaf == ACCEPT else ACCEPT, {})
+        return self._diagrams.relabel(guard, self._negations.__getitem__, self._negations)
 
     def _possible(self, cube: Cube) -> bool:
         """Whether some allowed letter meets the cube."""
@@ -128,39 +132,32 @@ class Guards:
             self._primes[function] = known
         return known
 
-    def _irredundant(self, lower: int, upper: int) -> list[Cube]:
-        """An irredundant sum of products between two functions (Minato 1993)."""
-        memo: dict[tuple[int, int], tuple[list[Cube], int]] = {}
-        diagrams = self._diagrams
-        conjoin, disjoin = diagrams.conjoin, diagrams.disjoin
-
-        def cover(low: int, high: int) -> tuple[list[Cube], int]:
-            if low == REJECT:
-                return [], REJECT
-            if high == ACCEPT:
-                return [()], ACCEPT
-            key = (low, high)
-            found = memo.get(key)
-            if found is None:
-                atom = min(diagrams.atom[low], diagrams.atom[high])
-                low0, low1 = _cofactors(diagrams, low, atom)
-                high0, high1 = _cofactors(diagrams, high, atom)
-                cubes0, covered0 = cover(conjoin(low0, self._negation(high1)), high0)
-                cubes1, covered1 = cover(conjoin(low1, self._negation(high0)), high1)
-                rest = disjoin(conjoin(low0, self._negation(covered0)), conjoin(low1, self._negation(covered1)))
-                cubes2, covered2 = cover(rest, conjoin(high0, high1))
-                cubes = [
-                    *((2 * atom + 1, *cube) for cube in cubes1),
-                    *((2 * atom, *cube) for cube in cubes0),
-                    *cubes2,
-                ]
-                found = memo[key] = (
-                    cubes,
-                    disjoin(diagrams.node(atom, covered0, covered1), covered2),
-                )
-            return found
-
-        return cover(lower, upper)[0]
+    def _irredundant(self, lower: int, upper: int) -> tuple[tuple[Cube, ...], int]:
+        """An irredundant sum of products between two functions, and the function that it is (Minato 1993)."""
+        if lower == REJECT:
+            return (), REJECT
+        if upper == ACCEPT:
+            return ((),), ACCEPT
+        found = self._covers.get((lower, upper))
+        if found is None:
+            diagrams, negation = self._diagrams, self._negation
+            conjoin, disjoin = diagrams.conjoin, diagrams.disjoin
+            atom = min(diagrams.atom[lower], diagrams.atom[upper])
+            lower0, lower1 = _cofactors(diagrams, lower, atom)
+            upper0, upper1 = _cofactors(diagrams, upper, atom)
+            # First what only a product with a literal can cover, then the rest without one.
+            without, covered0 = self._irredundant(conjoin(lower0, negation(upper1)), upper0)
+            with_, covered1 = self._irredundant(conjoin(lower1, negation(upper0)), upper1)
+            rest = disjoin(conjoin(lower0, negation(covered0)), conjoin(lower1, negation(covered1)))
+            free, covered = self._irredundant(rest, conjoin(upper0, upper1))
+            cubes = (
+                *((2 * atom + 1, *cube) for cube in with_),
+                *((2 * atom, *cube) for cube in without),
+                *free,
+            )
+            found = cubes, disjoin(diagrams.node(atom, covered0, covered1), covered)
+            self._covers[lower, upper] = found
+        return found
 
 
 def _cofactors(diagrams: Diagrams, function: int, atom: int) -> tuple[int, int]:

@@ -14,22 +14,26 @@ from tltlc.automaton.machine import Machine, equivalent
 from tltlc.automaton.successors import Successors
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
-from tltlc.logic.rewrite import simplify
+from tltlc.logic.rewrite import simplify, size
 
 _TERM_LIMIT = 64
 """Sums of products with more terms are written as nested case distinctions instead."""
 
-_MEMBERS = 12
+_MEMBERS = 6
 _CANDIDATES = 3
-"""Of the first obligations that a state stands for, as many are written out, and as many of the shortest shortened."""
+"""Of the smallest obligations that a state stands for, as many are written out, and of these as many shortened."""
+
+_MOST_FACTORED = 40
+"""Obligations over more variables are written out as they are built, without a search for common factors."""
 
 _LONGEST_SIMPLIFIED = 200
 _LONGEST_PROVED = 60
 """Labels with more nodes than that are not rewritten, or not tried operand by operand: nobody reads them."""
 
 _PROOF_STEPS = 2_000
+_PROOF_PAIRS = 100
 _COST_OF_GIVING_UP = 30
-"""A proof is given up after so many steps, and then counts as so many more."""
+"""A proof is given up after so many steps or pairs of states, and then counts as so many more."""
 
 _Term = frozenset[tuple[int, bool]]
 
@@ -41,7 +45,7 @@ class Labels:
     are.  A count and not a clock, so that equal input gives equal output.
     """
 
-    __slots__ = ("_allowed", "_machine", "_members", "_position", "_successors", "_sums", "_work")
+    __slots__ = ("_allowed", "_machine", "_members", "_position", "_successors", "_sums", "_work", "_written")
 
     def __init__(
         self, successors: Successors, machine: Machine, source: Formula, allowed: int = ACCEPT, work: int = 3_000
@@ -51,6 +55,7 @@ class Labels:
         self._allowed = allowed
         self._work = work
         self._position = {part: index for index, part in enumerate(source.walk())}
+        self._written: dict[int, tuple[int, Formula]] = {}
         self._sums: dict[int, list[_Term] | None] = {FALSE: [], TRUE: [frozenset()]}
         self._members: dict[int, list[int]] = {}
         for obligation, state in machine.representative.items():
@@ -58,8 +63,9 @@ class Labels:
 
     def label(self, state: int) -> Formula:
         """The shortest label found for a state of the machine, in negation normal form."""
-        written = sorted((self.written(obligation) for obligation in self._members[state][:_MEMBERS]), key=length)
-        return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=length)
+        members = sorted(self._members[state], key=lambda obligation: len(self._support(obligation)))
+        written = sorted((self.written(obligation) for obligation in members[:_MEMBERS]), key=size)
+        return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=size)
 
     def written(self, obligation: int) -> Formula:
         """The formula of an obligation, common factors first, operands in source order."""
@@ -69,6 +75,12 @@ class Labels:
 
     def _ordered(self, obligation: int) -> tuple[int, Formula]:
         """The place of the formula's first part in the source, and the formula of the obligation."""
+        known = self._written.get(obligation)
+        if known is None:
+            known = self._written[obligation] = self._write(obligation)
+        return known
+
+    def _write(self, obligation: int) -> tuple[int, Formula]:
         if obligation == FALSE:
             return 0, build.FALSE
         if obligation == TRUE:
@@ -94,7 +106,8 @@ class Labels:
         """The literals without (for TRUE: with) which the obligation is ``absorbing``, and what is left of it."""
         factors: list[tuple[int, bool]] = []
         wanted = absorbing == FALSE
-        for variable in self._support(obligation):
+        support = self._support(obligation)
+        for variable in support if len(support) <= _MOST_FACTORED else support[:1]:
             for polarity in (True, False):
                 if self._restricted(obligation, variable, polarity != wanted) == absorbing:
                     factors.append((variable, polarity))
@@ -171,11 +184,11 @@ class Labels:
     def _shortened(self, formula: Formula, state: int) -> Formula:
         formula = simplified(formula)
         tried: set[Formula] = set()
-        progress = length(formula) <= _LONGEST_PROVED
+        progress = size(formula) <= _LONGEST_PROVED
         while progress and self._work > 0:
             progress = False
-            for shorter in sorted({simplify(f): None for f in _with_one_operand_less(formula)}, key=length):
-                if shorter in tried or length(shorter) >= length(formula):
+            for shorter in sorted({simplify(f): None for f in _with_one_operand_less(formula)}, key=size):
+                if shorter in tried or size(shorter) >= size(formula):
                     continue
                 tried.add(shorter)
                 if self._proved(shorter, state):
@@ -187,9 +200,8 @@ class Labels:
         self._work -= 1
         try:
             with self._successors.diagrams.at_most(_PROOF_STEPS):
-                return equivalent(
-                    self._successors, self._machine, self._successors.obligation(formula), state, self._allowed
-                )
+                obligation = self._successors.obligation(formula)
+                return equivalent(self._successors, self._machine, obligation, state, _PROOF_PAIRS, self._allowed)
         except OutOfSteps:
             self._work -= _COST_OF_GIVING_UP
             return False
@@ -197,12 +209,7 @@ class Labels:
 
 def simplified(formula: Formula) -> Formula:
     """The formula after the named rewrites, unless it is too long for anybody to read."""
-    return formula if length(formula) > _LONGEST_SIMPLIFIED else simplify(formula)
-
-
-def length(formula: Formula) -> int:
-    """The number of nodes of the formula as it is written, shared parts counted each time."""
-    return 1 + sum(length(argument) for argument in formula.args)
+    return formula if size(formula) > _LONGEST_SIMPLIFIED else simplify(formula)
 
 
 def _joined(join: Callable[..., Formula], operands: list[tuple[int, Formula]]) -> tuple[int, Formula]:

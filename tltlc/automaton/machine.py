@@ -193,11 +193,13 @@ def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[
     )
 
 
-def equivalent(successors: Successors, machine: Machine, left: int, right: int, allowed: int = ACCEPT) -> bool:
+def equivalent(
+    successors: Successors, machine: Machine, left: int, right: int, pair_limit: int, allowed: int = ACCEPT
+) -> bool:
     """Whether two obligations have equal languages.
 
     The union-find form of Hopcroft and Karp's test (1971), started from what ``machine`` knows to be
-    equal.  Raises :class:`OutOfSteps` as its transitions may.
+    equal.  Raises :class:`OutOfSteps` where that takes more than ``pair_limit`` pairs of states.
     """
     diagrams = successors.diagrams
     atom, low, high = diagrams.atom, diagrams.low, diagrams.high
@@ -222,6 +224,8 @@ def equivalent(successors: Successors, machine: Machine, left: int, right: int, 
         x, y = map(find, pending.pop())
         if x == y:
             continue
+        if len(parent) >= pair_limit:
+            raise OutOfSteps
         parent[y] = x
         stack = [(transition_of(x), transition_of(y))]
         visited = set(stack)
