@@ -1,0 +1,1 @@
+"""Comparisons with peers, each a ratio measured in one run: ``python -m benchmarks`` (or ``make bench``)."""

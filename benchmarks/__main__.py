@@ -1,0 +1,34 @@
+"""One command for every figure: measure what is missing, then render the report.
+
+``python -m benchmarks`` resumes where an earlier run stopped; ``--fresh`` begins anew.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from benchmarks import compile_table
+from benchmarks.machine import facts
+from benchmarks.store import Store
+
+SECTIONS = {"compile": compile_table}
+
+
+def main() -> None:
+    """Parse the options and run the sections."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("--fresh", action="store_true", help="discard earlier results")
+    parser.add_argument("--only", choices=sorted(SECTIONS), help="measure one section")
+    parser.add_argument("--timeout", type=float, default=20.0, metavar="SECONDS", help="for a peer on one formula")
+    options = parser.parse_args()
+    store = Store(fresh=options.fresh)
+    store.put("machine", "facts", facts())
+    store.put("machine", "options", {"peer_timeout_s": options.timeout})
+    for name, section in SECTIONS.items():
+        if options.only in (None, name):
+            section.measure(store, options.timeout, lambda text: print(text, file=sys.stderr, flush=True))
+
+
+if __name__ == "__main__":
+    main()

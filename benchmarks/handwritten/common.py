@@ -1,0 +1,39 @@
+"""What the hand-written monitors share: their result and the reading of samples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import NamedTuple
+
+
+class Step(NamedTuple):
+    """The fields of a generated monitor's step."""
+
+    state: int
+    label: str
+    verdict: str
+    accepting: bool
+    done: bool
+    progress: float
+    reward: float
+    robustness: float
+    limiting: str | None
+
+
+def read(signals: Mapping[str, float], names: Sequence[str]) -> list[float]:
+    """The values of the signals; KeyError for a missing one, ValueError for one that is not finite."""
+    values = [float(signals[name]) for name in names]
+    for name, value in zip(names, values):
+        if not isfinite(value):
+            raise ValueError(f"{name} is {value}")
+    return values
+
+
+def near(distance: float, level_size: float) -> float:
+    """Closeness in [-1, 1] (eq. 2 of the paper): 1 at the target, 0 at 1 m, -1 from ``level_size`` on."""
+    if distance < 1.0:
+        return 1.0 - max(distance, 0.0)
+    if distance <= level_size:
+        return ((level_size - distance) / (level_size - 1.0)) ** 2 - 1.0
+    return -1.0

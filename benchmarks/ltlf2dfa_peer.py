@@ -1,0 +1,70 @@
+"""LTLf2DFA 2.0.0 as a peer: its own process, formula on standard input, a JSON object on standard output.
+
+Timed is ``to_dfa`` of a parsed formula, the MONA process that it starts included.  It passes one
+file in its own folder to MONA, so a lock keeps two of these processes apart; without MONA it answers
+wrongly, so :mod:`benchmarks.compile_table` leaves it out then.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import re
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from benchmarks.measure import forked, median
+from tltlc.logic.formula import Formula
+
+RUNS = 3
+ENOUGH_MS = 3000.0
+
+_UNARY = {"not": "!", "X": "X", "N": "WX", "F": "F", "G": "G"}
+_BINARY = {"implies": "->", "iff": "<->", "U": "U", "R": "R"}
+
+
+def notation(formula: Formula) -> str:
+    """The formula in LTLf2DFA's notation, all brackets written, atoms renamed ``p0``, ``p1``, … in order."""
+    names = {atom: f"p{number}" for number, atom in enumerate(formula.atoms())}
+
+    def text(node: Formula) -> str:
+        if node.op in ("true", "false"):
+            return node.op
+        if node.op == "atom":
+            return names[node.name]
+        if node.op in _UNARY:
+            return f"{_UNARY[node.op]}({text(node.args[0])})"
+        sign = {"and": "&", "or": "|"}.get(node.op) or _BINARY[node.op]
+        return "(" + f" {sign} ".join(text(argument) for argument in node.args) + ")"
+
+    return text(formula)
+
+
+def main() -> None:
+    """Read a formula in LTLf2DFA's notation, print the time in milliseconds and the size of the automaton."""
+    from ltlf2dfa.ltlf2dfa import to_dfa  # type: ignore[import-not-found,unused-ignore]
+    from ltlf2dfa.parser.ltlf import LTLfParser  # type: ignore[import-not-found,unused-ignore]
+
+    formula = LTLfParser()(sys.stdin.read())
+
+    def solve() -> dict[str, Any]:
+        dot = to_dfa(formula)
+        return {"states": len({end for edge in re.findall(r"(\d+) -> (\d+) \[", dot) for end in edge})}
+
+    runs: list[dict[str, Any]] = []
+    with (Path(tempfile.gettempdir()) / "ltlf2dfa-benchmark.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        while len(runs) < RUNS and sum(made["cpu_ms"] for made in runs) < ENOUGH_MS:
+            # Each in a fork, as ours: sympy keeps tables that would make a second run cheaper than the first.
+            made = forked(solve)
+            if made is None:
+                raise SystemExit(1)
+            runs.append(made)
+    result = {"ltlf2dfa_ms": median([made["cpu_ms"] for made in runs]), "ltlf2dfa_runs": len(runs)}
+    print(json.dumps(result | {"ltlf2dfa_states": runs[0]["states"]}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,45 @@
+"""The results, kept in a JSON file that is written after each measurement, so that a run can be resumed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parent.parent
+RESULTS = Path(__file__).with_name("results.json")
+
+Record = dict[str, Any]
+
+
+class Store:
+    """Records by section and key, in the order in which they were measured."""
+
+    def __init__(self, path: Path = RESULTS, *, fresh: bool = False) -> None:
+        self._path = path
+        self._content: dict[str, Any] = {}
+        if path.exists() and not fresh:
+            self._content = json.loads(path.read_text(encoding="utf-8"))
+
+    def section(self, name: str) -> dict[str, Record]:
+        """The records of a section by key."""
+        records: dict[str, Record] = self._content.get(name, {})
+        return records
+
+    def put(self, section: str, key: str, record: Record) -> None:
+        """Keep a record and write the file, whole or not at all."""
+        self._content.setdefault(section, {})[key] = record
+        partial = self._path.with_suffix(".partial")
+        partial.write_text(json.dumps(self._content, indent=1) + "\n", encoding="utf-8")
+        os.replace(partial, self._path)
+
+
+def source_digest(*packages: str) -> str:
+    """Twelve hexadecimal digits that stand for the Python sources of these folders of the project."""
+    digest = hashlib.sha256()
+    for package in packages:
+        for file in sorted((ROOT / package).rglob("*.py")):
+            digest.update(file.relative_to(ROOT).as_posix().encode() + b"\0" + file.read_bytes())
+    return digest.hexdigest()[:12]
