@@ -88,7 +88,9 @@ def _usage(error: click.ClickException) -> Diagnostic:
     message = error.format_message().rstrip(".")
     context = error.ctx if isinstance(error, click.UsageError) else None
     command = context.command_path if context else "tltlc"
-    return Diagnostic("TLT0700", message[:1].lower() + message[1:], help=f"`{command} --help` shows how to use it")
+    if message[1:2].islower():
+        message = message[0].lower() + message[1:]
+    return Diagnostic("TLT0700", message, help=f"`{command} --help` shows how to use it")
 
 
 def _discard_output() -> None:

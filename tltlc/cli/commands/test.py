@@ -1,0 +1,79 @@
+"""``tltlc test``: the test blocks of files, and of all files of folders."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tltlc.cli.settings import Settings, source_options
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+if TYPE_CHECKING:
+    from tltlc.monitor.tests import TestResult
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc test cover_and_hide.tltl
+  tltlc test levels.tltl:level_1     only the tests of that spec
+  tltlc test levels                  every .tltl file in the folder, and below
+"""
+)
+@click.argument("paths", metavar="FILE_OR_FOLDER...", nargs=-1, required=True)
+@source_options
+def command(paths: tuple[str, ...], settings: Settings, format: str) -> int:  # noqa: A002
+    """Run test blocks: a line for each on standard output, and what went wrong on standard error.
+
+    The exit status is 1 where a test fails or a file has errors.
+    """
+    from tltlc.cli.report import Report
+
+    passed = failed = 0
+    with Report(format, results=True) as report:
+        for path in _files(paths):
+            try:
+                results = _run(path, settings, report.add)
+            except TltlError as error:
+                report.add(error.diagnostics)
+                continue
+            for result in results:
+                print(f"{'passed' if result.passed else 'FAILED'}  {_place(result)}  {result.test.title}", flush=True)
+                passed, failed = passed + result.passed, failed + (not result.passed)
+                report.add([result.failure] if result.failure else [])
+        print(f"{passed} passed, {failed} failed")
+    return report.status
+
+
+def _files(paths: tuple[str, ...]) -> Iterator[str]:
+    """The arguments, folders replaced by the sources in them; error TLT0722 where there are none."""
+    for path in paths:
+        folder = Path(path)
+        if not folder.is_dir():
+            yield path
+            continue
+        inside = [file for file in sorted(folder.rglob("*.tltl")) if not _is_hidden(file.relative_to(folder))]
+        if not inside:
+            raise TltlError([Diagnostic("TLT0722", f"there is no .tltl file in `{path}`", help="name another folder")])
+        yield from map(str, inside)
+
+
+def _is_hidden(path: Path) -> bool:
+    return any(part.startswith(".") for part in path.parts)
+
+
+def _run(path: str, settings: Settings, add: Callable[[Iterable[Diagnostic]], None]) -> tuple[TestResult, ...]:
+    from tltlc.cli.inputs import open_input
+    from tltlc.monitor.tests import run_tests
+
+    opened = open_input(path, settings)
+    add(opened.diagnostics)
+    return run_tests(opened.program, opened.automata) if opened.program else ()
+
+
+def _place(result: TestResult) -> str:
+    source, span = result.test.source, result.test.span
+    return f"{source.name}:{source.position(span.start)[0]}"
