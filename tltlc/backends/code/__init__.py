@@ -1,0 +1,1 @@
+"""What monitors written as source code share: safe names, safe comments, and the text of each state."""

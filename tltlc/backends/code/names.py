@@ -1,0 +1,57 @@
+"""Names and texts of a specification, made safe to stand in Python source."""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+import re
+from collections.abc import Iterable
+from typing import Final
+
+_LONGEST: Final = 40
+
+_WORDS: Final = {">": " over ", "<": " under ", "-": " minus ", "+": " plus ", "*": " times ", "/": " per "}
+
+
+class Names:
+    """Gives out Python names, each once: short, readable, never one that is reserved."""
+
+    def __init__(self, reserved: Iterable[str]) -> None:
+        self._taken = {*keyword.kwlist, *dir(builtins), *reserved}
+
+    def give(self, name: str, suffix: str = "") -> str:
+        """A new name that resembles the given one; ``suffix`` is tried first where that is taken."""
+        spelt = "".join(_WORDS.get(character, character) for character in name)
+        base = re.sub(r"[^A-Za-z0-9]+", "_", spelt)[:_LONGEST].strip("_") or "x"
+        if base[0].isdigit():
+            base = f"x{base}"
+        candidate, number = base, 1
+        while candidate in self._taken:
+            candidate = f"{base}_{suffix}" if suffix and number == 1 else f"{base}_{number}"
+            number += 1
+        self._taken.add(candidate)
+        return candidate
+
+
+def visible(text: str) -> str:
+    """The text on one line, with escapes for whatever does not print: line ends, control and direction marks."""
+    return "".join(
+        character if character.isprintable() else f"\\u{ord(character):04x}" for character in " ".join(text.split())
+    )
+
+
+def in_docstring(text: str) -> str:
+    """The text for a place between three quotation marks; its lines stay lines."""
+    lines = [visible(line) for line in text.splitlines()]
+    return "\n".join(lines).replace("\\", "\\\\").replace('"', '\\"')
+
+
+def literal(text: str) -> str:
+    """A Python string literal, in double quotes where that needs no escape."""
+    quoted = repr(text)
+    return f'"{quoted[1:-1]}"' if quoted[0] == "'" and '"' not in quoted else quoted
+
+
+def number(value: float) -> str:
+    """A Python float literal; ``inf`` by that name."""
+    return repr(float(value))
