@@ -33,13 +33,15 @@ def recursion_room() -> Iterator[None]:
 def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     """The error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
     sizes = {part: _size(part, spec) for part in spec.parts}
-    worst = max(spec.parts, key=lambda part: sizes[part], default=None)
-    if worst is None:
+    worst = sorted(spec.parts, key=lambda part: -sizes[part])
+    if not worst:
         labels: tuple[Label, ...] = (Label(spec.source, spec.name_span),)
+    elif len(worst) == 1 or sizes[worst[0]] >= _PART_BUDGET:
+        labels = (Label(worst[0].source, worst[0].span, "it is this part"),)
     else:
-        size = f"{sizes[worst]}" if sizes[worst] < _PART_BUDGET else f"more than {_PART_BUDGET - 1}"
-        share = "this part alone" if len(spec.parts) == 1 or sizes[worst] >= _PART_BUDGET else "the largest part, alone"
-        labels = (Label(worst.source, worst.span, f"{share} has {size} states"),)
+        labels = tuple(
+            Label(part.source, part.span, f"{sizes[part]} states alone; the parts multiply") for part in worst[:3]
+        )
     if isinstance(reason, TooManyPrimes):
         title = f"a guard of `{spec.name}` has more than {PRIME_LIMIT} prime implicants"
         return TltlError([Diagnostic("TLT0502", title, labels, "split the spec, or name the condition as a predicate")])
