@@ -116,7 +116,7 @@ def test_right_predicates_are_proved(expression: Expression, low: float, high: f
     [
         (op("*", 2, H), "with health = 1 the value is 2"),
         (op("/", X, H), "with x = -1, health = 0 the value divides by zero"),
-        (op("sqrt", X), "with x = -1 the value takes the root of a negative number"),
+        (op("sqrt", X), "with x = -1 the value takes a root or power that no real number has"),
         (op("/", 1, op("+", 1, op("exp", Y))), "with y = 1e+06 the value is too large to compute"),
         (op("/", D, 1000), "with distance(s1) = 1e+06 the value is 1000"),
         (Const(1.5), "the value is 1.5"),

@@ -53,6 +53,15 @@ def condition_operands(expression: Expression) -> tuple[Case, ...]:
     return tuple(result)
 
 
+def whens(expression: Expression) -> Iterator[When]:
+    """The ``when`` expressions that are not inside another one."""
+    if isinstance(expression, When):
+        yield expression
+    elif isinstance(expression, Op):
+        for arg in expression.args:
+            yield from whens(arg)
+
+
 def variables(expression: Expression | Condition) -> dict[Signal | Param, None]:
     """The signals and params that an expression reads, in order of appearance."""
     found: dict[Signal | Param, None] = {}
@@ -109,8 +118,8 @@ def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -
         yield Case((*before, Constraint(Op("neg", args), True)), Op("neg", args))
     elif op == "clamp":
         value, low, high = args
-        for inner in _split_extreme("min", (value, high), before):
-            yield from _split_extreme("max", (low, inner.value), inner.constraints)
+        for inner in _split_extreme("max", (value, low), before):
+            yield from _split_extreme("min", (inner.value, high), inner.constraints)
     else:
         for chosen in args:
             others = [other for other in args if other != chosen]

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import Literal
 
-from tltlc.expression import Expression, Signal
+from tltlc.expression import Expression, Signal, When
 from tltlc.resolve import spec
-from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases, condition_operands, variables
-from tltlc.resolve.predicate_check.proof import Task, proves_task
+from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases, condition_operands, variables, whens
+from tltlc.resolve.predicate_check.proof import Task, unproved
 from tltlc.resolve.predicate_check.region import Box, Region, Variable
 
 FindingKind = Literal["range_wrong", "range_unproved", "discontinuous", "continuity_unproved"]
@@ -71,7 +71,7 @@ def _check_range(predicate: Predicate) -> Finding | None:
     low, high = predicate.low, predicate.high
     tasks = [Task(case.value, case.constraints, low, high) for case in cases(predicate.expression)]
     tasks += [Task(o.value, o.constraints, -inf, inf) for o in condition_operands(predicate.expression)]
-    doubtful = [task for task in tasks if not proves_task(task, whole)]
+    doubtful = unproved(tasks, whole)
     if not doubtful:
         return None
     from tltlc.resolve.predicate_check.witness import find_outside
@@ -87,26 +87,39 @@ def _check_range(predicate: Predicate) -> Finding | None:
 
 
 def _check_continuity(predicate: Predicate) -> Finding | None:
-    all_cases = cases(predicate.expression)
+    unproved_finding = Finding(
+        "continuity_unproved", "could not prove that the value is continuous between its `when` cases"
+    )
+    doubtful: list[Task] = []
+    for when in whens(predicate.expression):
+        try:
+            tasks = _doubtful_borders(when, predicate)
+        except TooManyCasesError:
+            return unproved_finding
+        if not tasks:
+            continue
+        doubtful += tasks
+        from tltlc.resolve.predicate_check.jumps import find_jump
+
+        jump = find_jump(cases(when), predicate.expression, predicate.box, predicate.bools)
+        if jump is not None:
+            values = _by_name(jump.point)
+            message = f"{_where(values)}the value jumps from {_number(jump.before)} to {_number(jump.after)}"
+            return Finding("discontinuous", message, values)
+    if not doubtful or _proves_exactly("continuity", predicate, doubtful, Region(predicate.box, {})):
+        return None
+    return unproved_finding
+
+
+def _doubtful_borders(when: When, predicate: Predicate) -> list[Task]:
+    """What is left to prove where the cases of a ``when`` meet."""
+    all_cases = cases(when)
     if len(all_cases) < 2:
-        return None
-    from tltlc.resolve.predicate_check import continuity
+        return []
+    from tltlc.resolve.predicate_check.continuity import agreement, meetings, proves_agreement
 
-    whole = Region(predicate.box, {})
-    meetings = continuity.meetings(all_cases, whole, predicate.bools)
-    doubtful = [meeting for meeting in meetings if not continuity.proves_agreement(meeting)]
-    if not doubtful:
-        return None
-    from tltlc.resolve.predicate_check.jumps import find_jump
-
-    jump = find_jump(all_cases, predicate.expression, predicate.box, predicate.bools)
-    if jump is not None:
-        values = _by_name(jump.point)
-        message = f"{_where(values)}the value jumps from {_number(jump.before)} to {_number(jump.after)}"
-        return Finding("discontinuous", message, values)
-    if _proves_exactly("continuity", predicate, [continuity.agreement(meeting) for meeting in doubtful], whole):
-        return None
-    return Finding("continuity_unproved", "could not prove that the value is continuous between its `when` cases")
+    found = meetings(all_cases, Region(predicate.box, {}), predicate.bools)
+    return [agreement(meeting) for meeting in found if not proves_agreement(meeting)]
 
 
 def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[Task], whole: Region) -> bool:

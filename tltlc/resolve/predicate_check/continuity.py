@@ -1,8 +1,8 @@
 """Is a value continuous in its signals where one ``when`` case meets another?
 
-For fixed params, two cases meet at most where all their constraints hold with ``>`` read as ``>=``.
-If both values agree there, for every pair of cases, the whole is continuous.  Bool signals only take
-two values and are treated like params.
+A value is continuous if each ``when`` in it is.  For fixed params, two cases of a ``when`` meet at most
+where all their constraints hold with ``>`` read as ``>=``.  If both values agree there, for every pair of
+cases, the ``when`` is continuous.  Bool signals only take two values and are treated like params.
 """
 
 from __future__ import annotations
@@ -13,10 +13,13 @@ from itertools import combinations
 from math import inf
 
 from tltlc.expression import Expression, Op, Signal
-from tltlc.resolve.predicate_check.cases import Case, Constraint, variables
+from tltlc.resolve.predicate_check.cases import Case, Constraint, TooManyCasesError, variables
 from tltlc.resolve.predicate_check.interval import UndefinedError
 from tltlc.resolve.predicate_check.proof import Task, holds_at_once, proves_defined, proves_within
 from tltlc.resolve.predicate_check.region import Region, Variable
+
+_PARTS = 30
+_MOST_CASES = 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +33,9 @@ class Meeting:
 
 
 def meetings(all_cases: Sequence[Case], whole: Region, bools: frozenset[Variable]) -> Iterator[Meeting]:
-    """The pairs of cases with different values that may meet."""
+    """The pairs of cases with different values that may meet.  Raises TooManyCasesError."""
+    if len(all_cases) > _MOST_CASES:
+        raise TooManyCasesError
     for first, second in combinations(all_cases, 2):
         if first.value == second.value:
             continue
@@ -49,9 +54,11 @@ def proves_agreement(meeting: Meeting) -> bool:
     difference = Op("-", (meeting.first.value, meeting.second.value))
     if holds_at_once(difference, meeting.region, 0.0, 0.0):
         return True
-    if not proves_defined(difference, meeting.region):
+    if not proves_defined(difference, meeting.region, _PARTS):
         return False
-    return _same_after_substitution(difference, meeting.region) or proves_within(difference, meeting.region, 0.0, 0.0)
+    if _same_after_substitution(difference, meeting.region):
+        return True
+    return proves_within(difference, meeting.region, 0.0, 0.0, _PARTS)
 
 
 def agreement(meeting: Meeting) -> Task:

@@ -9,7 +9,7 @@ either.  Work is counted: an answer comes within a bounded number of steps on te
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import inf, isfinite
+from math import comb, inf, isfinite
 from typing import Any
 
 import sympy
@@ -24,6 +24,7 @@ LARGEST_DEGREE = 8
 
 _MOST_STEPS = 120
 _MOST_OPERATIONS = 150
+_MOST_TERMS = 3000
 _PARTS = 10
 _SURELY_POSITIVE = 1e-12
 
@@ -63,10 +64,20 @@ class Prover:
             base = divisor.as_base_exp()[0]
             if not (base.is_number or self._has_one_sign(base, limits, ranges)):
                 raise GiveUpError
-        for x in sorted(f.free_symbols, key=lambda symbol: (_degree(f, symbol), symbol.name)):
-            if _degree(f, x) <= LARGEST_DEGREE:
-                side = region.box[Signal(x.name)]
-                return self._without(x, f, limits, {**ranges, x: side}, strict)
+        return self._by_elimination(f, limits, {**ranges, **_sides(region)}, strict)
+
+    def _by_elimination(self, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
+        """Tries the variables in turn, those of the lowest degree first."""
+
+        def degree(x: Term) -> tuple[int, str]:
+            return max(_degree(term, x) for term in (f, *limits)), x.name
+
+        for x in sorted(f.free_symbols, key=degree):
+            try:
+                return self._without(x, f, limits, ranges, strict)
+            except (GiveUpError, sympy.PolynomialError, NotImplementedError):
+                if self.steps > _MOST_STEPS:
+                    raise
         raise GiveUpError
 
     def _has_one_sign(self, f: Term, limits: Sequence[Term], ranges: Ranges) -> bool:
@@ -74,6 +85,8 @@ class Prover:
 
     def _without(self, x: Term, f: Term, limits: Sequence[Term], ranges: Ranges, strict: bool) -> bool:
         """The same question with each candidate for the least value over x put in."""
+        if _degree(f, x) > LARGEST_DEGREE:
+            raise GiveUpError
         rest = {symbol: side for symbol, side in ranges.items() if symbol != x}
         free = [limit for limit in limits if x not in limit.free_symbols]
         bound_to_x = [limit for limit in limits if x in limit.free_symbols]
@@ -180,6 +193,9 @@ def _real_where(candidate: Term) -> Iterator[Term]:
 def _simplified(f: Term) -> Term:
     if f.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I) or f.count_ops() > _MOST_OPERATIONS:
         raise GiveUpError
+    variables = len(f.free_symbols)
+    if comb(variables + _total_degree(f), variables) > _MOST_TERMS:
+        raise GiveUpError
     return sympy.factor(sympy.together(f))
 
 
@@ -187,7 +203,24 @@ def _number(f: Term) -> float:
     value = f.evalf(30)
     if not value.is_real:
         raise GiveUpError
-    return float(value)
+    number = float(value)
+    if not isfinite(number) or (number == 0) != bool(value == 0):
+        raise GiveUpError
+    return number
+
+
+def _total_degree(f: Term) -> int:
+    """At least the degree of numerator and denominator when written out."""
+    if f.is_Add:
+        return sum(_total_degree(arg) for arg in f.args if arg.is_number or not arg.is_polynomial()) + max(
+            _total_degree(arg) for arg in f.args
+        )
+    if f.is_Mul:
+        return sum(_total_degree(arg) for arg in f.args)
+    if f.is_Pow:
+        base, exponent = f.as_base_exp()
+        return _total_degree(base) * max(1, abs(int(exponent))) if exponent.is_number else LARGEST_DEGREE
+    return 1 if f.is_Symbol else 0
 
 
 def _degree(f: Term, x: Term) -> int:
@@ -200,6 +233,10 @@ def _degree(f: Term, x: Term) -> int:
 def _region(limits: Sequence[Term], ranges: Ranges) -> Region | None:
     whole = Region({Signal(symbol.name): side for symbol, side in ranges.items()}, {})
     return whole.where(Constraint(_expression(limit), False) for limit in limits)
+
+
+def _sides(region: Region) -> Ranges:
+    return {sympy.Symbol(variable.name, real=True): side for variable, side in region.box.items()}
 
 
 def _proves_at_once(f: Term, region: Region, strict: bool) -> bool:

@@ -76,12 +76,16 @@ def exponential(a: Interval) -> Interval:
     """``exp``; raises UndefinedError where the value may be too large for a number."""
     if a[1] > LARGEST_EXPONENT:
         raise UndefinedError("is too large to compute")
-    return max(0.0, _outwards(exp(a[0]), -inf)), _outwards(exp(a[1]), inf)
+    low, high = (1.0 if end == 0 else _outwards(exp(end), towards) for end, towards in zip(a, (-inf, inf), strict=True))
+    return max(0.0, low), high
 
 
 def hyperbolic_tangent(a: Interval) -> Interval:
     """``tanh``."""
-    return max(-1.0, _outwards(tanh(a[0]), -inf)), min(1.0, _outwards(tanh(a[1]), inf))
+    low, high = (
+        0.0 if end == 0 else _outwards(tanh(end), towards) for end, towards in zip(a, (-inf, inf), strict=True)
+    )
+    return max(-1.0, low), min(1.0, high)
 
 
 def absolute(a: Interval) -> Interval:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
 
 from tltlc.expression import Expression, Signal
 from tltlc.resolve.predicate_check.cases import Case
@@ -27,9 +26,13 @@ class Jump:
 
 
 def find_jump(all_cases: Sequence[Case], expression: Expression, box: Box, bools: frozenset[Variable]) -> Jump | None:
-    """A border point between two cases where the value clearly jumps, or None if no such point is found."""
+    """A border point between two of the cases where the expression clearly jumps, or None if no such point is found.
+
+    The cases are those of one ``when`` in the expression.
+    """
     crossings = 0
-    for start in islice(points(expression, box, bools), _MOST_POINTS):
+    everywhere = list(points(expression, box, bools))
+    for start in everywhere[:: 1 + len(everywhere) // _MOST_POINTS]:
         here = _active(all_cases, start)
         if here is None:
             continue
@@ -43,9 +46,10 @@ def find_jump(all_cases: Sequence[Case], expression: Expression, box: Box, bools
                 crossings += 1
                 if crossings > _MOST_CROSSINGS:
                     return None
-                jump = _jump_between(all_cases, start, end, variable)
+                jump = _jump_between(all_cases, expression, start, end, variable)
                 if jump is not None:
                     return jump
+                break  # a second crossing on the same line tells little more
     return None
 
 
@@ -71,28 +75,28 @@ def _along(start: Point, variable: Variable, box: Box, expression: Expression) -
             return
 
 
-def _jump_between(all_cases: Sequence[Case], start: Point, end: Point, variable: Variable) -> Jump | None:
+def _jump_between(
+    all_cases: Sequence[Case], expression: Expression, start: Point, end: Point, variable: Variable
+) -> Jump | None:
     """Halve the way between points of different cases down to the border; is there a jump?"""
     low, high = start[variable], end[variable]
     left, right = _active(all_cases, start), _active(all_cases, end)
     while abs(high - low) > _BORDER_WIDTH * max(1.0, abs(low)):
         middle = low + (high - low) / 2
         case = _active(all_cases, {**start, variable: middle})
-        if case is None:
-            return None
-        if left is not None and case.value == left.value:
+        if left is not None and case is not None and case.value == left.value:
             low = middle
         else:
             high, right = middle, case
     if left is None or right is None:
         return None
-    before, after = (value_at(case.value, {**start, variable: x}).value for case, x in ((left, low), (right, high)))
+    step = _NEAR * max(1.0, abs(low)) * (1.0 if high > low else -1.0)
+    before, after = (value_at(expression, {**start, variable: x}).value for x in (low, high))
     if before is None or after is None or abs(after - before) <= CLEARLY:
         return None
-    step = _NEAR * max(1.0, abs(low)) * (1.0 if high > low else -1.0)
     for case, x, value in ((left, low - step, before), (right, high + step, after)):
         nearby = {**start, variable: x}
-        near = value_at(case.value, nearby).value
+        near = value_at(expression, nearby).value
         if _active(all_cases, nearby) != case or near is None or abs(near - value) > abs(after - before) / 10:
             return None
     border = low if abs(low - round(low, 9)) <= abs(high - round(high, 9)) else high

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
 from tltlc.expression import Const, Expression, Op, Param, Signal
 from tltlc.resolve.predicate_check import interval
@@ -34,6 +35,7 @@ class Quotient:
     denominator: Polynomial
 
 
+@lru_cache(maxsize=512)
 def quotient(expression: Expression) -> Quotient:
     """The normal form of an expression without ``when``.  Raises TooLargeError."""
     if isinstance(expression, Const):
@@ -59,7 +61,10 @@ def constant(value: Fraction | int) -> Polynomial:
 
 
 def polynomial_bound(polynomial: Polynomial, region: Region) -> Interval:
-    """An interval that contains the polynomial's values on a region; raises UndefinedError like its factors."""
+    """An interval that contains the polynomial's values on a region.
+
+    Raises UndefinedError like its factors, and TooLargeError for a coefficient that is no float.
+    """
     total = _sum_of_terms(polynomial, region)
     for expression, known in region.known.items():
         try:
@@ -68,8 +73,8 @@ def polynomial_bound(polynomial: Polynomial, region: Region) -> Interval:
             continue
         scale = _ratio(polynomial, other.numerator) if other.denominator == constant(1) else None
         if scale is not None:  # polynomial = scale * expression + rest
-            rest = float(polynomial.get(ONE, Fraction(0)) - scale * other.numerator.get(ONE, Fraction(0)))
-            bounds = interval.add(interval.multiply(known, (float(scale),) * 2), (rest, rest))
+            rest = polynomial.get(ONE, Fraction(0)) - scale * other.numerator.get(ONE, Fraction(0))
+            bounds = interval.add(interval.multiply(known, _point(scale)), _point(rest))
             total = interval.meet(total, bounds) or bounds
     return total
 
@@ -93,7 +98,9 @@ def multiply(a: Polynomial, b: Polynomial) -> Polynomial:
     result: Polynomial = {}
     for left, x in a.items():
         for right, y in b.items():
-            result = add(result, {_join(left, right): x * y})
+            monomial = _join(left, right)
+            result[monomial] = result.get(monomial, Fraction(0)) + x * y
+    result = {monomial: coefficient for monomial, coefficient in result.items() if coefficient}
     if len(result) > _MOST_TERMS:
         raise TooLargeError
     return result
@@ -191,9 +198,19 @@ def _ratio(a: Polynomial, b: Polynomial) -> Fraction | None:
 def _sum_of_terms(polynomial: Polynomial, region: Region) -> Interval:
     total: Interval = (0.0, 0.0)
     for monomial, coefficient in polynomial.items():
-        term: Interval = (float(coefficient),) * 2
+        term = _point(coefficient)
         for factor, exponent in monomial:
             value = interval.power(bound(factor, region), (float(exponent),) * 2)
             term = interval.multiply(term, value)
         total = interval.add(total, term)
     return total
+
+
+def _point(value: Fraction) -> Interval:
+    try:
+        number = float(value)
+    except OverflowError as error:
+        raise TooLargeError from error
+    if (number == 0) != (value == 0):
+        raise TooLargeError
+    return number, number

@@ -7,7 +7,7 @@ smaller parts of the region.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -18,6 +18,8 @@ from tltlc.resolve.predicate_check.region import Region, bound
 
 TOLERANCE = 1e-9  # what rounding may add to a value that lies on a bound
 MOST_PARTS = 300
+_PARTS_OF_ALL = 1200
+_FEWEST_PARTS = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +32,15 @@ class Task:
     high: float
 
 
-def proves_task(task: Task, whole: Region) -> bool:
-    """True if proved for all points of a region."""
-    region = whole.where(task.constraints)
-    return region is None or proves_within(task.value, region, task.low, task.high)
+def unproved(tasks: Sequence[Task], whole: Region) -> list[Task]:
+    """The tasks that are not proved for all points of a region; the work on all together is bounded."""
+    parts = max(_FEWEST_PARTS, min(MOST_PARTS, _PARTS_OF_ALL // max(1, len(tasks))))
+    left = []
+    for task in tasks:
+        region = whole.where(task.constraints)
+        if region is not None and not proves_within(task.value, region, task.low, task.high, parts):
+            left.append(task)
+    return left
 
 
 def proves_within(value: Expression, region: Region, low: float, high: float, parts: int = MOST_PARTS) -> bool:
@@ -58,9 +65,9 @@ def holds_at_once(value: Expression, region: Region, low: float, high: float) ->
         return False
 
 
-def proves_defined(value: Expression, region: Region) -> bool:
+def proves_defined(value: Expression, region: Region, parts: int = MOST_PARTS) -> bool:
     """True if the value exists at each point of the region."""
-    return _defined(value, region) or _holds_in_parts(value, region, -inf, inf, MOST_PARTS)
+    return _defined(value, region) or _holds_in_parts(value, region, -inf, inf, parts)
 
 
 def inside(bounds: Interval, low: float, high: float) -> bool:

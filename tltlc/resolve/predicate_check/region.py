@@ -103,7 +103,7 @@ def _apply(op: str, args: list[Interval]) -> Interval:
     if op in _UNARY:
         return _UNARY[op](first)
     if op == "clamp":
-        return interval.larger(args[1], interval.smaller(first, args[2]))
+        return interval.smaller(interval.larger(first, args[1]), args[2])
     function = _BINARY[op]
     for other in args[1:]:
         first = function(first, other)

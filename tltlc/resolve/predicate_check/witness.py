@@ -41,7 +41,7 @@ def value_at(expression: Expression, point: Point) -> Witness:
     except OverflowError:
         return Witness(point, None, "is too large to compute")
     except ValueError:
-        return Witness(point, None, "takes the root of a negative number")
+        return Witness(point, None, "takes a root or power that no real number has")
     return Witness(point, value) if isfinite(value) else Witness(point, None, "is too large to compute")
 
 

@@ -1,0 +1,106 @@
+"""Remembered answers: asked once, never trusted when damaged, complete for the standard library."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tltlc.expression import Const, Expression, Op, Param, Signal
+from tltlc.resolve.imports import standard_library
+from tltlc.resolve.predicate_check import memory
+from tltlc.resolve.prove import prove
+
+
+def refuse() -> bool:
+    raise AssertionError("the answer should have been remembered")
+
+
+def test_an_answer_is_computed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path / "new"))
+    assert memory.answer("one", lambda: True)
+    assert not memory.answer("two", lambda: False)
+    assert memory.answer("one", refuse)
+    assert not memory.answer("two", refuse)
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["predicates.json"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"{",
+        b"\xff\xfe",
+        b"[]",
+        b'{"version": 1, "answers": 3}',
+        b'{"version": 0, "answers": {"KEY": true}}',
+        b'{"version": 1, "answers": {"KEY": "yes"}}',
+        b"[" * 100_000,
+    ],
+)
+def test_a_damaged_file_is_as_good_as_none(content: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path))
+    memory.answer("one", lambda: False)
+    file = tmp_path / "predicates.json"
+    (key,) = json.loads(file.read_text())["answers"]
+    file.write_bytes(content.replace(b"KEY", key.encode()))
+    assert memory.answer("one", lambda: False) is False
+    assert memory.answer("one", refuse) is False
+
+
+def test_a_folder_that_cannot_be_made_does_no_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path / "file" / "below"))
+    assert memory.answer("one", lambda: True)
+
+
+def test_the_folder_follows_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TLTLC_CACHE_DIR", "")
+    assert memory.cache_folder() is None
+    monkeypatch.delenv("TLTLC_CACHE_DIR")
+    if sys.platform.startswith("linux"):
+        monkeypatch.setenv("XDG_CACHE_HOME", "/somewhere")
+        assert memory.cache_folder() == Path("/somewhere/tltlc")
+
+
+def ask(name: str, high: float, value: float = 2.0) -> str:
+    signal, param = Signal(name), Param("p")
+    expression: Expression = Op("*", (Op("-", (signal, param)), Const(value)))
+    box: dict[Signal | Param, tuple[float, float]] = {signal: (0.0, high), param: (0.0, 1.0)}
+    return memory.question("range", expression, box, frozenset(), -1.0, 1.0)
+
+
+def test_a_question_depends_on_everything_but_names() -> None:
+    assert ask("distance(s1)", 1.0) == ask("distance(s2)", 1.0)
+    assert len({ask("a", 1.0), ask("a", 2.0), ask("a", 1.0, 3.0)}) == 3
+
+
+def test_the_shipped_answers_are_those_that_sympy_gives() -> None:
+    assert memory.read(memory.SHIPPED) == prove(standard_library())
+
+
+def test_a_library_that_needs_sympy_leaves_its_answers(tmp_path: Path) -> None:
+    text = "signal x in [-1, 1]\npredicate p in [-1, 1] = 2 * x / (1 + x * x)\n"
+    (tmp_path / "hard.tltl").write_text(text, "utf-8")
+    assert list(prove(tmp_path).values()) == [True]
+
+
+def test_the_standard_library_needs_no_sympy() -> None:
+    code = """
+import sys
+from tltlc.grammar.parser import parse
+from tltlc.resolve.imports import standard_library
+from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
+for path in sorted(standard_library().glob("*.tltl")):
+    resolve(parse(SourceFile(str(path), path.read_text("utf-8")))[0], ResolveOptions())
+assert "sympy" not in sys.modules, "sympy was imported"
+"""
+    environment = {**os.environ, "TLTLC_CACHE_DIR": ""}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
