@@ -7,7 +7,7 @@
 ...     spec escape = F exit_reached & G health > 0
 ... ''')
 >>> [state.label.ascii for state in fspa.states]
-['F exit_reached & G health > 0', 'G health > 0', 'false']
+['F exit_reached & G(health > 0)', 'G(health > 0)', 'false']
 
 Importing this package loads nothing else: each name below is loaded when it is first used.
 """

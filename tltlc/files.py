@@ -67,6 +67,10 @@ def reason(error: OSError | ValueError) -> str:
         return "there is no such file"
     if isinstance(error, IsADirectoryError):
         return "it is a folder"
+    if isinstance(error, FileExistsError):
+        return "it is a file, and no folder"
+    if isinstance(error, NotADirectoryError):
+        return "a part of its path is a file, and no folder"
     if isinstance(error, PermissionError):
         return "permission denied"
     if isinstance(error, OSError) and error.strerror:
@@ -78,7 +82,7 @@ def _neighbour(name: str) -> str | None:
     """A file of the same folder with a name much like that one's."""
     from difflib import get_close_matches
 
-    folder, file = os.path.split(name)  # noqa: PTH206
+    folder, file = os.path.split(name)
     try:
         close = get_close_matches(file, os.listdir(folder or "."), n=1)  # noqa: PTH208
     except OSError:

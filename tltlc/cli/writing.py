@@ -68,4 +68,5 @@ def _mode(path: Path) -> int | None:
 
 
 def _error(path: Path, error: OSError) -> TltlError:
-    return TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {reason(error)}")])
+    title = f"cannot write `{path}`: {reason(error)}"
+    return TltlError([Diagnostic("TLT0005", title, help="name another place with -o")])
