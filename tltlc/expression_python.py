@@ -34,7 +34,7 @@ def compile_expressions(
     constants = {name: f"p{index}" for index, name in enumerate(params)}
     space: dict[str, object] = {name: getattr(math, name) for name in ("pow", "sqrt", "exp", "tanh")}
     space.update(zip(constants.values(), map(float, params.values()), strict=True))
-    writer = Writer(names, constants, "part")
+    writer = Writer(names, constants, "_")
     lines: list[str] = []
     for index, expression in enumerate(expressions):
         lines += [f"def atom{index}({', '.join(names.values())}):"]
@@ -47,13 +47,13 @@ def compile_expressions(
 class Writer:
     """Writes expressions; ``signals`` and ``params`` map their names to those of Python variables in scope.
 
-    ``parts`` collects the source of the functions, named ``PREFIX0``, ``PREFIX1``, …, that deep expressions
-    need beside them.
+    ``parts`` collects the source of the functions, named ``PREFIXpart0``, …, that deep expressions need beside them.
+    Variables that it needs are named ``PREFIXbase``, ``PREFIXbase2``, ….
     """
 
     def __init__(self, signals: Mapping[str, str], params: Mapping[str, str], prefix: str, typed: bool = False) -> None:
         self._signals, self._params, self._prefix, self._typed = signals, params, prefix, typed
-        self._count = 0
+        self._count = self._powers = 0
         self.parts: list[str] = []
 
     def assignment(self, name: str, expression: Expression, indent: str) -> list[str]:
@@ -109,8 +109,10 @@ class Writer:
         if isinstance(base, (Signal, Param)):
             return " * ".join([self._text(base, _UNIT, depth)] * factors), _PRODUCT
         # Each nesting has a variable of its own: the base of a power may hold another power.
-        name = f"{self._prefix}_base{depth}"
+        self._powers += 1
+        name = f"{self._prefix}base{self._powers if self._powers > 1 else ''}"
         first = f"({name} := {self._text(base, _CASES, depth + 1)})"
+        self._powers -= 1
         return " * ".join([first, *[name] * (factors - 1)]), _PRODUCT
 
     def _cases(self, node: When, depth: int) -> str:
@@ -137,7 +139,7 @@ class Writer:
 
     def _part(self, node: Expression | Condition) -> str:
         """A call of a new function that computes the node."""
-        name = f"{self._prefix}{self._count}"
+        name = f"{self._prefix}part{self._count}"
         self._count += 1
         is_condition = isinstance(node, Condition)
         body = self._condition(node, _CASES, 0) if isinstance(node, Condition) else self._text(node, _CASES, 0)

@@ -12,7 +12,7 @@ from math import inf
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.code.names import Names, in_docstring, literal, number, visible
+from tltlc.backends.code.names import Names, call, comment, in_docstring, literal, number
 from tltlc.backends.code.states import INDENT, StateWriter
 from tltlc.expression_python import Writer
 from tltlc.resolve.spec import Signal
@@ -20,12 +20,11 @@ from tltlc.resolve.spec import Signal
 TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",))
 
 # What the step function itself calls its variables, and what it reads from the module.
-_RESERVED = frozenset(
-    """
-    self signals state steps best done label verdict accepting ends progress reward robustness limiting nearest other
-    failing error inf isfinite pow sqrt exp tanh Step Monitor MonitorError main csv json os sys chain
-    Callable Iterator Mapping NamedTuple
-""".split()
+_RESERVED = (
+    *("self", "signals", "state", "steps", "best", "done", "label", "verdict", "accepting", "ends", "progress"),
+    *("reward", "robustness", "limiting", "nearest", "other", "failing", "error", "values", "main"),
+    *("inf", "isfinite", "pow", "sqrt", "exp", "tanh", "csv", "json", "os", "sys", "chain"),
+    *("Step", "Monitor", "MonitorError", "Callable", "Iterator", "Mapping", "NamedTuple"),
 )
 
 
@@ -45,7 +44,7 @@ class _Source:
         self._params = {param.name: names.give(param.name, "param") for param in fspa.params}
         self._atoms = [names.give(atom.name, "atom") for atom in fspa.atoms]
         self._at_goal = fspa.judge == "goal"
-        self._expressions = Writer(self._signals, self._params, "_part_", typed=True)
+        self._expressions = Writer(self._signals, self._params, "_", typed=True)
         self._states = StateWriter(fspa, self._atoms, self._at_goal)
 
     def text(self) -> str:
@@ -54,12 +53,10 @@ class _Source:
         step = "\n".join(f"{INDENT * 2}{line}" if line else "" for line in self._step())
         functions = [*self._expressions.parts, *(self._states.function(state.id) for state in fspa.states)]
         body = "\n\n\n".join(functions)
-        used = [name for name in ("exp", "pow", "sqrt", "tanh") if re.search(rf"\b{name}\(", step + body)]
         pieces = {
             "title": in_docstring(f"Monitor of the specification `{fspa.name}`, written by tltlc."),
             "about": in_docstring("\n\n".join(filter(None, (fspa.doc, f"{INDENT}{fspa.formula.ascii}")))),
             "file": self._file,
-            "imports": f"from math import {', '.join(sorted([*used, 'inf', 'isfinite']))}",
             "step": step,
             "signals": _tuple([_signal(signal) for signal in fspa.signals]),
             "params": _dict(
@@ -76,6 +73,9 @@ class _Source:
             "transitions": _tuple([f"_from_{state.id}" for state in fspa.states]),
             "table": _tuple([self._state(state.id) for state in fspa.states]),
         }
+        used = [name for name in ("exp", "pow", "sqrt", "tanh") if re.search(rf"\b{name}\(", step + body)]
+        used += ["inf"] if any(re.search(r"\binf\b", pieces[name]) for name in ("step", "signals", "params")) else []
+        pieces["imports"] = f"from math import {', '.join(sorted([*used, 'isfinite']))}"
         return re.sub(r"@@(\w+)@@", lambda match: pieces[match[1]], _template())
 
     def _state(self, state: int) -> str:
@@ -97,10 +97,13 @@ class _Source:
         lines += ["except KeyError:", f"{INDENT}raise self._missing(signals) from None"]
         for index, signal in enumerate(self._fspa.signals):
             variable = self._signals[signal.name]
-            lines += [
-                f"if type({variable}) is not float or not {_within(signal, variable)}:",
-                f"{INDENT}{variable} = self._number({index}, {variable})",
-            ]
+            checked = f"type({variable}) is not float or not {_within(signal, variable)}:"
+            if signal.type == "bool":
+                lines += [f"if type({variable}) is bool:", f"{INDENT}{variable} = 1.0 if {variable} else 0.0"]
+                lines.append(f"elif {checked}")
+            else:
+                lines.append(f"if {checked}")
+            lines.append(f"{INDENT}{variable} = self._number({index}, {variable})")
         if self._params:
             lines.append(f"({', '.join(self._params.values())},) = self._params")
         return lines
@@ -110,10 +113,12 @@ class _Source:
         if not self._atoms:
             return []
         lines = ["failing = 0", "try:"]
+        explained: set[str] = {""}
         for index, (atom, variable) in enumerate(zip(self._fspa.atoms, self._atoms, strict=True)):
             lines += [f"{INDENT}failing = {index}"] if index else []
-            remark = f"{atom.name}: {atom.doc}" if atom.doc else atom.name
-            lines += [f"{INDENT}# {visible(remark)}"]
+            remark = atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}"
+            explained.add(atom.doc)
+            lines += [f"{INDENT}{line}" for line in comment(remark)]
             lines += self._expressions.assignment(variable, atom.expression, INDENT)
         lines += [
             "except (ZeroDivisionError, OverflowError, ValueError) as error:",
@@ -142,7 +147,7 @@ class _Source:
         """The transition, and the progress of this step alone."""
         results = "state, robustness, progress, limiting" if self._at_goal else "state, robustness, limiting"
         lines = [
-            f"{results} = _TRANSITIONS[self.state]({', '.join(self._atoms)})",
+            *call(f"{results} = _TRANSITIONS[self.state]", self._atoms),
             "label, verdict, accepting, ends = _STATES[state]",
             "steps = self.steps + 1",
         ]
@@ -200,9 +205,7 @@ def _two_hold(atoms: Sequence[str]) -> str:
         return f"sum(value > 0.0 for value in {_inline(atoms)}) > 1"
     tests = [f"{atom} > 0.0" for atom in atoms]
     others = [" or ".join(tests[index + 1 :]) for index in range(len(tests) - 1)]
-    pairs = [
-        f"{test} and {f'({other})' if ' or ' in other else other}" for test, other in zip(tests, others, strict=False)
-    ]
+    pairs = [f"({test} and {f'({other})' if ' or ' in other else other})" for test, other in zip(tests, others)]  # noqa: B905
     return " or ".join(pairs)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from textwrap import wrap
 from typing import Final
 
 _LONGEST: Final = 40
@@ -40,9 +41,22 @@ def visible(text: str) -> str:
     )
 
 
+def comment(text: str) -> list[str]:
+    """The text as lines of comment."""
+    return [f"# {line}" for line in wrap(visible(text), 100, break_long_words=False, break_on_hyphens=False)]
+
+
+def call(head: str, arguments: Sequence[str], tail: str = "") -> list[str]:
+    """``head(arguments)tail`` on one line, or on several where that would be long."""
+    line = f"{head}({', '.join(arguments)}){tail}"
+    if len(line) <= 110:
+        return [line]
+    return [f"{head}(", *wrap(", ".join(arguments), 106, initial_indent="    ", subsequent_indent="    "), f"){tail}"]
+
+
 def in_docstring(text: str) -> str:
-    """The text for a place between three quotation marks; its lines stay lines."""
-    lines = [visible(line) for line in text.splitlines()]
+    """The text for a place between three quotation marks; its lines, and how far each is indented, stay."""
+    lines = [" " * (len(line) - len(line.lstrip(" "))) + visible(line) for line in text.splitlines()]
     return "\n".join(lines).replace("\\", "\\\\").replace('"', '\\"')
 
 

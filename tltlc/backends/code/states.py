@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Implicant
-from tltlc.backends.code.names import literal, visible
+from tltlc.backends.code.names import call, comment, literal, visible
 
 INDENT = "    "
 
@@ -29,10 +29,10 @@ class StateWriter:
 
     def function(self, state: int) -> str:
         """The function of a state, named ``_from_STATE``."""
-        arguments = ", ".join(f"{atom}: float" for atom in self._atoms)
+        arguments = [f"{atom}: float" for atom in self._atoms]
         lines = [
-            f"def _from_{state}({arguments}) -> {self.result}:",
-            f"{INDENT}# {visible(self._fspa.states[state].label.ascii)}",
+            *call(f"def _from_{state}", arguments, f" -> {self.result}:"),
+            *(f"{INDENT}{line}" for line in comment(self._fspa.states[state].label.ascii)),
         ]
         # One guard is true: the longest needs no test.
         edges = sorted(self._edges[state], key=lambda edge: (_size(edge.guard), edge.target))
@@ -69,10 +69,13 @@ class StateWriter:
         return f"{size - distance} / {size}" if distance else "1.0"
 
     def _truth(self, guard: Guard) -> str:
-        return " or ".join(
+        tests = [
             " and ".join(f"{self._atoms[atom]} {'>' if polarity else '<='} 0.0" for atom, polarity in prime) or "True"
             for prime in guard.primes
-        )
+        ]
+        if len(tests) > 1:
+            tests = [f"({test})" if " and " in test else test for test in tests]
+        return " or ".join(tests)
 
     def _robustness(self, primes: Sequence[Implicant]) -> str:
         """The greatest of the primes' least literals; literals that all primes share are taken out."""
