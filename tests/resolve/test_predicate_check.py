@@ -163,6 +163,13 @@ def test_more_cases_than_can_be_checked_are_unproved() -> None:
     assert kinds(many) == ["range_unproved"]
 
 
+def test_a_very_large_expression_is_unproved() -> None:
+    large: Expression = X
+    for _ in range(60):
+        large = op("*", large, op("/", large, 2))
+    assert kinds(large) == ["range_unproved"]
+
+
 def test_a_very_deep_expression_is_unproved() -> None:
     deep: Expression = X
     for _ in range(5000):

@@ -62,6 +62,20 @@ def whens(expression: Expression) -> Iterator[When]:
             yield from whens(arg)
 
 
+def size(expression: Expression, most: int) -> int:
+    """The number of nodes, counted only as far as just past ``most``."""
+    stack: list[Expression | Condition] = [expression]
+    count = 0
+    while stack and count <= most:
+        node = stack.pop()
+        count += 1
+        if isinstance(node, (Op, Condition)):
+            stack += node.args
+        elif isinstance(node, When):
+            stack += [node.otherwise, *(part for case in node.cases for part in case)]
+    return count
+
+
 def variables(expression: Expression | Condition) -> dict[Signal | Param, None]:
     """The signals and params that an expression reads, in order of appearance."""
     found: dict[Signal | Param, None] = {}

@@ -14,7 +14,7 @@ from typing import Literal
 
 from tltlc.expression import Expression, Signal, When
 from tltlc.resolve import spec
-from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases, condition_operands, variables, whens
+from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases, condition_operands, size, variables, whens
 from tltlc.resolve.predicate_check.proof import Task, unproved
 from tltlc.resolve.predicate_check.region import Box, Region, Variable
 
@@ -46,13 +46,19 @@ def check_predicate(
     ``signals`` and ``params`` hold at least those that the expression reads, by name; an end of a range
     that is None is open.  At most one finding on the range and one on continuity.  Never raises.
     """
+    if size(expression, _LARGEST_SIZE) > _LARGEST_SIZE:
+        return (_TOO_LARGE,)
     box, bools = _box(expression, signals, params)
     predicate = Predicate(expression, box, bools, low, high)
     try:
         found = (_check_range(predicate), _check_continuity(predicate))
     except (TooManyCasesError, RecursionError):
-        found = (Finding("range_unproved", "the expression is too large to check"), None)
+        return (_TOO_LARGE,)
     return tuple(finding for finding in found if finding is not None)
+
+
+_LARGEST_SIZE = 2000
+_TOO_LARGE = Finding("range_unproved", "the expression is too large to check")
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 from math import inf
 
 from tltlc.expression import Expression, Op
-from tltlc.resolve.predicate_check.cases import Constraints
+from tltlc.resolve.predicate_check.cases import Constraints, size
 from tltlc.resolve.predicate_check.interval import EVERYTHING, Interval, UndefinedError, meet
 from tltlc.resolve.predicate_check.region import Region, bound
 
 TOLERANCE = 1e-9  # what rounding may add to a value that lies on a bound
 MOST_PARTS = 300
-_PARTS_OF_ALL = 1200
+_NODES_OF_ALL = 30_000  # visited in all parts together
 _FEWEST_PARTS = 10
 
 
@@ -34,7 +34,8 @@ class Task:
 
 def unproved(tasks: Sequence[Task], whole: Region) -> list[Task]:
     """The tasks that are not proved for all points of a region; the work on all together is bounded."""
-    parts = max(_FEWEST_PARTS, min(MOST_PARTS, _PARTS_OF_ALL // max(1, len(tasks))))
+    nodes = sum(size(task.value, _NODES_OF_ALL) for task in tasks)
+    parts = max(_FEWEST_PARTS, min(MOST_PARTS, _NODES_OF_ALL // max(1, nodes)))
     left = []
     for task in tasks:
         region = whole.where(task.constraints)
