@@ -8,7 +8,7 @@ from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, Wh
 
 
 def to_json(expression: Expression | Condition) -> dict[str, Any]:
-    """The JSON object of an expression: ``{"op": "+", "args": […]}``, ``{"signal": "health"}``, ``{"const": 1.0}``, …"""
+    """The JSON object of an expression: ``{"op": "+", "args": […]}``, ``{"signal": "health"}``, …"""
     if isinstance(expression, Const):
         return {"const": expression.value}
     if isinstance(expression, Signal):
