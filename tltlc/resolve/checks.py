@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
+from tltlc.record import replace
 from tltlc.resolve.context import Context, Instance
 from tltlc.resolve.spec import Signal
 
 if TYPE_CHECKING:
     from tltlc.resolve.predicate_check import Finding
 
+_CONTINUITY = ("discontinuous", "continuity_unproved")
 _NEVER_NEGATIVE = ("length", "time", "speed")
 
 
 def check_predicates(context: Context) -> None:
-    """Checks range and continuity of every predicate in use, each once; the findings go to the log."""
+    """Checks range and continuity of every predicate in use, each once; the findings go to the log.
+
+    A range must hold for all values of the params; a jump counts only if there is one at their present values:
+    `near(exit, close = 3 m)` jumps in a level of 2 m, but nobody plays it there.
+    """
     from tltlc.resolve.predicate_check import check_predicate
 
     for instance in context.instances.values():
@@ -25,7 +30,7 @@ def check_predicates(context: Context) -> None:
         for finding in found:
             if finding.kind == "range_wrong" and _holds_without_negatives(instance, context):
                 context.log.add(_diagnostic(instance, finding, negative=True))
-            else:
+            elif finding.kind not in _CONTINUITY or _jumps_at_present(instance, context):
                 context.log.add(_diagnostic(instance, finding))
 
 
@@ -39,6 +44,15 @@ def _holds_without_negatives(instance: Instance, context: Context) -> bool:
     }
     again = check_predicate(instance.expression, signals, context.params, instance.low, instance.high)
     return all(finding.kind != "range_wrong" for finding in again)
+
+
+def _jumps_at_present(instance: Instance, context: Context) -> bool:
+    """Whether there is a finding on continuity with every param at its value."""
+    from tltlc.resolve.predicate_check import check_predicate
+
+    params = {name: replace(param, low=param.value, high=param.value) for name, param in context.params.items()}
+    again = check_predicate(instance.expression, context.signals, params, instance.low, instance.high)
+    return any(finding.kind in _CONTINUITY for finding in again)
 
 
 def _diagnostic(instance: Instance, finding: Finding, negative: bool = False) -> Diagnostic:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from math import ceil, inf
 
 from tltlc.expression import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr, Group, Interval, Number
+from tltlc.record import replace
 from tltlc.resolve import units
 from tltlc.resolve.problem import problem
 from tltlc.resolve.quantities import mismatch, quantity

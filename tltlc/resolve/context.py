@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Any
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression import Expression
 from tltlc.logic.formula import Formula, atom
+from tltlc.record import record
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.spec import Atom, Param, Signal, ValueType
 from tltlc.source import SourceFile, Span
 
 LARGEST_EXPANSION = 100_000
 """Nodes of a formula, written out as a tree, that bounds, quantifiers and lets may expand to."""
-MOST_EXPANSIONS = 200_000
+MOST_EXPANSIONS = 50_000
 """Uses of lets and quantifiers that one formula may expand."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class SignalInfo:
     """A declared signal; with parameters, one signal for each choice of entities."""
 
@@ -28,6 +28,8 @@ class SignalInfo:
     low: float | None
     high: float | None
     doc: str
+    has_range: bool
+    """Whether the range is written, not that of the type."""
     place: Label
 
     def of(self, entities: tuple[str, ...]) -> Signal:
@@ -36,7 +38,7 @@ class SignalInfo:
         return Signal(name, self.type, self.low, self.high, self.doc)
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Instance:
     """A predicate with its arguments, to be checked; entities go by parameter name, so that all share one check."""
 
@@ -48,27 +50,43 @@ class Instance:
     span: Span
 
 
-@dataclass(slots=True)
 class Context:
-    """Tables that fill up while a program is resolved."""
+    """Tables that fill up while a program is resolved.
 
-    log: Log = field(default_factory=Log)
-    signal_infos: dict[str, SignalInfo] = field(default_factory=dict)
-    params: dict[str, Param] = field(default_factory=dict)
-    clock_s: float | None = None
-    signals: dict[str, Signal] = field(default_factory=dict)
-    """Signals in use, by full name."""
-    atoms: dict[str, Atom] = field(default_factory=dict)
-    instances: dict[tuple[int, Any], Instance] = field(default_factory=dict)
-    """By identity of the predicate's declaration and values of its parameters."""
-    expanding: dict[int, str] = field(default_factory=dict)
-    """The lets and predicates being expanded, outermost first: identity of the declaration and its name."""
-    broken: set[int] = field(default_factory=set)
-    """Declarations whose error has been reported."""
-    expansions: int = 0
-    values: dict[Any, Any] = field(default_factory=dict)
-    """Values of predicates and expansions of lets, by identity of the declaration and values of its parameters."""
-    _sizes: dict[Formula, int] = field(default_factory=dict)
+    ``signals`` are those in use, by full name.  ``instances`` and ``values`` (of predicates, and
+    expansions of lets) are keyed by identity of the declaration and values of its parameters.
+    ``expanding`` holds the lets and predicates being expanded, outermost first: identity of the
+    declaration and its name; ``broken`` the declarations whose error has been reported.
+    """
+
+    __slots__ = (
+        "_sizes",
+        "atoms",
+        "broken",
+        "clock_s",
+        "expanding",
+        "expansions",
+        "instances",
+        "log",
+        "params",
+        "signal_infos",
+        "signals",
+        "values",
+    )
+
+    def __init__(self) -> None:
+        self.log = Log()
+        self.signal_infos: dict[str, SignalInfo] = {}
+        self.params: dict[str, Param] = {}
+        self.clock_s: float | None = None
+        self.signals: dict[str, Signal] = {}
+        self.atoms: dict[str, Atom] = {}
+        self.instances: dict[tuple[int, Any], Instance] = {}
+        self.expanding: dict[int, str] = {}
+        self.broken: set[int] = set()
+        self.expansions = 0
+        self.values: dict[Any, Any] = {}
+        self._sizes: dict[Formula, int] = {}
 
     def signal(self, info: SignalInfo, entities: tuple[str, ...]) -> Signal:
         """The signal of these entities, noted as used."""
@@ -121,7 +139,7 @@ class Context:
 
     def checked_size(self, formula: Formula, what: str, source: SourceFile, span: Span) -> Formula:
         """The formula itself; raises ResolutionError where an expansion has made it too large."""
-        if self.expansions > MOST_EXPANSIONS or self.tree_size(formula) > LARGEST_EXPANSION:
+        if self.tree_size(formula) > LARGEST_EXPANSION:
             raise too_large(what, source, span)
         return formula
 

@@ -7,6 +7,7 @@ from math import inf
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import ClockDecl, ParamDecl, SignalDecl
+from tltlc.record import replace
 from tltlc.resolve import units
 from tltlc.resolve.constants import interval, number
 from tltlc.resolve.context import Context, SignalInfo
@@ -21,6 +22,7 @@ from tltlc.resolve.values import Env, number_text
 def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) -> None:
     """Fills the context's tables of signals, params and the clock; problems go to its log."""
     places: dict[str, Label] = {}
+    ranged: set[str] = set()
     clock: Label | None = None
     for scope in scopes:
         env = Env(context, scope)
@@ -29,7 +31,7 @@ def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) 
                 if isinstance(declaration, SignalDecl):
                     _signal(declaration, env)
                 elif isinstance(declaration, ParamDecl):
-                    _param(declaration, env, places)
+                    _param(declaration, env, places, ranged)
                 elif isinstance(declaration, ClockDecl):
                     clock = _clock(declaration, env, clock)
             except ResolutionError as failure:
@@ -63,22 +65,24 @@ def _signal(declaration: SignalDecl, env: Env) -> None:
     type_ = _type(declaration, scope)
     low, high = _range(declaration, type_, env)
     names = tuple(parameter.name for parameter in declaration.parameters)
-    new = SignalInfo(declaration.name, names, type_, low, high, declaration.doc, place)
+    new = SignalInfo(
+        declaration.name, names, type_, low, high, declaration.doc, declaration.interval is not None, place
+    )
     table = env.context.signal_infos
     old = table.get(new.name)
     if old is None:
         table[new.name] = new
         return
     if (old.type, len(old.parameters)) == (new.type, len(new.parameters)):
-        if (old.low, old.high) == (new.low, new.high) or declaration.interval is None:
+        if (old.low, old.high) == (new.low, new.high) or not new.has_range:
             return
-        if (old.low, old.high) == ((0.0, 1.0) if type_ == "ratio" else (None, None)):
-            table[new.name] = SignalInfo(new.name, names, type_, low, high, new.doc or old.doc, place)
+        if not old.has_range:
+            table[new.name] = replace(new, doc=new.doc or old.doc)
             return
     raise _conflict("signal", new.name, place, old.place)
 
 
-def _param(declaration: ParamDecl, env: Env, places: dict[str, Label]) -> None:
+def _param(declaration: ParamDecl, env: Env, places: dict[str, Label], ranged: set[str]) -> None:
     scope = env.scope
     place = Label(scope.source, declaration.name_span)
     type_ = _type(declaration, scope)
@@ -97,11 +101,14 @@ def _param(declaration: ParamDecl, env: Env, places: dict[str, Label]) -> None:
     if old is None:
         env.context.params[new.name] = new
         places[new.name] = place
+        if declaration.interval is not None:
+            ranged.add(new.name)
         return
     if (old.type, old.value) == (new.type, new.value):
         if (old.low, old.high) == (new.low, new.high) or declaration.interval is None:
             return
-        if (old.low, old.high) == ((0.0, 1.0) if type_ == "ratio" else (None, None)):
+        if new.name not in ranged:
+            ranged.add(new.name)
             env.context.params[new.name] = new
             places[new.name] = place
             return

@@ -233,4 +233,5 @@ def _quantified(expr: Quantified, env: Env) -> Steps:
 def _count(what: str, span: Span, env: Env) -> None:
     env.context.expansions += 1
     if env.context.expansions > MOST_EXPANSIONS:
+        env.context.broken.update(env.context.expanding)
         raise too_large(what, env.scope.source, span)

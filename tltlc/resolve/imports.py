@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tltlc.diagnostics.diagnostic import Label, TltlError
 from tltlc.files import read_source
 from tltlc.grammar.tree import Import, Module
+from tltlc.record import record, replace
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.source import SourceFile
@@ -16,7 +15,7 @@ from tltlc.source import SourceFile
 STANDARD_LIBRARY_NAME = "<standard library>"
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Loaded:
     """A parsed module, the name by which messages speak of it, and what each of its imports led to."""
 
@@ -68,18 +67,19 @@ def standard_library() -> Path:
     return installed if installed.is_dir() else package.parent / "stdlib_predicates"
 
 
-@dataclass(slots=True)
 class _Visit:
-    module: Module
-    path: Path
-    title: str
-    reason: Import | None = None
-    complete: bool = True
-    found: list[tuple[Import, Loaded]] = field(default_factory=list)
-    pending: Iterator[Import] = field(init=False)
+    """A module whose imports are being followed."""
 
-    def __post_init__(self) -> None:
-        self.pending = iter([d for d in self.module.declarations if isinstance(d, Import)])
+    def __init__(
+        self, module: Module, path: Path, title: str, reason: Import | None = None, complete: bool = True
+    ) -> None:
+        self.module = module
+        self.path = path
+        self.title = title
+        self.reason = reason
+        self.complete = complete
+        self.found: list[tuple[Import, Loaded]] = []
+        self.pending = iter([d for d in module.declarations if isinstance(d, Import)])
 
     def add(self, declaration: Import, loaded: Loaded) -> None:
         """Notes what an import led to."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
+from tltlc.record import EMPTY, record
 
-@dataclass(frozen=True, slots=True)
+
+@record
 class ResolveOptions:
     """``library_dirs`` are searched for imports after the file's own folder; ``params`` overrides values by name.
 
@@ -15,4 +16,4 @@ class ResolveOptions:
     """
 
     library_dirs: tuple[Path, ...] = ()
-    params: Mapping[str, str] = field(default_factory=dict)
+    params: Mapping[str, str] = EMPTY

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import inf
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.record import replace
 from tltlc.resolve import units
 from tltlc.resolve.constants import override
 from tltlc.resolve.spec import Param

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import cast
 
 from tltlc.expression import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
+from tltlc.record import record
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval
@@ -22,7 +22,7 @@ from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, constant
 from tltlc.source import Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class PredicateUse:
     """A predicate with its arguments: its value (named and bounded as declared) and its documentation."""
 

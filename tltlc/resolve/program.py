@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar.tree import ExclusiveDecl, Module, SpecDecl, TestDecl
+from tltlc.record import replace
 from tltlc.resolve import formulas, predicates
 from tltlc.resolve.checks import check_predicates
 from tltlc.resolve.context import Context

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import inf
 from typing import cast
 
@@ -11,6 +10,7 @@ from tltlc.expression import Param as ParamNode
 from tltlc.expression import Signal as SignalNode
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Number, ParamDecl, SignalDecl
+from tltlc.record import replace
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.kinds import described_kind, entity, lookup

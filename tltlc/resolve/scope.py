@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from typing import Literal, Union
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.record import record, replace
 from tltlc.resolve.imports import Loaded, standard_library
 from tltlc.resolve.problem import Log, problem
 from tltlc.source import SourceFile, Span
@@ -18,7 +18,7 @@ FUNCTIONS = ("min", "max", "abs", "clamp", "sqrt", "exp", "tanh")
 _MERGED = ("signal", "param", "entity")
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Binding:
     """What a name stands for, the scope it was declared in, and the import that brought it, if any."""
 
@@ -38,15 +38,15 @@ class Binding:
         return self.declaration.span if isinstance(self.declaration, Name) else self.declaration.name_span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Scope:
     """A module's source and the names visible in it."""
 
     module: Module
     title: str
-    incomplete: bool = False
+    incomplete: bool
     """Whether a failed import may have brought further names."""
-    names: dict[str, Binding] = field(default_factory=dict, repr=False)
+    names: dict[str, Binding]
 
     @property
     def source(self) -> SourceFile:
@@ -58,7 +58,7 @@ def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
     """One scope per module, in the same order, which has imported modules first."""
     scopes: dict[int, Scope] = {}
     for loaded in modules:
-        scope = Scope(loaded.module, loaded.title, not loaded.complete)
+        scope = Scope(loaded.module, loaded.title, not loaded.complete, {})
         scopes[id(loaded)] = scope
         for binding in _own(scope):
             log.add(_declare(scope, binding))

@@ -5,18 +5,18 @@ Nothing here points back to the syntax tree, except by span for messages.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
 from tltlc.expression import Expression
 from tltlc.logic.formula import Formula
+from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
 ValueType = Literal["number", "ratio", "length", "time", "speed", "angle", "bool"]
 Judge = Literal["goal", "limit"]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Signal:
     """A number that the game supplies at each step, in SI units; None is an open end of the range."""
 
@@ -27,7 +27,7 @@ class Signal:
     doc: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Param:
     """A constant, in SI units, that may be overridden within its range when the automaton is loaded."""
 
@@ -39,7 +39,7 @@ class Param:
     doc: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Atom:
     """An atom: holds iff its expression, with values in [-1, 1], is > 0."""
 
@@ -48,7 +48,7 @@ class Atom:
     doc: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Part:
     """One conjunct of a spec's formula and the clause that it came from, so that errors can name it."""
 
@@ -57,7 +57,7 @@ class Part:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Spec:
     """A specification, ready for the automaton.
 
@@ -85,7 +85,7 @@ class Spec:
     name_span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Step:
     """One line of a test: the atoms that hold (the others are false), repeated ``times``."""
 
@@ -93,7 +93,7 @@ class Step:
     holds: frozenset[str]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Expect:
     """What must hold of the prefix so far; fields as in :class:`tltlc.grammar.tree.TestExpect`."""
 
@@ -104,7 +104,7 @@ class Expect:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Test:
     """A ``test`` block of a spec."""
 
@@ -115,7 +115,7 @@ class Test:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Program:
     """A resolved file: its own specs and tests, in order."""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
 from math import isinf
 from typing import Union
 
 from tltlc.expression import Const, Expression, Op
 from tltlc.logic.formula import Formula
+from tltlc.record import EMPTY, record, replace
 from tltlc.resolve.context import Context
 from tltlc.resolve.ranges import range_of
 from tltlc.resolve.scope import Scope
@@ -18,14 +18,14 @@ LOOSEST, SUM, PRODUCT, SIGN, POWER, CLOSED = range(6)
 """How tightly the text of a quantity binds."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Entity:
     """An object of the level."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Quantity:
     """A number that depends on signals and params.
 
@@ -53,7 +53,7 @@ class Quantity:
         return self.text if self.binding >= binding else f"({self.text})"
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Unknown:
     """A parameter whose value may be anything: what a ``let`` is checked with before its first use."""
 
@@ -63,7 +63,7 @@ class Unknown:
 Value = Union[Entity, Quantity, Formula, Unknown]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Env:
     """Where an expression stands: the scope of its text and the values of the parameters around it.
 
@@ -73,7 +73,7 @@ class Env:
 
     context: Context
     scope: Scope
-    local: Mapping[str, Value] = field(default_factory=dict)
+    local: Mapping[str, Value] = EMPTY
     symbolic: bool = False
     constant: bool = False
 

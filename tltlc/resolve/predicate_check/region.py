@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from math import copysign, inf, log1p
 
 from tltlc.expression import Const, Expression, Op, Param, Signal
+from tltlc.record import record, replace
 from tltlc.resolve.predicate_check import interval
 from tltlc.resolve.predicate_check.cases import Constraint
 from tltlc.resolve.predicate_check.interval import EVERYTHING, Interval, UndefinedError
@@ -18,7 +18,7 @@ _ROUNDS = 6
 _FAR_AWAY = 1e6
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Region:
     """The points of a box where some expressions lie within known bounds.
 
@@ -32,7 +32,7 @@ class Region:
     def where(self, constraints: Iterable[Constraint]) -> Region | None:
         """The part where the constraints hold, its box narrowed, or None if that is surely empty."""
         known, nonzero = dict(self.known), set(self.nonzero)
-        for constraint in constraints:
+        for constraint in _with_chains(constraints):
             difference = constraint.difference
             known[difference] = interval.meet(known.get(difference, EVERYTHING), (0.0, inf)) or (0.0, 0.0)
             if isinstance(difference, Op) and difference.op == "-":
@@ -69,6 +69,24 @@ class Region:
         middle = _middle(low, high)
         lower = replace(self, box={**self.box, widest: (low, middle)})
         return lower, replace(self, box={**self.box, widest: (middle, high)})
+
+
+def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
+    """The constraints, and ``a - c`` wherever they order a, b and c: the bounds of each alone do not show it."""
+    given = list(constraints)
+    differences = [c for c in given if isinstance(c.difference, Op) and c.difference.op == "-"]
+    for upper in differences:
+        for lower in differences:
+            (a, b), (also_b, c) = _operands(upper), _operands(lower)
+            if b == also_b and a != c:
+                given.append(Constraint(Op("-", (a, c)), upper.strict or lower.strict))
+    return given
+
+
+def _operands(constraint: Constraint) -> tuple[Expression, Expression]:
+    assert isinstance(constraint.difference, Op)
+    left, right = constraint.difference.args
+    return left, right
 
 
 def bound(expression: Expression, region: Region) -> Interval:

@@ -1,0 +1,63 @@
+"""Bounded operators mean what they say, on every short trace."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.logic.strategies import traces
+from tests.resolve.helpers import codes, formula, only
+from tltlc.logic.oracle import holds
+
+DECLARED = "clock 20 Hz signal a: bool spec s = "
+
+
+@given(trace=traces(("a",), max_length=8), low=st.integers(0, 4), extra=st.integers(0, 4))
+def test_eventually_is_false_past_the_end_and_always_asks_nothing_there(
+    trace: tuple[frozenset[str], ...], low: int, extra: int
+) -> None:
+    window = trace[low : low + extra + 1]
+    eventually = only(f"{DECLARED} F[{low},{low + extra}] a").formula
+    always = only(f"{DECLARED} G[{low},{low + extra}] a").formula
+    assert holds(eventually, trace) == any("a" in sample for sample in window)
+    assert holds(always, trace) == all("a" in sample for sample in window)
+
+
+@given(trace=traces(("a",), max_length=8), n=st.integers(0, 8))
+def test_next_after(trace: tuple[frozenset[str], ...], n: int) -> None:
+    strong = only(f"{DECLARED} next after {n} steps a").formula
+    weak = only(f"{DECLARED} weak_next after {n} steps a").formula
+    assert holds(strong, trace) == (n < len(trace) and "a" in trace[n])
+    assert holds(weak, trace) == (n >= len(trace) or "a" in trace[n])
+
+
+@pytest.mark.parametrize(
+    ("words", "brackets"),
+    [
+        ("eventually within 3 steps a", "F[0,3] a"),
+        ("always for 3 steps a", "G[0,2] a"),
+        ("eventually within 0 steps a", "a"),
+        ("next after 0 steps a", "a"),
+        ("eventually within 0.15 s a", "F[0,3] a"),
+        ("eventually within 151 ms a", "F[0,4] a"),
+        ("always for 1 s a", "G[0,19] a"),
+        ("F[0.05 s, 0.1 s] a", "F[1,2] a"),
+        ("always for 0.01 min a", "G[0,11] a"),
+        ("next after 1 step a", "X a"),
+    ],
+)
+def test_words_and_seconds(words: str, brackets: str) -> None:
+    assert formula(DECLARED + words) == formula(DECLARED + brackets)
+
+
+@pytest.mark.parametrize("period", [0.05, 0.1, 0.02, 0.15, 1 / 60, 1 / 30])
+@given(n=st.integers(0, 200))
+def test_whole_multiples_of_the_period_are_not_rounded_up(period: float, n: int) -> None:
+    text = f"clock {period:.17f} s signal a: bool spec s {{ limit {(n + 1) * period:.17f} s keep a }}"
+    assert only(text).limit_steps == n + 1
+
+
+def test_a_bound_that_is_too_long_names_itself_and_takes_no_time() -> None:
+    for bound in ("F[0,1000000000]", "G[999999999,1000000000]", "F[0,400] F[0,400]"):
+        assert codes(f"signal a: bool spec s = {bound} a") == ["TLT0315"]

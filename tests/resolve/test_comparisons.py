@@ -1,0 +1,114 @@
+"""Comparisons: their robustness, the atoms they share, and what is refused."""
+
+from __future__ import annotations
+
+from math import isclose
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from tests.resolve.helpers import codes, formula, only, value
+
+NUMBERS = st.integers(-50, 50)
+
+
+@given(low=NUMBERS, high=NUMBERS, c=NUMBERS, x=st.floats(0, 1), op=st.sampled_from("<>"))
+def test_scaled_to_one_at_the_ends_and_zero_at_the_threshold(low: int, high: int, c: int, x: float, op: str) -> None:
+    assume(low <= c < high if op == ">" else low < c <= high)
+    spec = only(f"signal x in [{low}, {high}] spec s = F x {op} {c}")
+    name = f"x {op} {c}"
+    assert [atom.name for atom in spec.atoms] == [name]
+    good, bad = (high, low) if op == ">" else (low, high)
+    assert value(spec, name, x=good) == 1
+    assert value(spec, name, x=c) == 0
+    assert value(spec, name, x=bad) == (0 if bad == c else -1)
+    at = low + (high - low) * x
+    expected = (at - c) / (good - c) if (at > c) == (op == ">") else -abs(at - c) / abs(bad - c) if at != c else 0.0
+    found = value(spec, name, x=at)
+    assert isclose(found, expected, abs_tol=1e-12)
+    assert (found > 0) == (at > c if op == ">" else at < c)
+
+
+@pytest.mark.parametrize(
+    ("written", "resolved"),
+    [
+        ("x >= 2", "!(x < 2)"),
+        ("x <= 2", "!(x > 2)"),
+        ("2 < x", "(x > 2)"),
+        ("2 >= x", "!(x > 2)"),
+        ("x > y", "(x > y)"),
+        ("y < x", "(x > y)"),
+        ("x <= y", "!(x > y)"),
+        ("y >= x", "!(x > y)"),
+        ("x + y > 3", "(x + y > 3)"),
+        ("2 * (x + y) > 3", "(2 * (x + y) > 3)"),
+        ("x - (y - 1) > 0.5", "(x - (y - 1) > 0.5)"),
+        ("x > 1 + 1", "(x > 2)"),
+        ("-x > -200 %", "(-x > -2)"),
+    ],
+)
+def test_one_atom_for_one_question(written: str, resolved: str) -> None:
+    text = formula(f"signal x in [0, 4] signal y in [0, 4] spec s = F ({written})")
+    assert text in (f"F {resolved}", f"F{resolved}", f"F({resolved})")
+
+
+def test_opposite_comparisons_share_an_atom() -> None:
+    spec = only("signal health: ratio spec s = G health >= 50 % & F health < 0.5")
+    assert [atom.name for atom in spec.atoms] == ["health < 0.5"]
+    assert str(spec.formula) == "G !(health < 0.5) & F(health < 0.5)"
+
+
+@given(x=st.floats(0, 4), y=st.floats(-1, 2))
+def test_two_sides_are_compared_by_their_difference(x: float, y: float) -> None:
+    spec = only("signal x in [0, 4] signal y in [-1, 2] spec s = F x > y")
+    difference = x - y
+    expected = difference / 5 if difference > 0 else difference / 2
+    assert isclose(value(spec, "x > y", x=x, y=y), expected, abs_tol=1e-12)
+
+
+def test_a_param_counts_with_its_range() -> None:
+    spec = only("signal x in [0, 4] param p in [1, 2] = 1.5 spec s = F x > p")
+    assert spec.params[0].value == 1.5
+    assert value(spec, "x > p", x=4) == 2.5 / 3
+    assert value(spec, "x > p", x=0) == -0.75
+
+
+def test_a_predicate_counts_with_its_declared_range() -> None:
+    spec = only("signal x in [0, 4] predicate p in [-1, 1] = x / 2 - 1 spec s = F p > 0.5")
+    assert [atom.name for atom in spec.atoms] == ["p > 0.5"]
+    assert value(spec, "p > 0.5", x=4) == 1
+    assert value(spec, "p > 0.5", x=0) == -1
+
+
+@pytest.mark.parametrize(
+    ("declared", "written", "code"),
+    [
+        ("in [0, 1]", "x > 1", "TLT0310"),
+        ("in [0, 1]", "x < 0", "TLT0310"),
+        ("in [0, 1]", "x >= 0", "TLT0310"),
+        ("in [0, 1]", "x <= 1", "TLT0310"),
+        ("in [0, 1]", "x > -1", "TLT0310"),
+        ("in [0, inf]", "x > -1", "TLT0310"),
+        ("in [0, 1]", "3 > 2", "TLT0310"),
+        ("in [0, inf]", "x > 1", "TLT0311"),
+        ("in [0, inf]", "x < 1", "TLT0311"),
+        ("in [0, inf]", "x > 0", "TLT0311"),
+        ("in [-inf, 0]", "x < 0", "TLT0311"),
+        (": number", "x > 1", "TLT0311"),
+    ],
+)
+def test_refused(declared: str, written: str, code: str) -> None:
+    assert codes(f"signal x {declared} spec s = F ({written})") == [code]
+
+
+@pytest.mark.parametrize("written", ["x > 0", "x < 1", "x >= 1", "x <= 0"])
+def test_a_threshold_may_be_an_end(written: str) -> None:
+    assert codes(f"signal x in [0, 1] spec s = F ({written})") == []
+
+
+def test_bool_signals() -> None:
+    spec = only("signal a: bool signal at(x: entity): bool entity e spec s = F a & G at(e)")
+    assert [atom.name for atom in spec.atoms] == ["a", "at(e)"]
+    assert (value(spec, "a", a=1.0), value(spec, "a", a=0.0)) == (1.0, -1.0)
+    assert [(signal.low, signal.high) for signal in spec.signals] == [(0.0, 1.0)] * 2

@@ -1,0 +1,149 @@
+"""Lets, quantifiers, names of atoms, and texts that are large."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.resolve.helpers import codes, formula, good, only, resolved
+
+AT = "entity e1, e2, e3 signal at(x: entity): bool signal a: bool signal b: bool "
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("let goal = F a spec s = goal & G b", "F a & G b"),
+        ("let visit(x: entity) = F at(x) spec s = visit(e2)", "F at(e2)"),
+        ("let both(p, q: formula) = F (p & X F q) spec s = both(a, G b)", "F(a & X F G b)"),
+        ("let both(p, q) = F p & F q spec s = both(q = a, p = b)", "F b & F a"),
+        ("let twice(p) = p & X p spec s = twice(twice(a))", "a & X a & X(a & X a)"),
+        ("let f(x, p) = p & at(x) spec s = F f(e1, a or b)", "F((a | b) & at(e1))"),
+        ("let wait(x: entity = e3) = F at(x) spec s = wait & wait(e1)", "F at(e3) & F at(e1)"),
+        ("spec s = all x in (e1, e2): F at(x)", "F at(e1) & F at(e2)"),
+        ("spec s = any x in (e1, e2): G at(x)", "G at(e1) | G at(e2)"),
+        ("spec s = a & all x in (e1, e2): b & at(x)", "a & b & at(e1) & b & at(e2)"),
+        ("spec s = all x in (e1, e2): any y in (e3, x): at(y)", "(at(e3) | at(e1)) & (at(e3) | at(e2))"),
+        ("let a2(x) = all y in (x, e3): at(y) spec s = G a2(e1)", "G(at(e1) & at(e3))"),
+        ("spec s = all a in (e1, e2): F at(a)", "F at(e1) & F at(e2)"),
+        ("spec s { reach a then b then at(e1) }", "F(a & X F(b & X F at(e1)))"),
+        ("spec s { reach (a then b) then at(e1) }", "F(F(a & X F b) & X F at(e1))"),
+        ("spec s = (F a) then b", "F(F a & X F b)"),
+        ("spec s = a -> b <-> not a W b", "a -> b <-> !a W b"),
+        ("spec s = true & !false", "true & !false"),
+    ],
+)
+def test_meaning(written: str, meant: str) -> None:
+    assert formula(AT + written) == meant
+
+
+@pytest.mark.parametrize(
+    ("use", "name"),
+    [
+        ("p(e)", "p(e)"),
+        ("p(e, close = 3 m)", "p(e, close=3)"),
+        ("p(x = e, close = 300 cm)", "p(e, close=3)"),
+        ("p(e, 1 m)", "p(e)"),
+        ("p(e, far = size)", "p(e)"),
+        ("p(e, far = 2 * size, close = 2 m)", "p(e, close=2, far=2 * size)"),
+        ("p(e, far = 5 m + 0.5 m)", "p(e, far=5.5)"),
+        ("p(e, share = 12.5 %)", "p(e, share=0.125)"),
+    ],
+)
+def test_names_of_atoms_are_canonical(use: str, name: str) -> None:
+    declared = """
+    entity e
+    signal d(x: entity): length in [0 m, 90 m]
+    param size: length in [10 m, 20 m] = 15 m
+    predicate p(x: entity, close: length = 1 m, far: length = size, share: ratio = 50 %) in [-1, 1] =
+        clamp((close - d(x)) / far + share, -1, 1)
+    """
+    (atom,) = only(f"{declared} spec s = F {use}").atoms
+    assert atom.name == name
+
+
+def test_entities_in_a_predicate_and_defaults_from_its_own_file() -> None:
+    text = """
+    entity a, b
+    signal d(x: entity, y: entity): length in [0 m, 90 m]
+    predicate apart(x: entity, y: entity = b) in [0, 1] = d(x, y) / 90 m
+    spec s = F apart(b, a) & F apart(a)
+    """
+    spec = only(text)
+    assert [atom.name for atom in spec.atoms] == ["apart(b, y=a)", "apart(a)"]
+    assert [signal.name for signal in spec.signals] == ["d(b, a)", "d(a, b)"]
+
+
+def test_predicates_may_use_predicates() -> None:
+    text = """
+    signal x: ratio
+    predicate low(most: ratio = 50 %) in [-1, 1] = clamp((most - x) / most, -1, 1)
+    predicate both in [-1, 1] = min(low, low(20 %))
+    spec s = F both
+    """
+    assert [signal.name for signal in only(text).signals] == ["x"]
+
+
+def test_a_numeric_argument_may_be_a_signal() -> None:
+    text = "import core signal fuel: ratio spec s = F above(fuel, 0.5, 0.1)"
+    assert [atom.name for atom in only(text).atoms] == ["above(fuel, 0.5, 0.1)"]
+
+
+def test_unused_declarations_are_checked_once() -> None:
+    assert codes("signal a: bool let l(p) = p & nothing spec s = F a") == ["TLT0201"]
+    assert codes("signal a: bool let l(p: formula, x: entity) = F p spec s = F a") == []
+    assert codes("signal a: bool predicate p(x: entity) in [-1, 1] = nothing spec s = F a") == ["TLT0201"]
+    assert codes("signal a: bool predicate p(n: length) in [-1, 1] = n spec s = F a") == ["TLT0305"]
+    assert codes("signal a: bool let l = nothing spec s = F l & G l spec t = X l") == ["TLT0201"]
+
+
+def test_a_cycle_is_reported_once_and_named() -> None:
+    _, diagnostics = resolved("signal a: bool let x = a & y let y = X z let z = F x spec s = y & x spec t = z")
+    assert [(d.code, d.title) for d in diagnostics] == [("TLT0207", "`y` is defined by itself: y -> z -> x -> y")]
+
+
+def test_two_predicates_of_one_name_from_two_files(tmp_path: object) -> None:
+    from pathlib import Path
+
+    folder = Path(str(tmp_path))
+    for name, sign in (("one", ""), ("two", "-")):
+        (folder / f"{name}.tltl").write_text(f"signal x in [-1, 1] predicate p in [-1, 1] = {sign}x")
+    text = "import one as a import two as b spec s = F a.p & G b.p"
+    assert [d.code for d in resolved(text, str(folder / "main.tltl"))[1]] == ["TLT0216"]
+
+
+def test_a_long_chain() -> None:
+    spec = only("signal a: bool signal b: bool spec s = " + " & ".join(["a", "X b"] * 450))
+    assert len(spec.parts) == 900
+    mixed = only("signal a: bool spec s = F (" + " | ".join(["a & !a"] * 900) + ")")
+    assert len(mixed.formula.args[0].args) == 900
+
+
+def test_a_long_chain_to_the_right_and_of_prefixes() -> None:
+    text = "signal a: bool spec s = " + " -> ".join(["a"] * 900) + " spec t = " + "X " * 900 + "a"
+    first, second = good(text).specs
+    assert (first.formula.op, second.formula.op) == ("implies", "X")
+
+
+def test_a_long_chain_of_lets() -> None:
+    lets = " ".join(f"let l{i} = X l{i + 1}" for i in range(3_000))
+    assert only(f"signal a: bool {lets} let l3000 = a spec s = l0").formula.op == "X"
+
+
+def test_deep_brackets() -> None:
+    assert formula("signal a: bool spec s = " + "(" * 150 + "a" + ")" * 150) == "a"
+    assert codes("signal x in [0, 1] spec s = F " + "(" * 150 + "x" + ")" * 150 + " > 0.5") == []
+
+
+def test_growth_without_end_is_an_error() -> None:
+    doubling = " ".join(f"let d{i + 1} = d{i} & X d{i}" for i in range(60))
+    assert codes(f"signal a: bool let d0 = F a {doubling} spec s = d60") == ["TLT0315"]
+    silent = " ".join(f"let d{i + 1}(p) = d{i}(p & a) | d{i}(p | a)" for i in range(60))
+    assert "TLT0315" in codes(f"signal a: bool let d0(p) = a {silent} spec s = d60(a)")
+
+
+def test_deep_arithmetic_is_an_error_not_a_crash() -> None:
+    long = " + ".join(["x"] * 900)
+    assert codes(f"signal x in [0, 1] spec s = F ({long}) > 0.5") == ["TLT0317"]
+    chain = " ".join(f"predicate p{i} in [-1, 1] = -p{i + 1}" for i in range(2_000))
+    found = codes(f"signal x in [-1, 1] {chain} predicate p2000 in [-1, 1] = x spec s = F p0")
+    assert set(found) == {"TLT0317"}

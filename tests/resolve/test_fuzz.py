@@ -1,0 +1,63 @@
+"""Broken programs give diagnostics, never an exception."""
+
+from __future__ import annotations
+
+import random
+import re
+from pathlib import Path
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tltlc.grammar.parser import parse
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
+
+ROOT = Path(__file__).parents[2]
+TEXTS = [
+    *(path.read_text(encoding="utf-8") for path in sorted((ROOT / "examples").glob("*.tltl"))),
+    *(path.read_text(encoding="utf-8") for path in sorted((ROOT / "stdlib_predicates").glob("*.tltl"))),
+]
+TOKEN = re.compile(r"//[^\n]*|[A-Za-z_][\w.]*|[0-9.]+|\s+|.", re.DOTALL)
+PIECES = [
+    "inf",
+    "near",
+    "e",
+    "s1",
+    "0",
+    "-1",
+    "1 m",
+    "20 steps",
+    "F",
+    "(",
+    ")",
+    ",",
+    "&",
+    "then",
+    "distance",
+    "x",
+    "[",
+    "<",
+]
+
+
+@settings(max_examples=150, deadline=None)
+@given(number=st.integers(0, len(TEXTS) - 1), seed=st.integers(0, 10_000), edits=st.integers(1, 6))
+def test_mutated_programs(number: int, seed: int, edits: int) -> None:
+    tokens = TOKEN.findall(TEXTS[number])
+    rng = random.Random(seed)
+    for _ in range(edits):
+        place = rng.randrange(len(tokens))
+        kind = rng.randrange(4)
+        if kind == 0:
+            del tokens[place]
+        elif kind == 1:
+            tokens[place] = rng.choice(PIECES)
+        elif kind == 2:
+            tokens[place], tokens[rng.randrange(len(tokens))] = tokens[rng.randrange(len(tokens))], tokens[place]
+        else:
+            tokens.insert(place, rng.choice(tokens))
+    module, _ = parse(SourceFile("<fuzz>", "".join(tokens)))
+    program, diagnostics = resolve(module)
+    assert all(diagnostic.title for diagnostic in diagnostics)
+    assert all(spec.parts for spec in program.specs)

@@ -1,0 +1,123 @@
+"""Where imports are found, what they offer, and what happens when they fail."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.resolve.helpers import good, only, resolved, write
+from tltlc.resolve.spec import Spec
+
+
+def _in(folder: Path, text: str, **options: object) -> list[str]:
+    return [d.code for d in resolved(text, str(folder / "main.tltl"), **options)[1]]
+
+
+def _spec(folder: Path, text: str, **options: object) -> Spec:
+    return only(text, str(folder / "main.tltl"), **options)
+
+
+def test_the_own_folder_comes_before_the_others_and_the_standard_library_last(tmp_path: Path) -> None:
+    own, extra = tmp_path / "own", tmp_path / "extra"
+    own.mkdir()
+    extra.mkdir()
+    write(extra, lib="signal b: bool let goal = F b", stealth="signal mine: bool")
+    text = "import lib spec s = goal"
+    assert str(_spec(own, text, library_dirs=(extra,)).formula) == "F b"
+    write(own, lib="signal a: bool let goal = F a")
+    assert str(_spec(own, text, library_dirs=(extra,)).formula) == "F a"
+    assert str(_spec(own, "import stealth spec s = F mine", library_dirs=(extra,)).formula) == "F mine"
+    assert str(_spec(own, "import stealth spec s = G alive").formula) == "G alive"
+
+
+def test_a_file_is_found_relative_to_the_one_that_imports_it(tmp_path: Path) -> None:
+    (tmp_path / "levels").mkdir()
+    (tmp_path / "parts").mkdir()
+    write(tmp_path, common='import "parts/doors.tltl"')
+    write(tmp_path / "parts", doors="entity door import shut", shut="signal shut(d: entity): bool")
+    assert str(_spec(tmp_path / "levels", 'import "../common.tltl" spec s = F shut(door)').formula) == "F shut(door)"
+
+
+def test_imports_are_transitive_and_each_file_is_read_once(tmp_path: Path) -> None:
+    write(tmp_path, a="import c", b="import c", c="signal x: bool let goal = F x")
+    assert str(_spec(tmp_path, "import a import b import c spec s = goal").formula) == "F x"
+
+
+def test_selected_names_bring_nothing_else(tmp_path: Path) -> None:
+    text = "import stealth (near) entity e signal alive: bool spec s = F near(e) & G alive"
+    spec = _spec(tmp_path, text)
+    assert [signal.name for signal in spec.signals] == ["distance(e)", "alive"]
+
+
+def test_an_alias_is_only_in_the_source(tmp_path: Path) -> None:
+    spec = _spec(tmp_path, "import stealth as st entity e spec s = F st.near(e, close = 3 m) & F st.seen")
+    assert [atom.name for atom in spec.atoms] == ["near(e, close=3)", "seen"]
+    assert [signal.name for signal in spec.signals] == ["distance(e)", "seen"]
+    assert _in(tmp_path, "import stealth as st entity e spec s = F near(e)") == ["TLT0201"]
+
+
+def test_the_origin_in_a_suggestion_is_the_import_of_this_file() -> None:
+    _, (found,) = resolved("import stealth entity e spec s = F neer(e)")
+    assert found.labels[0].message == "did you mean `near` (from stealth)?"
+
+
+def test_identical_declarations_merge_whichever_comes_first(tmp_path: Path) -> None:
+    write(tmp_path, lib="signal distance(x: entity): length in [0 m, 50 m] param p: ratio in [0, 0.5] = 20 %")
+    for text in (
+        "signal distance(target: entity): length param p: ratio = 0.2",
+        "signal distance(target: entity): length in [0 m, 50 m] param p: ratio in [0, 50 %] = 0.2",
+    ):
+        spec = _spec(tmp_path, f"import lib {text} entity e spec s = F distance(e) > 10 m")
+        assert (spec.signals[0].low, spec.signals[0].high) == (0.0, 50.0)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "signal health in [0, 1]",
+        "signal health: ratio in [0, 0.5]",
+        "signal health(x: entity): ratio",
+        "param level_size: length in [2 m, 10 km] = 21 m",
+        "param level_size: length in [2 m, 9 km] = 20 m",
+    ],
+)
+def test_different_declarations_are_an_error_that_shows_both(text: str) -> None:
+    _, (found,) = resolved(f"import stealth {text} spec s = true")
+    assert found.code == "TLT0204"
+    assert [label.source.name.split("/")[0] for label in found.labels] == ["<test>", "<standard library>"]
+
+
+def test_a_cycle_is_named(tmp_path: Path) -> None:
+    write(tmp_path, a="import b", b="import c", c="import a")
+    _, (found,) = resolved("import a spec s = true", str(tmp_path / "main.tltl"))
+    assert (found.code, found.title) == ("TLT0011", "imports form a cycle: a -> b -> c -> a")
+    assert len(found.labels) == 3
+
+
+def test_a_long_chain_of_imports(tmp_path: Path) -> None:
+    write(tmp_path, **{f"m{i}": f"import m{i + 1}" for i in range(1500)}, m1500="signal x: bool")
+    assert str(_spec(tmp_path, "import m0 spec s = F x").formula) == "F x"
+
+
+def test_a_failed_import_is_the_only_error(tmp_path: Path) -> None:
+    (tmp_path / "latin.tltl").write_bytes("signal caf\xe9: bool".encode("latin-1"))
+    write(tmp_path, broken="signal : bool", outer="import broken")
+    assert _in(tmp_path, "import nowhere spec s = F nothing(x) > 3 m") == ["TLT0010"]
+    assert _in(tmp_path, 'import "nowhere.tltl" spec s = F nothing') == ["TLT0010"]
+    assert _in(tmp_path, "import latin spec s = F nothing") == ["TLT0002"]
+    assert len(_in(tmp_path, "import outer spec s = F nothing")) == 1
+    _, (found,) = resolved("import latin spec s = true", str(tmp_path / "main.tltl"))
+    assert [label.source.name.endswith("main.tltl") for label in found.labels] == [False, True]
+
+
+def test_odd_targets_are_not_found(tmp_path: Path) -> None:
+    for target in ("..", "/", "a" * 5000, "", "nul\0"):
+        assert _in(tmp_path, f'import "{target}" spec s = true')[0] in ("TLT0010", "TLT0001")
+
+
+def test_tests_and_specs_of_an_import_stay_there(tmp_path: Path) -> None:
+    write(tmp_path, lib='signal a: bool spec there = F a test "t" for there { step a expect satisfied }')
+    program = good("import lib spec here = F a", str(tmp_path / "main.tltl"))
+    assert [spec.name for spec in program.specs] == ["here"]
+    assert program.tests == ()

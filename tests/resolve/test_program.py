@@ -1,0 +1,142 @@
+"""The paper's spec, and what a resolved spec says about itself."""
+
+from __future__ import annotations
+
+from tests.resolve.helpers import codes, formula, good, only, resolved
+from tltlc.resolve.spec import Expect, Signal, Step
+
+COVER_AND_HIDE = """
+import stealth
+entity s1, s2, exit
+exclusive near(s2), near(exit), near(s1)
+
+/// Button 1, then button 2, then the exit, without dying.
+spec cover_and_hide {
+    level cover_and_hide
+    limit 400 steps
+    tag paper, slow
+    reach near(s1) then near(s2) then near(exit)
+    keep alive
+}
+"""
+
+
+def test_cover_and_hide() -> None:
+    spec = only(COVER_AND_HIDE)
+    assert str(spec.formula) == "F(near(s1) & X F(near(s2) & X F near(exit))) & G alive"
+    assert [atom.name for atom in spec.atoms] == ["near(s1)", "near(s2)", "near(exit)", "alive"]
+    assert spec.signals[0] == Signal(
+        "distance(s1)", "length", 0.0, None, "Distance in a straight line from the character to `target`."
+    )
+    assert [signal.name for signal in spec.signals] == ["distance(s1)", "distance(s2)", "distance(exit)", "health"]
+    assert [(param.name, param.value, param.low, param.high) for param in spec.params] == [
+        ("level_size", 20.0, 2.0, 10_000.0)
+    ]
+    assert spec.exclusive == ((0, 1, 2),)
+    assert (spec.level, spec.limit_steps, spec.judge, spec.semantics) == ("cover_and_hide", 400, None, "finite")
+    assert spec.tags == ("paper", "slow")
+    assert spec.doc == "Button 1, then button 2, then the exit, without dying."
+    assert [spec.source.slice(part.span) for part in spec.parts] == [
+        "reach near(s1) then near(s2) then near(exit)",
+        "keep alive",
+    ]
+
+
+def test_the_formula_form_is_the_same_formula() -> None:
+    text = """
+    import stealth
+    entity s1, s2, exit
+    spec a { reach near(s1) then near(s2) then near(exit) keep alive }
+    spec b = F(near(s1) & X F(near(s2) & X F near(exit))) & G alive
+    """
+    first, second = good(text).specs
+    assert first.formula is second.formula
+    assert [str(part.formula) for part in second.parts] == [str(part.formula) for part in first.parts]
+
+
+def test_parts_are_the_conjuncts_of_require() -> None:
+    spec = only("signal a: bool signal b: bool spec s { require F a & (G b and (a -> b)) | false require (a and b) }")
+    assert [str(part.formula) for part in spec.parts] == ["F a & G b & (a -> b) | false", "a", "b"]
+
+
+def test_clauses() -> None:
+    text = "signal a: bool signal b: bool spec s { reach a keep b avoid a require a iff b }"
+    assert formula(text) == "F a & G b & G !a & (a <-> b)"
+
+
+def test_metadata() -> None:
+    spec = only("clock 20 Hz signal a: bool spec s { limit 0.15 s judge at limit semantics infinite keep a }")
+    assert (spec.limit_steps, spec.judge, spec.semantics, spec.clock_s) == (3, "limit", "infinite", 0.05)
+
+
+def test_exclusive_atoms_come_last_and_only_where_two_are_used() -> None:
+    text = """
+    entity a, b, c
+    signal at(x: entity): bool
+    signal on: bool
+    exclusive at(c), at(a), at(b)
+    exclusive on, at(c)
+    spec two = F at(b) & F at(a)
+    spec one = F at(b) & G on
+    """
+    two, one = good(text).specs
+    assert [atom.name for atom in two.atoms] == ["at(b)", "at(a)", "at(c)"]
+    assert two.exclusive == ((0, 1, 2),)
+    assert [atom.name for atom in one.atoms] == ["at(b)", "on"]
+    assert one.exclusive == ()
+
+
+def test_a_test_block() -> None:
+    text = """
+    signal alive: bool
+    signal health: ratio
+    spec s = G alive & F health >= 0.5
+    test "t" for s {
+        step 3x alive, not health < 0.5
+        expect pending
+        step health >= 50 %, not alive
+        expect progress >= 0.5
+        expect state "false"
+    }
+    """
+    (test,) = good(text).tests
+    assert (test.title, test.spec) == ("t", "s")
+    assert test.items[0] == Step(3, frozenset({"alive"}))
+    assert test.items[2] == Step(1, frozenset())
+    expectations = [item for item in test.items if isinstance(item, Expect)]
+    assert [(e.kind, e.value, e.comparison) for e in expectations] == [
+        ("verdict", "pending", None),
+        ("progress", 0.5, ">="),
+        ("state", "false", None),
+    ]
+
+
+def test_only_the_specs_that_resolve_are_kept_and_their_tests() -> None:
+    text = """
+    signal a: bool
+    spec bad { reach nothing keep b avoid nowhere }
+    spec good = F a
+    test "of the bad one" for bad { step a expect pending }
+    test "of the good one" for good { step a expect satisfied }
+    """
+    program, diagnostics = resolved(text)
+    assert [spec.name for spec in program.specs] == ["good"]
+    assert [test.title for test in program.tests] == ["of the good one"]
+    assert [diagnostic.code for diagnostic in diagnostics] == ["TLT0201"] * 3
+
+
+def test_resolution_is_deterministic() -> None:
+    assert resolved(COVER_AND_HIDE) == resolved(COVER_AND_HIDE)
+
+
+def test_overrides() -> None:
+    text = "import spatial entity e spec s = F near(e)"
+    assert only(text, params={"level_size": "35 m"}).params[0].value == 35
+    assert only(text, params={"level_size": " 1.5km "}).params[0].value == 1500
+    assert only(text, params={"level_size": "42"}).params[0].value == 42
+    assert codes(text, params={"level_size": "42 s"}) == ["TLT0308"]
+    assert codes(text, params={"level_size": "wide"}) == ["TLT0308"]
+    assert codes(text, params={"level": "2"}) == ["TLT0308"]
+    assert codes(text, params={"level_size": "1 m"}) == ["TLT0307"]
+    speed = "signal v: speed in [0 m/s, 9 m/s] param top: speed in [1 m/s, 9 m/s] = 2 m/s spec s = F v > top"
+    assert only(speed, params={"top": "3 m/s"}).params[0].value == 3
