@@ -13,7 +13,7 @@ from tests.cli.conftest import EXAMPLE, ROOT
 
 HEAVY = {
     "sympy", "networkx", "graphviz", "pygraphviz", "rich", "lark", "jsonschema", "fastjsonschema", "numpy", "torch",
-    "importlib.metadata", "subprocess", "asyncio", "http", "xml", "multiprocessing", "unittest",
+    "importlib.metadata", "asyncio", "http", "xml", "multiprocessing", "unittest",
 }  # fmt: skip
 
 
@@ -51,7 +51,7 @@ def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Pa
 def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
     modules = {name for name in loaded("--help", folder=tmp_path) if name.startswith("tltlc")}
     line = {"tltlc", "tltlc.cli", "tltlc.cli.main", "tltlc.cli.exits"}
-    assert modules <= line | {"tltlc.diagnostics", "tltlc.diagnostics.diagnostic", "tltlc.source"}
+    assert modules <= line | {"tltlc.diagnostics", "tltlc.diagnostics.diagnostic", "tltlc.source", "tltlc.record"}
 
 
 def test_the_facade_loads_nothing(tmp_path: Path) -> None:
