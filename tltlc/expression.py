@@ -6,35 +6,36 @@ frozen, know nothing of the surface language and hold no units: every number is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, Union
+
+from tltlc.record import record
 
 ArithmeticOp = Literal["+", "-", "*", "/", "^", "neg", "min", "max", "abs", "clamp", "sqrt", "exp", "tanh"]
 ConditionOp = Literal["<", "<=", ">", ">=", "and", "or", "not"]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Const:
     """A finite number."""
 
     value: float
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Signal:
     """The present value of a signal, by its full name, e.g. ``distance(s1)``; a bool counts as 0 or 1."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Param:
     """The value of a param, by name."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Op:
     """An operator or function over expressions; ``clamp`` takes (x, low, high), ``min`` and ``max`` two or more."""
 
@@ -42,7 +43,7 @@ class Op:
     args: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Condition:
     """A comparison of two expressions, or ``and``, ``or``, ``not`` over conditions."""
 
@@ -50,7 +51,7 @@ class Condition:
     args: tuple[Union[Expression, Condition], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class When:
     """The first case whose condition holds, else ``otherwise``."""
 

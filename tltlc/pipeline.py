@@ -7,13 +7,13 @@ was no error.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from tltlc.automaton.build import build
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.grammar.parser import parse
+from tltlc.record import EMPTY, record
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolve
 from tltlc.source import SourceFile
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 DEFAULT_STATE_BUDGET = 50_000
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class CompileOptions:
     """How to compile.
 
@@ -38,12 +38,12 @@ class CompileOptions:
     """
 
     library_dirs: tuple[Path, ...] = ()
-    params: Mapping[str, str] = field(default_factory=dict)
+    params: Mapping[str, str] = EMPTY
     state_budget: int = DEFAULT_STATE_BUDGET
     specs: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Compiled:
     """A compiled file: its ``automata`` in the order of its specs, and ``diagnostics`` that are no errors."""
 
@@ -168,8 +168,7 @@ def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
     """
     if not values:
         return fspa
-    from dataclasses import replace
-
+    from tltlc.record import replace
     from tltlc.resolve.overrides import overridden
 
     params, found = overridden({param.name: param for param in fspa.params}, values)

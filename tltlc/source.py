@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass, field
+
+from tltlc.record import record
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Span:
     """A half-open range of character offsets, ``start <= end``, into one source text."""
 
@@ -18,21 +19,29 @@ class Span:
         return Span(min(self.start, other.start), max(self.end, other.end))
 
 
-@dataclass(frozen=True)
 class SourceFile:
     """A text and the name under which messages speak of it (a path, or ``<stdin>``)."""
 
-    name: str
-    text: str = field(repr=False)
-    _line_starts: tuple[int, ...] = field(init=False, repr=False, compare=False)
+    __slots__ = ("_line_starts", "name", "text")
 
-    def __post_init__(self) -> None:
+    def __init__(self, name: str, text: str) -> None:
+        self.name = name
+        self.text = text
         starts = [0]
-        position = self.text.find("\n")
+        position = text.find("\n")
         while position >= 0:
             starts.append(position + 1)
-            position = self.text.find("\n", position + 1)
-        object.__setattr__(self, "_line_starts", tuple(starts))
+            position = text.find("\n", position + 1)
+        self._line_starts = starts
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SourceFile) and (self.name, self.text) == (other.name, other.text)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.text))
+
+    def __repr__(self) -> str:
+        return f"SourceFile(name={self.name!r})"
 
     def position(self, offset: int) -> tuple[int, int]:
         """Line and column of a character offset, both from 1; columns count characters."""

@@ -51,9 +51,7 @@ def traces(fspa: Fspa, longest: int) -> Iterator[tuple[Letter, ...]]:
 
 def named(fspa: Fspa, trace: Sequence[Letter]) -> list[frozenset[str]]:
     """The trace as the oracle takes it: the names of the atoms that hold at each sample."""
-    return [
-        frozenset(atom.name for atom, value in zip(fspa.atoms, letter, strict=True) if value) for letter in trace
-    ]
+    return [frozenset(atom.name for atom, value in zip(fspa.atoms, letter, strict=True) if value) for letter in trace]
 
 
 def minimal_size(fspa: Fspa, accepting: set[int]) -> int:

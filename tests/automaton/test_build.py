@@ -170,11 +170,7 @@ def _primes_by_brute_force(fspa: Fspa, taken: set[tuple[bool, ...]]) -> set[tupl
         # Contained in the guard or the impossible letters <=> its possible letters are in the guard.
         if inside <= taken:
             implicants.append((cube, bool(inside)))
-    prime = [
-        (cube, meets)
-        for cube, meets in implicants
-        if not any(set(other) < set(cube) for other, _ in implicants)
-    ]
+    prime = [(cube, meets) for cube, meets in implicants if not any(set(other) < set(cube) for other, _ in implicants)]
     return {cube for cube, meets in prime if meets}
 
 

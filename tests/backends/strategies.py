@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 from hypothesis import strategies as st
 
 from tests.fixtures import cover_and_hide
@@ -11,6 +9,7 @@ from tests.logic.strategies import formulas
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa, Guard, Text
 from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.record import replace
 from tltlc.resolve import spec
 
 HOSTILE = (
@@ -97,12 +96,10 @@ def hostile_automata(draw: st.DrawFn) -> Fspa:
     fspa = cover_and_hide()
     names = draw(st.lists(hostile_texts.filter(bool), min_size=4, max_size=4, unique=True))
     text = st.builds(Text, hostile_texts, hostile_texts, hostile_texts)
-    states = tuple(dataclasses.replace(state, label=draw(text)) for state in fspa.states)
-    edges = tuple(
-        dataclasses.replace(edge, guard=Guard(draw(st.sampled_from(names)), edge.guard.primes)) for edge in fspa.edges
-    )
+    states = tuple(replace(state, label=draw(text)) for state in fspa.states)
+    edges = tuple(replace(edge, guard=Guard(draw(st.sampled_from(names)), edge.guard.primes)) for edge in fspa.edges)
     signal = draw(hostile_texts.filter(lambda name: bool(name) and name != "health"))
-    return dataclasses.replace(
+    return replace(
         fspa,
         doc=draw(hostile_texts),
         formula=draw(text),

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import dataclasses
 import itertools
 from typing import Any
 
@@ -14,6 +13,7 @@ from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends.artefact import guards
 from tltlc.backends.artefact.consistency import problems
 from tltlc.expression import Param, Signal
+from tltlc.record import replace
 
 SAFE = Guard("alive", (((3, True),),))
 
@@ -26,8 +26,8 @@ def changed(table: str, index: int, **values: Any) -> Fspa:
     """The Cover and Hide automaton with other values in one row of one of its tables."""
     fspa = cover_and_hide()
     rows = list(getattr(fspa, table))
-    rows[index] = dataclasses.replace(rows[index], **values)
-    return dataclasses.replace(fspa, **{table: tuple(rows)})  # type: ignore[arg-type]
+    rows[index] = replace(rows[index], **values)
+    return replace(fspa, **{table: tuple(rows)})  # type: ignore[arg-type]
 
 
 @settings(max_examples=100, deadline=None)
@@ -46,7 +46,7 @@ def test_what_the_compiler_makes_is_consistent(fspa: Fspa) -> None:
         (changed("signals", 3, low=2.0), "the range of `health` is empty"),
         (changed("params", 0, value=1.0), "the value of `level_size` lies outside its range"),
         (changed("states", 1, id=0), "state 1 has the id 0"),
-        (dataclasses.replace(cover_and_hide(), exclusive=((0, 4),)), "there are only 4 atoms"),
+        (replace(cover_and_hide(), exclusive=((0, 4),)), "there are only 4 atoms"),
         (changed("edges", 3, target=9), "there is no state 9"),
         (changed("edges", 0, source=9), "there is no state 9"),
         (changed("edges", 1, target=0), "two edges lead from state 0 to state 0"),
@@ -55,7 +55,7 @@ def test_what_the_compiler_makes_is_consistent(fspa: Fspa) -> None:
         (changed("states", 1, distance=1), "the distance of state 1 is 2, not 1"),
         (changed("states", 2, distance=7), "the distance of state 2 is null, not 7"),
         (changed("states", 4, verdict="satisfied"), "the verdict of state 4 is `holding`, not `satisfied`"),
-        (dataclasses.replace(cover_and_hide(), spec_size=4), "spec_size is 3, not 4"),
+        (replace(cover_and_hide(), spec_size=4), "spec_size is 3, not 4"),
         (
             changed("edges", 11, guard=Guard("true", ((),))),
             "the guards from state 4 to states 2 and 4 can be true at once",
@@ -83,7 +83,7 @@ def test_a_contradiction_is_named(fspa: Fspa, expected: str) -> None:
 def test_a_state_that_no_state_before_it_leads_to_is_found() -> None:
     fspa = cover_and_hide()
     edges = tuple(edge for edge in fspa.edges if (edge.source, edge.target) != (1, 3))
-    assert messages(dataclasses.replace(fspa, edges=edges)) == ["state 3 cannot be reached from a state before it"]
+    assert messages(replace(fspa, edges=edges)) == ["state 3 cannot be reached from a state before it"]
 
 
 def test_another_numbering_than_breadth_first_is_found() -> None:
@@ -94,8 +94,8 @@ def test_another_numbering_than_breadth_first_is_found() -> None:
         (Edge({2: 3, 3: 2}.get(e.source, e.source), {2: 3, 3: 2}.get(e.target, e.target), e.guard) for e in fspa.edges),
         key=lambda edge: (edge.source, edge.target),
     )
-    assert "the states are not numbered breadth-first" in messages(dataclasses.replace(fspa, edges=tuple(swapped)))
-    assert messages(dataclasses.replace(fspa, edges=edges)) == ["state 2 cannot be reached from a state before it"]
+    assert "the states are not numbered breadth-first" in messages(replace(fspa, edges=tuple(swapped)))
+    assert messages(replace(fspa, edges=edges)) == ["state 2 cannot be reached from a state before it"]
 
 
 def test_large_automata_are_checked_only_up_to_the_work_limit(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,13 +131,13 @@ def test_exactly_the_complete_sets_of_primes_pass(terms: list[tuple[tuple[int, b
     primes = tuple(sorted(all_primes(guard))) if complete else tuple(terms)
     rest = tuple(sorted(all_primes(samples - guard)))
     fspa = cover_and_hide()
-    states = tuple(dataclasses.replace(fspa.states[2], id=index) for index in range(2))
+    states = tuple(replace(fspa.states[2], id=index) for index in range(2))
     edges = [Edge(0, 0, Guard("g", primes)), Edge(1, 1, Guard("true", ((),)))]
     if rest:
         edges.insert(1, Edge(0, 1, Guard("!g", rest)))
     else:
         states, edges = states[:1], edges[:1]
-    fspa = dataclasses.replace(fspa, exclusive=(), states=states, edges=tuple(edges), spec_size=0)
+    fspa = replace(fspa, exclusive=(), states=states, edges=tuple(edges), spec_size=0)
     assert (messages(fspa) == []) == (set(primes) == all_primes(guard))
 
 
@@ -162,8 +162,8 @@ def test_a_guard_that_covers_too_little_or_too_much_is_found(fspa: Fspa, data: s
         if names
         else ((),),
     )
-    edges = (*fspa.edges[:index], dataclasses.replace(edge, guard=other), *fspa.edges[index + 1 :])
-    damaged = dataclasses.replace(fspa, edges=edges)
+    edges = (*fspa.edges[:index], replace(edge, guard=other), *fspa.edges[index + 1 :])
+    damaged = replace(fspa, edges=edges)
     letters = [
         letter
         for letter in itertools.product((False, True), repeat=names)

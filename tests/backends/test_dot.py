@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import dataclasses
 import html
 import re
 from pathlib import Path
@@ -16,6 +15,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, graph
 from tltlc.backends.drawing.texts import Guards, visible, wrapped
+from tltlc.record import replace
 
 
 def emitted(fspa: Fspa, options: Options | None = None) -> str:
@@ -109,8 +109,6 @@ def test_long_labels_are_wrapped_before_operators_and_cut() -> None:
 
 def test_names_of_atoms_are_kept_whatever_operators_stand_in_them() -> None:
     fspa = cover_and_hide()
-    atoms = tuple(
-        dataclasses.replace(a, name=n) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True)
-    )
-    guards = Guards(dataclasses.replace(fspa, atoms=atoms), "unicode")
+    atoms = tuple(replace(a, name=n) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True))
+    guards = Guards(replace(fspa, atoms=atoms), "unicode")
     assert guards.text("!x! & (a & b | !true_love) -> true") == "¬x! ∧ (a & b ∨ ¬true_love) ⇒ ⊤"

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import dataclasses
 import json
 import unicodedata
 from pathlib import Path
@@ -17,6 +16,7 @@ from tltlc.backends.artefact.layout import WIDTH, layout
 from tltlc.backends.json import read
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression import Const, Expression
+from tltlc.record import replace
 from tltlc.resolve.spec import Atom
 
 
@@ -57,14 +57,14 @@ def test_hostile_texts_are_read_as_they_were_written(fspa: Fspa) -> None:
 @given(expressions())
 def test_expressions_are_read_as_they_were_written(expression: Expression) -> None:
     fspa = cover_and_hide()
-    fspa = dataclasses.replace(fspa, atoms=(Atom("near(s1)", expression), *fspa.atoms[1:]))
+    fspa = replace(fspa, atoms=(Atom("near(s1)", expression), *fspa.atoms[1:]))
     assert read(emitted(fspa), "x.fspa.json") == fspa
 
 
 @given(finite())
 def test_numbers_keep_every_digit(number: float) -> None:
     fspa = cover_and_hide()
-    fspa = dataclasses.replace(fspa, atoms=(Atom("near(s1)", Const(number)), *fspa.atoms[1:]))
+    fspa = replace(fspa, atoms=(Atom("near(s1)", Const(number)), *fspa.atoms[1:]))
     (atom, *_) = read(emitted(fspa), "x.fspa.json").atoms
     assert isinstance(atom.expression, Const)
     assert repr(atom.expression.value) == repr(number)
@@ -85,7 +85,7 @@ def test_fields_of_others_are_ignored_and_whole_numbers_may_have_a_point() -> No
 def test_a_non_finite_number_is_never_written() -> None:
     fspa = cover_and_hide()
     with pytest.raises(ValueError, match="expression"):
-        emitted(dataclasses.replace(fspa, atoms=(Atom("near(s1)", Const(float("inf"))), *fspa.atoms[1:])))
+        emitted(replace(fspa, atoms=(Atom("near(s1)", Const(float("inf"))), *fspa.atoms[1:])))
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import dataclasses
 import importlib
 import subprocess
 import sys
@@ -10,6 +9,7 @@ import pytest
 from tests.fixtures import cover_and_hide
 from tltlc import backends
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
 
 
 @pytest.mark.parametrize("name", backends.targets())
@@ -49,7 +49,7 @@ def test_a_module_that_is_no_target_cannot_be_named_as_one(name: str) -> None:
 @pytest.mark.parametrize("name", ["../../evil", "a b", "a.b", "", "naïve"])
 def test_a_name_that_would_not_name_a_file_is_refused(name: str) -> None:
     with pytest.raises(ValueError, match="plain name"):
-        backends.emit("dot", dataclasses.replace(cover_and_hide(), name=name))
+        backends.emit("dot", replace(cover_and_hide(), name=name))
 
 
 def test_the_default_targets_load_no_heavy_library() -> None:

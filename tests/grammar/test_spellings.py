@@ -1,5 +1,3 @@
-from dataclasses import fields, is_dataclass
-
 import pytest
 
 from tests.grammar.reading import brackets, read
@@ -60,10 +58,10 @@ def test_spans_cover_the_text() -> None:
     formula = read(text)
 
     def walk(node: object) -> None:
-        if is_dataclass(node) and hasattr(node, "span"):
+        if hasattr(node, "span"):
             assert text[node.span.start : node.span.end].strip() == text[node.span.start : node.span.end] != ""
-            for field in fields(node):
-                value = getattr(node, field.name)
+            for name in type(node).__match_args__:
+                value = getattr(node, name)
                 for part in value if isinstance(value, tuple) else [value]:
                     if hasattr(part, "span"):
                         assert node.span.start <= part.span.start <= part.span.end <= node.span.end

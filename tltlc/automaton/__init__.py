@@ -1,0 +1,1 @@
+"""Formulas become automata: diagrams, minimal machines, guards, distances, labels."""

@@ -244,9 +244,9 @@ def _restored(formula: Formula, in_source: Mapping[Formula, Formula]) -> Formula
 
 
 def _text(formula: Formula) -> Text:
-    ascii = ascii_text(formula)
-    english = english_text(formula) if len(ascii) <= _LONGEST_IN_ENGLISH else f"Satisfy {ascii}."
-    return Text(ascii, unicode_text(formula), english)
+    plain = ascii_text(formula)
+    english = english_text(formula) if len(plain) <= _LONGEST_IN_ENGLISH else f"Satisfy {plain}."
+    return Text(plain, unicode_text(formula), english)
 
 
 def _at_the_end(label: Text, accepting: bool) -> Text:

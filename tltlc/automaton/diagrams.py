@@ -80,7 +80,9 @@ class Diagrams:
         self.node: Callable[[int, int, int], int] = self._node_maker()
         self.both: Callable[[int, int], int] = self._obligation_operation(absorbing=FALSE, neutral=TRUE)
         self.either: Callable[[int, int], int] = self._obligation_operation(absorbing=TRUE, neutral=FALSE)
-        self.conjoin: Callable[[int, int], int] = self._transition_operation(REJECT, ACCEPT, self.both, conjunction=True)
+        self.conjoin: Callable[[int, int], int] = self._transition_operation(
+            REJECT, ACCEPT, self.both, conjunction=True
+        )
         self.disjoin: Callable[[int, int], int] = self._transition_operation(
             ACCEPT, REJECT, self.either, conjunction=False
         )

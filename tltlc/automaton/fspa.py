@@ -6,9 +6,9 @@ from JSON is the one that was written.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from tltlc.record import record
 from tltlc.resolve.spec import Atom, Judge, Param, Signal
 
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
@@ -16,7 +16,7 @@ Implicant = tuple[tuple[int, bool], ...]
 """Pairs of an index into ``Fspa.atoms`` and a polarity."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Text:
     """A formula in three notations."""
 
@@ -25,7 +25,7 @@ class Text:
     english: str
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class State:
     """A state: what remains to be satisfied, and what its verdict would be if the trace ended here.
 
@@ -39,7 +39,7 @@ class State:
     distance: int | None
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Guard:
     """When an edge is taken: ``primes`` are ALL prime implicants (``((),)`` is true), ``text`` a short form.
 
@@ -51,7 +51,7 @@ class Guard:
     primes: tuple[Implicant, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Edge:
     """At most one per (source, target); of the edges that leave a state exactly one guard is true."""
 
@@ -60,7 +60,7 @@ class Edge:
     guard: Guard
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Fspa:
     """A deterministic, complete, minimal automaton with acceptance on states.
 

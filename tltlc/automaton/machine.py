@@ -8,17 +8,17 @@ end with that letter.  Acceptance is put on states only at the end (:mod:`tltlc.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, Diagrams, OutOfSteps
 from tltlc.automaton.successors import Successors
+from tltlc.record import record
 
 
 class OutOfStates(Exception):
     """Raised when exploration needs more states than its budget."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Machine:
     """The minimal machine of an obligation.
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable
-from dataclasses import dataclass
 from types import ModuleType
 from typing import Literal, Union
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.record import record
 
 Files = dict[str, Union[str, bytes]]
 """File names (without folders) and what is to stand in them."""
@@ -24,7 +24,7 @@ Notation = Literal["unicode", "ascii", "english"]
 DEFAULT_TARGETS = ("json", "dot", "python")
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Target:
     """What a target is: its name (that of its module), a title for listings, how its files' names end."""
 
@@ -37,7 +37,7 @@ def _ignore(_: Diagnostic) -> None:
     """Drop a remark."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Options:
     """How targets write.
 

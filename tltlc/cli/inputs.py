@@ -6,7 +6,6 @@ import os
 import re
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -14,6 +13,7 @@ from tltlc.cli.project import Project, project_for
 from tltlc.cli.settings import Settings, check_libraries
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, reading_error
+from tltlc.record import record
 from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ STDIN: Final = "-"
 _PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Input:
     """A compiled argument: its automata in order, and the program unless it is an artefact."""
 

@@ -9,11 +9,11 @@ notation = "unicode"                  # of formulas in pictures: unicode, ascii 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _KEYS: Final = ("libraries", "targets", "style")
 _STYLE_KEYS: Final = ("notation",)
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Project:
     """What a project file says; ``targets`` is empty where it says nothing of them."""
 

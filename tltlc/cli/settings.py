@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.record import EMPTY, record
 
 FORMATS = ("text", "json", "sarif", "github")
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Settings:
     """What the command line says of where and how to compile; ``libraries`` before those of the project file."""
 
     libraries: tuple[Path, ...] = ()
-    params: dict[str, str] = field(default_factory=dict)
+    params: Mapping[str, str] = EMPTY
     state_budget: int | None = None
 
 

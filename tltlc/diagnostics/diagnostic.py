@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import Literal
 
+from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
 Severity = Literal["error", "warning", "note"]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Label:
     """A place in a source, with an optional short remark printed under its caret."""
 
@@ -20,7 +20,7 @@ class Label:
     message: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Diagnostic:
     """A message: what happened (title), where (labels, the first is the main one), one way out (help).
 
@@ -31,7 +31,7 @@ class Diagnostic:
     title: str
     labels: tuple[Label, ...] = ()
     help: str | None = None
-    severity: Severity = field(default="error")
+    severity: Severity = "error"
 
 
 class TltlError(Exception):

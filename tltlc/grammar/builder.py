@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import inf, isinf
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
@@ -12,6 +11,7 @@ from tltlc.grammar import tree
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.tree import Expr
 from tltlc.grammar.words import TEST_ITEMS
+from tltlc.record import replace
 from tltlc.source import SourceFile, Span
 
 OPERATORS = {

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import tree
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.tree import Declaration, Expr
+from tltlc.record import replace
 from tltlc.source import SourceFile, Span
 
 MAX_BRACKETS: Final = 200

@@ -7,7 +7,6 @@ behind something that can end a piece, so that ``reach level`` is one clause wit
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
@@ -16,6 +15,7 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import BAD, END, Token, Tokens
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, DECLARATIONS, TEST_ITEMS, closest
+from tltlc.record import replace
 from tltlc.source import SourceFile
 
 MAX_ERRORS: Final = 200

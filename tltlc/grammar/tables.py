@@ -11,9 +11,10 @@ import json
 import os
 import re
 import zlib
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
+
+from tltlc.record import record
 
 _FOLDER = os.path.dirname(__file__)  # noqa: PTH120 (pathlib costs the start of a command 5 ms)
 GRAMMAR = f"{_FOLDER}/tltl.lark"
@@ -21,7 +22,7 @@ TABLES = f"{_FOLDER}/tables.json"
 STARTS = ("module", "declaration", "clause", "test_item", "expression")
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Rule:
     """What a reduction does: pop ``size`` values, hand those of ``keep`` to the builder's method ``action``.
 
@@ -36,7 +37,7 @@ class Rule:
     keep: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Tables:
     """Parser and lexer tables.
 

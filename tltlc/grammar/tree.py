@@ -7,15 +7,15 @@ canonical spelling each: ``not and or implies iff F G X N U W R M then`` and ``+
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Union
 
+from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
 # --- expressions ------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Number:
     """A literal, with the unit written behind it (``m``, ``%``, ``steps``, …) or none; ``inf`` is one."""
 
@@ -24,7 +24,7 @@ class Number:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Constant:
     """``true`` or ``false``."""
 
@@ -32,7 +32,7 @@ class Constant:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Name:
     """A name without brackets behind it; may be dotted."""
 
@@ -40,7 +40,7 @@ class Name:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Argument:
     """One argument of a call; ``name`` where it is given by keyword."""
 
@@ -49,7 +49,7 @@ class Argument:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Call:
     """``name(arguments)``: a predicate, a signal of an entity, a ``let`` or a function."""
 
@@ -59,7 +59,7 @@ class Call:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Bound:
     """``[low, high]`` of a temporal operator, in samples or seconds; ``low`` is None for ``within`` and ``for``."""
 
@@ -70,7 +70,7 @@ class Bound:
     """True for ``within 20 steps``, ``for 20 steps``, ``after 3 steps``, False for ``F[0,20]``."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Unary:
     """``-`` or ``not`` or a temporal operator ``F G X N`` before an operand, with a bound or none."""
 
@@ -81,7 +81,7 @@ class Unary:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Binary:
     """An infix operator between two operands."""
 
@@ -92,7 +92,7 @@ class Binary:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Group:
     """An expression in round brackets: kept, because ``then`` asks for them."""
 
@@ -100,7 +100,7 @@ class Group:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Quantified:
     """``all x in (s1, s2): body`` (``all`` True) or ``any x in (…): body``."""
 
@@ -111,7 +111,7 @@ class Quantified:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class WhenCase:
     """``when condition: value``."""
 
@@ -120,7 +120,7 @@ class WhenCase:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class When:
     """A case distinction; only in predicates."""
 
@@ -134,7 +134,7 @@ Expr = Union[Number, Constant, Name, Call, Unary, Binary, Group, Quantified, Whe
 # --- declarations -----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Import:
     """``import stealth``, ``import stealth (near, alive)``, ``import stealth as st``, ``import "file.tltl"``."""
 
@@ -146,7 +146,7 @@ class Import:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Interval:
     """``in [low, high]``; the limits are constant expressions (``-1``, ``2 m``, ``inf``)."""
 
@@ -155,7 +155,7 @@ class Interval:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Parameter:
     """``name: type = default`` in the head of a signal, predicate or ``let``."""
 
@@ -166,7 +166,7 @@ class Parameter:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class SignalDecl:
     """``signal distance(target: entity): length in [0 m, inf]``; ``type`` is None for a bare ``in``."""
 
@@ -179,7 +179,7 @@ class SignalDecl:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class EntityDecl:
     """``entity a, b``."""
 
@@ -188,7 +188,7 @@ class EntityDecl:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class ParamDecl:
     """``param level_size: length in [2 m, 10 km] = 20 m``."""
 
@@ -201,7 +201,7 @@ class ParamDecl:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class ClockDecl:
     """``clock 20 Hz`` or ``clock 0.05 s``."""
 
@@ -209,7 +209,7 @@ class ClockDecl:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class PredicateDecl:
     """``predicate near(target: entity) in [-1, 1] = expression``."""
 
@@ -222,7 +222,7 @@ class PredicateDecl:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class LetDecl:
     """``let name(parameters) = formula``."""
 
@@ -234,7 +234,7 @@ class LetDecl:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class ExclusiveDecl:
     """``exclusive A, B, …``."""
 
@@ -242,7 +242,7 @@ class ExclusiveDecl:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Clause:
     """A line of a spec.
 
@@ -257,7 +257,7 @@ class Clause:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class SpecDecl:
     """``spec NAME { clauses }``; ``spec NAME = FORMULA`` holds one ``require`` and ``block`` False."""
 
@@ -269,7 +269,7 @@ class SpecDecl:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class TestStep:
     """``step 3x alive, not near(s1)``."""
 
@@ -278,7 +278,7 @@ class TestStep:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class TestExpect:
     """``expect pending``, ``expect progress >= 0.5``, ``expect state "G p"``.
 
@@ -292,7 +292,7 @@ class TestExpect:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class TestDecl:
     """``test "…" for SPEC { step … expect … }``."""
 
@@ -308,7 +308,7 @@ Declaration = Union[
 ]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Comment:
     """A ``//`` or ``///`` comment with its slashes, for tools that print the text back."""
 
@@ -316,7 +316,7 @@ class Comment:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Module:
     """One source file, parsed: its declarations in order and its comments in order."""
 

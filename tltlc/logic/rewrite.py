@@ -7,18 +7,18 @@ sample", and both ``F G a`` and ``G F a`` mean "``a`` at the last sample".
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
 from tltlc.logic import boolean_rules, temporal_rules
 from tltlc.logic.formula import Formula, Op, rebuild
+from tltlc.record import record
 
 _MOST_PASSES: Final = 12
 _MOST_STEPS: Final = 50
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Rewrite:
     """A rewrite of formulas whose outermost operator is in ``ops``.
 

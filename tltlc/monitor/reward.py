@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal
 
 from tltlc.monitor.guards import robustness
 from tltlc.monitor.tables import Tables
+from tltlc.record import record
 
 Mode = Literal["progress", "sparse", "edge", "potential"]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class RewardOptions:
     """How steps are rewarded and episodes end (semantics, section 4).
 
@@ -28,7 +28,7 @@ class RewardOptions:
     gamma: float = 1.0
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class RewardStep:
     """The outcome of one step: its ``reward``, the best ``progress`` so far, in [0, 1], and whether the episode ends.
 

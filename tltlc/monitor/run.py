@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.monitor.monitor import Monitor, Step
+from tltlc.record import record
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Row:
     """One step of a run: its number, from 1, what the monitor said, and the values of the atoms in order."""
 
@@ -19,7 +19,7 @@ class Row:
     values: tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Outcome:
     """How a whole trace was judged: whether its end is accepted, and the verdict of the last state."""
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from tltlc.automaton.fspa import Edge, Fspa
+from tltlc.record import record
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Tables:
     """Per state, by its number: the edges that leave it, those of them that improve, and its base progress.
 

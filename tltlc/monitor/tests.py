@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
 from operator import ge, gt, le, lt
 from typing import Final
 
@@ -11,6 +10,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.monitor.monitor import Monitor, Step
 from tltlc.monitor.samples import MonitorError, shown
+from tltlc.record import record, replace
 from tltlc.resolve.spec import Expect, Program, Test
 
 _COMPARISONS: Final = {"<": lt, "<=": le, ">": gt, ">=": ge}
@@ -19,7 +19,7 @@ _TOLERANCE: Final = 1e-12
 """Progress adds up in floating point: ``progress >= 0.3`` is met by 0.1 + 0.2, and ``progress < 0.3`` is not."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class TestResult:
     """A test and what went wrong in it: nothing, the first expectation that failed, or a sample that cannot be."""
 

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Union
 
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.backends.artefact.guards import guard_problems
 from tltlc.backends.artefact.place import Path
 from tltlc.expression import Condition, Const, Expression, Param, Signal, When
+from tltlc.record import record
 from tltlc.resolve import spec
 
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Problem:
     """A contradiction and the place of the value that is blamed for it."""
 

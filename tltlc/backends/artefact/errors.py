@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-class JsonSchemaValueException(ValueError):  # noqa: N818  the generated code uses this name
+class JsonSchemaValueException(ValueError):
     """A value breaks the schema.
 
     ``place`` is where (``data.states[0].id``), ``rule`` the schema's keyword; the message begins with the place.

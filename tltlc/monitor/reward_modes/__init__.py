@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from tltlc.monitor.reward import RewardOptions
 from tltlc.monitor.tables import Tables
+from tltlc.record import record
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Transition:
     """One step of the automaton, at the ``values`` of the atoms, and whether the episode ends with it, and how."""
 

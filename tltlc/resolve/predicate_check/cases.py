@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.record import record
 
 LARGEST_NUMBER_OF_CASES = 64
 
@@ -14,7 +14,7 @@ class TooManyCasesError(Exception):
     """The expression splits into more cases than are worth checking."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Constraint:
     """``difference >= 0``, or ``difference > 0`` where strict."""
 
@@ -25,7 +25,7 @@ class Constraint:
 Constraints = tuple[Constraint, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Case:
     """Where all constraints hold, the whole expression has the value of ``value``."""
 

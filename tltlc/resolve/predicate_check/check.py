@@ -8,11 +8,11 @@ remembered answers, sympy.  Only the last imports it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from math import inf
 from typing import Literal
 
 from tltlc.expression import Expression, Signal, When
+from tltlc.record import record
 from tltlc.resolve import spec
 from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases, condition_operands, size, variables, whens
 from tltlc.resolve.predicate_check.proof import Task, unproved
@@ -21,7 +21,10 @@ from tltlc.resolve.predicate_check.region import Box, Region, Variable
 FindingKind = Literal["range_wrong", "range_unproved", "discontinuous", "continuity_unproved"]
 
 
-@dataclass(frozen=True, slots=True)
+_NO_POINT: Mapping[str, float] = {}
+
+
+@record
 class Finding:
     """What is wrong with a predicate, or could not be shown.
 
@@ -31,7 +34,7 @@ class Finding:
 
     kind: FindingKind
     message: str
-    witness: Mapping[str, float] = field(default_factory=dict)
+    witness: Mapping[str, float] = _NO_POINT
 
 
 def check_predicate(
@@ -61,7 +64,7 @@ _LARGEST_SIZE = 2000
 _TOO_LARGE = Finding("range_unproved", "the expression is too large to check")
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Predicate:
     """What is checked: the value, where its variables range, which of them are bools, the declared range."""
 

@@ -8,11 +8,11 @@ cases, the ``when`` is continuous.  Bool signals only take two values and are tr
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from math import inf
 
 from tltlc.expression import Expression, Op, Signal
+from tltlc.record import record
 from tltlc.resolve.predicate_check.cases import Case, Constraint, TooManyCasesError, variables
 from tltlc.resolve.predicate_check.interval import UndefinedError
 from tltlc.resolve.predicate_check.proof import Task, holds_at_once, proves_defined, proves_within
@@ -22,7 +22,7 @@ _PARTS = 30
 _MOST_CASES = 24
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Meeting:
     """Two cases and the region that contains every point where they meet."""
 

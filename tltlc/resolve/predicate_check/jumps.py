@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from tltlc.expression import Expression, Signal
+from tltlc.record import record
 from tltlc.resolve.predicate_check.cases import Case
 from tltlc.resolve.predicate_check.region import Box, Variable
 from tltlc.resolve.predicate_check.witness import CLEARLY, Point, points, value_at
@@ -16,7 +16,7 @@ _BORDER_WIDTH = 1e-14  # relative distance of the two points that stand for the 
 _NEAR = 1e-7  # relative distance at which the value must still be about the same as at the border
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Jump:
     """At ``point`` the value is ``before`` on one side of a border and ``after`` on the other."""
 

@@ -6,11 +6,11 @@ factor is a signal, a param or any other expression that is not built by ``+ - *
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
 from tltlc.expression import Const, Expression, Op, Param, Signal
+from tltlc.record import record
 from tltlc.resolve.predicate_check import interval
 from tltlc.resolve.predicate_check.interval import Interval
 from tltlc.resolve.predicate_check.region import Region, bound
@@ -27,7 +27,7 @@ class TooLargeError(Exception):
     """The expression has no normal form of a size worth working with."""
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Quotient:
     """``numerator / denominator``; equal to the expression it came from wherever that is defined."""
 

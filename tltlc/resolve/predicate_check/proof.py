@@ -8,10 +8,10 @@ smaller parts of the region.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from math import inf
 
 from tltlc.expression import Expression, Op
+from tltlc.record import record, replace
 from tltlc.resolve.predicate_check.cases import Constraints, size
 from tltlc.resolve.predicate_check.interval import EVERYTHING, Interval, UndefinedError, meet
 from tltlc.resolve.predicate_check.region import Region, bound
@@ -22,7 +22,7 @@ _NODES_OF_ALL = 30_000  # visited in all parts together
 _FEWEST_PARTS = 10
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Task:
     """To prove: the value is defined and in ``[low, high]`` where all constraints hold."""
 

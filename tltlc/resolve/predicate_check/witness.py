@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import islice, permutations, product
 from math import inf, isfinite, prod
 
 from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
 from tltlc.expression_eval import evaluate
+from tltlc.record import record
 from tltlc.resolve.predicate_check.interval import Interval
 from tltlc.resolve.predicate_check.region import Box, Variable
 
@@ -21,7 +21,7 @@ _CLIMBING_ROUNDS = 40
 _SPREAD = (1.0, 3.0, 10.0, 100.0, 1e6)  # distances from the closed end of a range without bound
 
 
-@dataclass(frozen=True, slots=True)
+@record
 class Witness:
     """A point, and the value there or the reason why there is none."""
 

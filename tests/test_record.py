@@ -1,0 +1,96 @@
+"""Records behave as frozen dataclasses with slots do."""
+
+from __future__ import annotations
+
+import pickle
+
+import pytest
+
+from tltlc.record import EMPTY, record, replace
+
+
+@record
+class Point:
+    """A point."""
+
+    x: int
+    y: int = 2
+
+    @property
+    def total(self) -> int:
+        """The sum."""
+        return self.x + self.y
+
+
+@record
+class Other:
+    """The same fields, another class."""
+
+    x: int
+    y: int = 2
+
+
+@record
+class Nothing:
+    """No fields."""
+
+
+def test_fields_by_position_name_and_default() -> None:
+    assert (Point(1).x, Point(1).y, Point(1, 3).y, Point(y=4, x=1).total) == (1, 2, 3, 5)
+    assert repr(Point(1)) == "Point(x=1, y=2)"
+
+
+@pytest.mark.parametrize(
+    ("given", "named", "message"),
+    [
+        ((), {}, "Point lacks x"),
+        ((1, 2, 3), {}, "Point takes 2 values, 3 were given"),
+        ((1,), {"x": 2}, "Point has two values for field x"),
+        ((1,), {"z": 2}, "Point has no field z"),
+    ],
+)
+def test_wrong_arguments(given: tuple[int, ...], named: dict[str, int], message: str) -> None:
+    with pytest.raises(TypeError, match=message):
+        Point(*given, **named)
+
+
+def test_equality_and_hash_are_by_class_and_fields() -> None:
+    assert Point(1) == Point(1, 2)
+    assert Point(1) != Point(2)
+    assert Point(1) != Other(1)
+    assert len({Point(1), Point(1, 2), Other(1)}) == 2
+    assert Nothing() == Nothing()
+
+
+def test_records_cannot_be_changed() -> None:
+    point = Point(1)
+    with pytest.raises(AttributeError, match="cannot be changed"):
+        point.x = 2  # type: ignore[misc]
+    with pytest.raises(AttributeError, match="cannot be changed"):
+        del point.x
+    with pytest.raises(AttributeError):
+        point.z = 2  # type: ignore[attr-defined]
+
+
+def test_replace_pickle_and_match() -> None:
+    assert replace(Point(1), y=5) == Point(1, 5)
+    with pytest.raises(TypeError, match="no field z"):
+        replace(Point(1), z=5)
+    assert pickle.loads(pickle.dumps(Point(1, 7))) == Point(1, 7)
+    match Point(1, 7):
+        case Point(x, y):
+            assert (x, y) == (1, 7)
+
+
+def test_a_field_without_default_must_come_first() -> None:
+    with pytest.raises(TypeError, match="follows one with a default"):
+
+        @record
+        class Wrong:
+            x: int = 1
+            y: int  # type: ignore[misc]
+
+
+def test_the_empty_mapping_stays_empty() -> None:
+    with pytest.raises(TypeError):
+        EMPTY["a"] = 1  # type: ignore[index]
