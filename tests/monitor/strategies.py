@@ -1,0 +1,82 @@
+"""Random expressions, automata and samples for property tests."""
+
+from __future__ import annotations
+
+from hypothesis import strategies as st
+
+from tests.logic.strategies import formulas
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.record import replace
+
+SIGNALS, PARAMS = ("x", "y(a, b)"), ("p", 'q"')
+
+# Few values, so that ties, zeros and borders are hit often.
+values = st.sampled_from([-1.0, -0.75, -0.5, -0.1, -0.0, 0.0, 0.1, 0.5, 0.75, 1.0])
+numbers = st.sampled_from([0.0, -0.0, 1.0, -1.0, 2.0, 3.0, 0.5, 0.1, -2.5, 1e3, 1e200]) | st.floats(
+    allow_nan=False, allow_infinity=False, width=64
+)
+_leaves = (
+    st.builds(Const, numbers) | st.builds(Signal, st.sampled_from(SIGNALS)) | st.builds(Param, st.sampled_from(PARAMS))
+)
+
+
+def _several(inner: st.SearchStrategy[Expression], low: int, high: int) -> st.SearchStrategy[tuple[Expression, ...]]:
+    return st.lists(inner, min_size=low, max_size=high).map(tuple)
+
+
+@st.composite
+def _conditions(draw: st.DrawFn, inner: st.SearchStrategy[Expression], depth: int = 2) -> Condition:
+    if depth and draw(st.integers(0, 2)) == 0:
+        op = draw(st.sampled_from(["and", "or", "not"]))
+        count = 1 if op == "not" else draw(st.integers(2, 3))
+        return Condition(op, tuple(draw(_conditions(inner, depth - 1)) for _ in range(count)))
+    return Condition(draw(st.sampled_from(["<", "<=", ">", ">="])), (draw(inner), draw(inner)))
+
+
+def _operations(inner: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expression]:
+    cases = st.lists(st.tuples(_conditions(inner), inner), min_size=1, max_size=3).map(tuple)
+    exponents = st.sampled_from([Const(2.0), Const(3.0), Const(0.5), Const(-1.0)])
+    return st.one_of(
+        st.builds(Op, st.sampled_from(["+", "-", "*", "/", "^"]), st.tuples(inner, inner)),
+        st.builds(lambda base, exponent: Op("^", (base, exponent)), inner, exponents),
+        st.builds(Op, st.sampled_from(["neg", "abs", "sqrt", "exp", "tanh"]), st.tuples(inner)),
+        st.builds(Op, st.sampled_from(["min", "max"]), _several(inner, 2, 4)),
+        st.builds(Op, st.just("clamp"), st.tuples(inner, inner, inner)),
+        st.builds(When, cases, inner),
+    )
+
+
+_expressions: st.SearchStrategy[Expression] = st.recursive(_leaves, _operations, max_leaves=12)
+
+
+@st.composite
+def expressions(draw: st.DrawFn) -> Expression:
+    """Expressions with every operator over SIGNALS and PARAMS."""
+    return draw(_expressions)
+
+
+@st.composite
+def automata(draw: st.DrawFn, max_leaves: int = 8) -> Fspa:
+    """Automata over the atoms a, b, c, with or without exclusive atoms, a limit, either judge."""
+    exclusive = draw(st.sampled_from([(), (("a", "b"),), (("a", "b", "c"),)]))
+    fspa = build(spec_from_formula(draw(formulas(max_leaves=max_leaves)), exclusive=exclusive))
+    limit = draw(st.none() | st.integers(1, 8))
+    return replace(fspa, limit_steps=limit, judge=draw(st.sampled_from(["goal", "limit"])))
+
+
+@st.composite
+def atom_traces(draw: st.DrawFn, fspa: Fspa, max_size: int = 8) -> list[tuple[float, ...]]:
+    """Traces of values of the automaton's atoms that no declaration of exclusive atoms forbids."""
+    sample = st.tuples(*[values for _ in fspa.atoms]).map(lambda given: _allowed(fspa, given))
+    return draw(st.lists(sample, min_size=1, max_size=max_size))
+
+
+def _allowed(fspa: Fspa, given: tuple[float, ...]) -> tuple[float, ...]:
+    """The values with all but the first true atom of each group made false."""
+    result = list(given)
+    for group in fspa.exclusive:
+        for atom in [atom for atom in group if result[atom] > 0.0][1:]:
+            result[atom] = -result[atom]
+    return tuple(result)

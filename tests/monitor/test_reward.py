@@ -1,0 +1,179 @@
+"""Algorithm 1: the worked numbers of the paper, the totals of episodes, both ways to end them."""
+
+from __future__ import annotations
+
+import random
+from typing import Literal
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.fixtures import cover_and_hide
+from tests.monitor.strategies import atom_traces, automata
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.logic import formula as f
+from tltlc.monitor import Monitor, RewardOptions, Step
+from tltlc.monitor.reward import reward_step
+from tltlc.monitor.tables import tables
+from tltlc.record import replace
+
+A, P = f.atom("a"), f.atom("p")
+FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
+
+
+def automaton(formula: f.Formula, limit: int | None, judge: Literal["goal", "limit"] | None = None) -> Fspa:
+    fspa = build(spec_from_formula(formula))
+    return replace(fspa, limit_steps=limit, judge=judge or fspa.judge)
+
+
+def episode(monitor: Monitor, trace: list[tuple[float, ...]]) -> list[Step]:
+    """The steps up to the end of the episode."""
+    steps: list[Step] = []
+    for values in trace:
+        steps.append(monitor.step_atoms(values))
+        if steps[-1].done:
+            break
+    return steps
+
+
+def test_half_way_to_the_exit() -> None:
+    """In `F near(e) & G alive`, at distance (b + B) / 2 and full health: 2/3 + 0.25/3 = 0.75."""
+    fspa = cover_and_hide()
+    outcome = reward_step(tables(fspa), 3, 3, (-1.0, -1.0, -0.75, 1.0), 2 / 3, 10)
+    assert outcome.progress == pytest.approx(0.75)
+    assert outcome.reward == pytest.approx(0.75 - 2 / 3 - 1 / 400)
+    assert not outcome.done
+
+
+def test_an_episode_of_cover_and_hide() -> None:
+    monitor = Monitor(cover_and_hide())
+    changes: list[dict[str, float]] = [
+        {},
+        {"distance(s1)": 10.5},
+        {"distance(s1)": 15.0},
+        {"distance(s1)": 0.5},
+        {"distance(s2)": 0.5},
+        {"distance(exit)": 10.5},
+        {"distance(exit)": 0.0},
+    ]
+    steps = [monitor.step({**FAR, **change}) for change in changes]
+    assert [step.state for step in steps] == [0, 0, 0, 1, 3, 3, 4]
+    assert [step.progress for step in steps] == pytest.approx([0, 0.25 / 3, 0.25 / 3, 1 / 3, 2 / 3, 0.75, 1])
+    assert [step.done for step in steps] == [False] * 6 + [True]
+    assert sum(step.reward for step in steps) == pytest.approx(1 - 7 / 400)
+    after = monitor.step({**FAR, "health": 0.0})
+    assert (after.verdict, after.done, after.progress, after.reward) == ("violated", True, 1.0, 0.0)
+
+
+def test_dying_costs_the_unspent_steps() -> None:
+    monitor = Monitor(cover_and_hide())
+    steps = [monitor.step({**FAR, "distance(s1)": 0.0}), monitor.step({**FAR, "health": 0.0})]
+    assert steps[1].reward == pytest.approx(-1 / 400 - 398 / 400)
+    assert sum(step.reward for step in steps) == pytest.approx(1 / 3 - 1)
+
+
+@given(st.data(), automata())
+def test_every_failed_episode_totals_progress_minus_one(data: st.DataObject, fspa: Fspa) -> None:
+    fspa = replace(fspa, judge="goal", limit_steps=5)
+    trace = data.draw(atom_traces(fspa, max_size=5))
+    steps = episode(Monitor(fspa), trace + [trace[-1]] * (5 - len(trace)))
+    assert steps[-1].done
+    total = sum(step.reward for step in steps)
+    if steps[-1].accepting:
+        assert steps[-1].progress == 1.0
+        assert total == pytest.approx(1 - len(steps) / 5)
+    else:
+        assert total == pytest.approx(steps[-1].progress - 1)
+
+
+@given(st.data(), automata())
+def test_progress_is_the_best_so_far_and_rewards_are_its_rise(data: st.DataObject, fspa: Fspa) -> None:
+    monitor = Monitor(replace(fspa, limit_steps=None))
+    best, over = 0.0, False
+    for values in data.draw(atom_traces(fspa)):
+        step = monitor.step_atoms(values)
+        assert 0.0 <= best <= step.progress <= 1.0
+        assert step.reward == (0.0 if over else step.progress - best)
+        best, over = step.progress, step.done
+
+
+def test_a_spec_judged_at_its_limit_is_rewarded_for_outliving_it() -> None:
+    fspa = automaton(f.always(P), 4)
+    assert (fspa.judge, fspa.spec_size) == ("limit", 0)
+    alive = episode(Monitor(fspa), [(1.0,)] * 9)
+    assert [(step.progress, step.done) for step in alive] == [(0.25, False), (0.5, False), (0.75, False), (1.0, True)]
+    dead = episode(Monitor(fspa), [(1.0,), (1.0,), (-1.0,)])
+    assert (dead[-1].progress, dead[-1].done) == (0.5, True)
+    assert sum(step.reward for step in dead) == pytest.approx(0.5 - 1)
+
+
+def test_a_spec_judged_at_its_limit_ends_where_it_is_satisfied() -> None:
+    fspa = automaton(f.eventually(A), 4, "limit")
+    steps = episode(Monitor(fspa), [(-1.0,), (1.0,), (1.0,)])
+    assert [(step.progress, step.done) for step in steps] == [(0.25, False), (1.0, True)]
+
+
+def test_without_a_limit_survival_has_no_share_and_nothing_costs() -> None:
+    steps = episode(Monitor(automaton(f.always(P), None)), [(1.0,), (1.0,), (-1.0,), (1.0,)])
+    assert [(step.progress, step.reward, step.done) for step in steps] == [(0, 0, False), (0, 0, False), (0, 0, True)]
+
+
+def test_nothing_to_reach_never_divides() -> None:
+    goal = episode(Monitor(automaton(f.always(P), 4, "goal")), [(1.0,)])
+    assert (goal[0].progress, goal[0].done, goal[0].reward) == (1.0, True, 1 - 1 / 4)
+    never = episode(Monitor(automaton(f.FALSE, 4, "goal")), [()])
+    assert (never[0].progress, never[0].done, never[0].reward) == (0.0, True, -1.0)
+
+
+def test_the_listing_notices_one_step_later() -> None:
+    """With `termination="paper"` a success can still turn into a failure."""
+    fspa = automaton(f.and_(f.eventually(A), f.always(P)), 10, "goal")
+    literal = RewardOptions(termination="paper")
+    reached, dead = (1.0, 1.0), (1.0, -1.0)
+    assert [step.done for step in episode(Monitor(fspa), [reached, dead])] == [True]
+    steps = episode(Monitor(fspa, reward=literal), [reached, reached])
+    assert [(step.done, step.accepting) for step in steps] == [(False, True), (True, True)]
+    assert sum(step.reward for step in steps) == pytest.approx(1 - 2 / 10)
+    steps = episode(Monitor(fspa, reward=literal), [reached, dead, dead])
+    assert [(step.done, step.verdict) for step in steps] == [
+        (False, "holding"),
+        (False, "violated"),
+        (True, "violated"),
+    ]
+    assert sum(step.reward for step in steps) == pytest.approx(1 - 1)
+
+
+def test_the_discounted_penalty() -> None:
+    fspa = automaton(f.and_(f.eventually(A), f.always(P)), 10, "goal")
+    trace = [(-1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)]
+    gamma = 0.9
+    options = RewardOptions(terminal_penalty="discounted", gamma=gamma)
+    last = episode(Monitor(fspa, reward=options), trace)[-1]
+    # What the seven steps that were saved would have cost, seen from the step of the violation.
+    assert last.reward == pytest.approx(-1 / 10 - sum(gamma**step / 10 for step in range(7)))
+    same = episode(Monitor(fspa, reward=replace(options, gamma=1.0)), trace)[-1]
+    assert same.reward == episode(Monitor(fspa), trace)[-1].reward
+
+
+def test_the_nearest_improving_edge_counts() -> None:
+    """Of several edges that improve, line 14 takes the most robust."""
+    fspa = automaton(f.or_(f.eventually(f.and_(A, P)), f.eventually(f.atom("c"))), None)
+    step = Monitor(fspa).step_atoms((-0.25, 0.5, -0.75))
+    assert (step.progress, step.limiting) == (0.75, "a")
+    step = Monitor(fspa).step_atoms((-0.75, -0.5, -0.625))
+    assert (step.progress, step.limiting) == (0.375, "c")
+
+
+def test_order_of_operations() -> None:
+    """Every monitor must agree to the last bit, so the order is fixed."""
+    fspa = cover_and_hide()
+    rng = random.Random(1)
+    for _ in range(200):
+        values = (-rng.random(), -rng.random(), -rng.random(), rng.random())
+        best, step = rng.random() / 2, rng.randrange(1, 399)
+        outcome = reward_step(tables(fspa), 1, 1, values, best, step)
+        progress = (3 - 2) / 3 + (1.0 + min(values[1], values[3])) / 3
+        assert outcome.progress == max(best, progress)
+        assert outcome.reward == (max(best, progress) - best) - 1 / 400

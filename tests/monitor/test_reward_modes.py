@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.logic.strategies import formulas
+from tests.monitor.strategies import atom_traces, automata, values
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.logic import formula as f
+from tltlc.logic.oracle import holds
+from tltlc.monitor import Monitor, RewardOptions
+from tltlc.record import replace
+
+A, B, P = f.atom("a"), f.atom("b"), f.atom("p")
+SPARSE, EDGE = RewardOptions(mode="sparse"), RewardOptions(mode="edge")
+
+
+def last_reward(formula: f.Formula, trace: list[tuple[float, ...]]) -> float:
+    """The reward of the mode `sparse` at the end of an episode as long as the trace."""
+    fspa = replace(build(spec_from_formula(formula)), limit_steps=len(trace), judge="limit")
+    monitor = Monitor(fspa, reward=SPARSE)
+    rewards = [monitor.step_atoms(sample).reward for sample in trace]
+    return sum(rewards)
+
+
+@settings(max_examples=60)
+@given(formulas(("a", "b"), max_leaves=5), st.data())
+def test_sparse_is_the_signed_distance_to_the_nearest_trace_judged_otherwise(
+    formula: f.Formula, data: st.DataObject
+) -> None:
+    spec = spec_from_formula(formula)
+    names = [atom.name for atom in spec.atoms]
+    length = 1 if len(names) > 1 else 3
+    fspa = replace(build(spec), limit_steps=length, judge="limit")
+    trace = [data.draw(st.tuples(*[values for _ in names])) for _ in range(length)]
+    monitor = Monitor(fspa, reward=SPARSE)
+    reward, steps = 0.0, 0
+    for sample in trace:
+        step = monitor.step_atoms(sample)
+        reward, steps = reward + step.reward, steps + 1
+        if step.done:
+            break
+    trace = trace[:steps]
+    accepted = holds(formula, [{n for n, v in zip(names, sample, strict=True) if v > 0} for sample in trace])
+    others = []
+    for letters in product(product([False, True], repeat=len(names)), repeat=steps):
+        if (
+            holds(formula, [{n for n, true in zip(names, letter, strict=True) if true} for letter in letters])
+            != accepted
+        ):
+            changes = [
+                abs(value)
+                for sample, letter in zip(trace, letters, strict=True)
+                for value, true in zip(sample, letter, strict=True)
+                if (value > 0) != true
+            ]
+            others.append(max(changes, default=0.0))
+    distance = min(others, default=1.0)
+    assert reward == (distance if accepted else -distance)
+
+
+def test_sparse_on_sequences_is_the_robustness_of_the_formula() -> None:
+    trace = [(-0.5, -1.0), (0.25, -0.5), (-0.75, 0.75), (-1.0, 0.5)]
+    assert last_reward(f.eventually(A), [(a,) for a, _ in trace]) == 0.25
+    assert last_reward(f.then(A, B), trace) == 0.25
+    assert last_reward(f.always(A), [(0.5,), (0.25,), (1.0,)]) == 0.25
+
+
+def test_sparse_comes_once() -> None:
+    fspa = replace(build(spec_from_formula(f.always(P))), limit_steps=3)
+    monitor = Monitor(fspa, reward=SPARSE)
+    assert [monitor.step_atoms((v,)).reward for v in (0.5, 0.75, 1.0, 1.0)] == [0.0, 0.0, 0.5, 0.0]
+    monitor.reset()
+    assert [monitor.step_atoms((v,)).reward for v in (0.5, -0.25, 1.0)] == [0.0, -0.25, 0.0]
+
+
+def test_edge_pays_for_leaving_but_not_into_a_trap() -> None:
+    fspa = build(spec_from_formula(f.and_(f.eventually(A), f.always(P))))
+    monitor = Monitor(fspa, reward=EDGE)
+    assert [monitor.step_atoms(v).reward for v in [(-0.5, 1.0), (0.25, 0.5)]] == [-0.5, 0.25]
+    assert Monitor(build(spec_from_formula(f.always(P))), reward=EDGE).step_atoms((-1.0,)).reward == 0.0
+
+
+@given(st.data(), automata(), st.sampled_from([1.0, 0.9]))
+def test_potential_adds_up_to_success_alone(data: st.DataObject, fspa: Fspa, gamma: float) -> None:
+    """The discounted sum over a whole episode is that of success alone, less the potential at the start."""
+    fspa = replace(fspa, judge="goal", limit_steps=4)
+    monitor = Monitor(fspa, reward=RewardOptions(mode="potential", gamma=gamma))
+    trace = data.draw(atom_traces(fspa, max_size=4))
+    total, length = 0.0, 0
+    for values_ in trace + [trace[-1]] * (4 - len(trace)):
+        step = monitor.step_atoms(values_)
+        total += gamma**length * step.reward
+        if step.done:
+            break
+        length += 1
+    distance = fspa.states[0].distance
+    start = 0.0 if distance is None else 1.0 if not fspa.spec_size else 1 - distance / fspa.spec_size
+    assert total == pytest.approx(gamma**length * step.accepting - start)

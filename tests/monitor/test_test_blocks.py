@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+import pytest
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.monitor.tests import run_tests
+from tltlc.pipeline import compile_source
+from tltlc.source import SourceFile
+
+SPEC = """
+signal a: bool
+signal b: bool
+signal p: bool
+exclusive a, b
+spec s { limit 100 steps  reach a then b  keep p }
+"""
+
+
+def failures(*blocks: str) -> list[Diagnostic | None]:
+    text = SPEC + "\n".join(f'test "{index}" for s {{ {block} }}' for index, block in enumerate(blocks))
+    compiled = compile_source(SourceFile("specs.tltl", text))
+    return [result.failure for result in run_tests(compiled.program, compiled.automata)]
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        "step p  expect pending",
+        "step p, a  step p, b  expect holding",
+        "step 3x p, a  expect progress >= 0.5  step p, b  expect progress >= 1",
+        "step a  expect violated  step p, a, not b  expect violated",
+        'step p, a  expect state "F b & G p"',
+        'step p, a  expect state "◇b ∧ □p"',
+        "step p  expect progress < 0.1  step p, a  expect progress <= 0.5 expect progress > 0.4",
+    ],
+)
+def test_what_holds_passes(block: str) -> None:
+    assert failures(block) == [None]
+
+
+@pytest.mark.parametrize(
+    ("block", "remark", "marked"),
+    [
+        ("step p  expect holding", "it is pending", "expect holding"),
+        ("step p, a  expect progress >= 0.75", "the progress is 0.5", "expect progress >= 0.75"),
+        ('step p  expect state "G p"', "the state is `F(a & X F b) & G p`", 'expect state "G p"'),
+        ("expect pending  step p", "a trace has at least one sample", "expect pending"),
+    ],
+)
+def test_what_does_not_hold_is_shown(block: str, remark: str, marked: str) -> None:
+    (failure,) = failures(block)
+    assert failure is not None
+    (label,) = failure.labels
+    assert (failure.code, label.message) == ("TLT0640", remark)
+    assert label.source.slice(label.span) == marked
+
+
+def test_a_step_that_cannot_be() -> None:
+    (failure,) = failures("step p  step p, a, b  expect pending")
+    assert failure is not None
+    assert (failure.code, failure.title) == ("TLT0614", "step 2: `a` and `b` hold at once, against `exclusive a, b`")
+
+
+def test_tests_run_in_order_and_apart() -> None:
+    found = failures("step p, a  step p, b  expect holding", "step p, b  expect holding", "step p  expect pending")
+    assert [failure is None for failure in found] == [True, False, True]

@@ -1,0 +1,120 @@
+from __future__ import annotations
+
+import io
+import json
+import math
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.monitor.traces import read_trace
+from tltlc.resolve.spec import Signal
+
+SIGNALS = (Signal("near(a, b)", "number", None, None), Signal("open", "bool", 0.0, 1.0))
+
+
+def read(text: str | bytes) -> list[dict[str, float]]:
+    data = text if isinstance(text, bytes) else text.encode()
+    return list(read_trace(io.BytesIO(data), "trace", SIGNALS))
+
+
+def refused(text: str | bytes) -> tuple[str, str, str, str]:
+    """Code, title, line:column and remark of the error."""
+    with pytest.raises(TltlError) as caught:
+        read(text)
+    (found,) = caught.value.diagnostics
+    if not found.labels:
+        return found.code, found.title, "", ""
+    label = found.labels[0]
+    line, column = label.source.position(label.span.start)
+    return found.code, found.title, f"{line}:{column}", label.message
+
+
+def test_csv() -> None:
+    text = 'open,other,"near(a, b)"\ntrue,x,-1.5\r\n0,,2e3\n\nFALSE,, 7 \n'
+    assert read(text) == [
+        {"near(a, b)": -1.5, "open": 1.0},
+        {"near(a, b)": 2000.0, "open": 0.0},
+        {"near(a, b)": 7.0, "open": 0.0},
+    ]
+
+
+def test_json_lines() -> None:
+    assert read('\n{"near(a, b)": 1, "open": true}\n{"open": 0.0, "more": null}\n') == [
+        {"near(a, b)": 1.0, "open": 1.0},
+        {"open": 0.0},
+    ]
+
+
+@given(st.lists(st.tuples(st.floats(allow_nan=False, allow_infinity=False), st.booleans()), min_size=1))
+def test_csv_and_json_lines_say_the_same(rows: list[tuple[float, bool]]) -> None:
+    expected = [{"near(a, b)": number, "open": float(flag)} for number, flag in rows]
+    lines = [json.dumps({"near(a, b)": number, "open": flag}) for number, flag in rows]
+    assert read("\n".join(lines)) == expected
+    cells = [f"{number!r},{str(flag).lower()}" for number, flag in rows]
+    assert read("\n".join(['"near(a, b)",open', *cells])) == expected
+
+
+def test_a_byte_order_mark_is_no_part_of_the_first_name() -> None:
+    assert read('\ufeffopen,"near(a, b)"\n1,1\n') == [{"near(a, b)": 1.0, "open": 1.0}]
+    assert read('\ufeff{"open": 1}\n') == [{"open": 1.0}]
+
+
+def test_samples_come_as_the_lines_do() -> None:
+    read_so_far = 0
+
+    def lines() -> Iterator[bytes]:
+        nonlocal read_so_far
+        for line in (b'open,"near(a, b)"\n', b"1,1\n", b"0,1\n", b"x\n"):
+            read_so_far += 1
+            yield line
+
+    samples = read_trace(lines(), "trace", SIGNALS)
+    assert next(samples)["open"] == 1.0
+    assert read_so_far == 2
+    assert next(samples)["open"] == 0.0
+
+
+def test_numbers_that_are_not_finite_are_left_to_the_monitor() -> None:
+    assert math.isnan(read('open,"near(a, b)"\n1,nan\n')[0]["near(a, b)"])
+    assert read('{"near(a, b)": 1' + "0" * 400 + "}")[0]["near(a, b)"] == math.inf
+
+
+HEADER = 'open,"near(a, b)"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", ("TLT0620", "the trace `trace` holds no sample", "", "")),
+        ("\n\n", ("TLT0620", "the trace `trace` holds no sample", "", "")),
+        (HEADER, ("TLT0620", "the trace `trace` holds no sample", "", "")),
+        ("open\n1\n", ("TLT0621", "the trace has no column for `near(a, b)`", "1:1", "")),
+        (HEADER + "1,1\n1\n", ("TLT0622", "line 3 of the trace cannot be read", "3:1", "1 value, under 2 columns")),
+        (HEADER + "1,\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "`near(a, b)` has no value")),
+        (HEADER + "x,1\n", ("TLT0622", "line 2 of the trace cannot be read", "2:1", "`open` is no number")),
+        (HEADER + "1,1_0\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "`near(a, b)` is no number")),
+        (HEADER + "1,١\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "`near(a, b)` is no number")),
+        (
+            'open,open,"near(a, b)"\n',
+            ("TLT0622", "line 1 of the trace cannot be read", "1:1", "two columns are called `open`"),
+        ),
+        (HEADER.encode() + b"1,\xff\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "it is not UTF-8")),
+        ('{"open": 1}\n{"open" 1}', ("TLT0622", "line 2 of the trace cannot be read", "2:9", "this is not JSON")),
+        ('{"open": 1}\n[1]', ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this is no object")),
+    ],
+)
+def test_traces_that_cannot_be_read(text: str | bytes, expected: tuple[str, str, str, str]) -> None:
+    assert refused(text) == expected
+
+
+@given(st.binary(max_size=60))
+def test_any_bytes_are_read_or_refused(data: bytes) -> None:
+    for start in (b"", b'open,"near(a, b)"\n', b'{"open": 1}\n', b"{"):
+        try:
+            read(start + data)
+        except TltlError as error:
+            assert error.diagnostics[0].code in ("TLT0620", "TLT0621", "TLT0622")
