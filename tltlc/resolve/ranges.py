@@ -67,7 +67,7 @@ def _abs(a: Range) -> Range:
 
 
 def _clamp(a: Range, low: Range, high: Range) -> Range:
-    return max(low[0], min(a[0], high[0])), max(low[1], min(a[1], high[1]))
+    return min(max(a[0], low[0]), high[0]), min(max(a[1], low[1]), high[1])
 
 
 def _sqrt(a: Range) -> Range:
