@@ -89,7 +89,7 @@ class Samples:
     def _notice(self, code: str, name: str, step: int, text: str) -> None:
         if (code, name) not in self._noticed:
             self._noticed.add((code, name))
-            self._notices.append(Diagnostic(code, f"step {step}: {text}", severity="warning"))
+            self._notices.append(Diagnostic(code, f"step {step}: {text}", (), _WAYS_OUT[code], "warning"))
 
 
 def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[str, float]:
@@ -149,5 +149,15 @@ def _finite(signal: Signal, given: SupportsFloat, step: int) -> float:
     return value
 
 
+_WAYS_OUT: Final = {
+    "TLT0611": "supply every signal that the atoms use, at each step",
+    "TLT0612": "look where the game computes it",
+    "TLT0613": "say in its predicate what holds there, with `when`",
+    "TLT0614": "remove the declaration, or look where the game computes them",
+    "TLT0615": "supply it on the scale that is declared, or declare the range that it has",
+    "TLT0616": "write `clamp(…, -1, 1)` in its predicate",
+}
+
+
 def _error(code: str, step: int, text: str) -> MonitorError:
-    return MonitorError([Diagnostic(code, f"step {step}: {text}")])
+    return MonitorError([Diagnostic(code, f"step {step}: {text}", help=_WAYS_OUT[code])])

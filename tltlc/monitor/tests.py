@@ -58,7 +58,8 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
                 last = monitor.step_atoms(values)
         except MonitorError as error:
             label = Label(test.source, test.span, "in this test")
-            return TestResult(test, replace(error.diagnostics[0], labels=(label,)))
+            advice = "let each step name one of them at most"
+            return TestResult(test, replace(error.diagnostics[0], labels=(label,), help=advice))
     return TestResult(test, None)
 
 

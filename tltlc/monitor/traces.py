@@ -16,6 +16,7 @@ from tltlc.source import SourceFile, Span
 Sample = dict[str, float]
 
 _BOOLS: Final = {"true": 1.0, "false": 0.0}
+_OBJECTS: Final = 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'
 _BYTE_ORDER_MARK: Final = "\ufeff"
 
 
@@ -67,7 +68,7 @@ class _Lines:
         except UnicodeDecodeError as error:
             self.text = line.decode(errors="replace")
             before = len(line[: error.start].decode())
-            raise self.error("it is not UTF-8", (before, before + 1)) from None
+            raise self.error("it is not UTF-8", (before, before + 1), "save it as UTF-8") from None
         if self.number == 1:
             self.text = self.text.removeprefix(_BYTE_ORDER_MARK)
         return self.text
@@ -98,7 +99,8 @@ def _csv(lines: Iterator[str], at: _Lines, signals: Sequence[Signal]) -> Iterato
         if not row:
             continue
         if len(row) != len(header):
-            raise at.error(f"{_counted(len(row), 'value')}, under {_counted(len(header), 'column')}")
+            remark = f"{_counted(len(row), 'value')}, under {_counted(len(header), 'column')}"
+            raise at.error(remark, help="give each column one value, in quotes where it holds a comma")
         yield {name: _cell(row[column], name, column, at) for name, column in columns}
 
 
@@ -165,11 +167,11 @@ def _json_lines(lines: Iterator[str], at: _Lines) -> Iterator[Sample]:
         try:
             found = json.loads(line)
         except json.JSONDecodeError as error:
-            raise at.error("this is not JSON", (error.pos, error.pos + 1)) from None
+            raise at.error("this is not JSON", (error.pos, error.pos + 1), _OBJECTS) from None
         except (RecursionError, ValueError):
             raise at.error("this nests too deep, or holds a number that is too long") from None
         if not isinstance(found, dict):
-            raise at.error("this is no object", help='write `{"health": 1.0, …}` on each line')
+            raise at.error("this is no object", help=_OBJECTS)
         yield {name: _json_number(value) for name, value in found.items() if isinstance(value, (int, float))}
 
 
@@ -184,7 +186,7 @@ def _json_number(value: float) -> float:
 
 
 def _empty(name: str) -> TltlError:
-    return TltlError([Diagnostic("TLT0620", f"the trace `{name}` holds no sample")])
+    return TltlError([Diagnostic("TLT0620", f"the trace `{name}` holds no sample", help="record at least one step")])
 
 
 def _counted(number: int, thing: str) -> str:
