@@ -34,7 +34,8 @@ generate: $(VENV)/.installed-dev
 	$(BIN)/python -m tltlc.backends.artefact.generate
 	$(BIN)/tltlc render examples/cover_and_hide.tltl -o docs/images/cover_and_hide.svg
 
-bench: $(VENV)/.installed-dev
+# Measure beside the peers and write benchmarks/RESULTS.md; a run that was stopped goes on. MONA: Debian package `mona`.
+bench: $(VENV)/.installed-bench
 	$(BIN)/python -m benchmarks
 
 clean:
@@ -50,3 +51,7 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(PIP) install -c constraints.txt -e '.[dev]'
 	@touch $@ $(VENV)/.installed
+
+$(VENV)/.installed-bench: benchmarks/requirements.txt | $(VENV)/.installed-dev
+	$(PIP) install -c constraints.txt -r benchmarks/requirements.txt
+	@touch $@

@@ -8,11 +8,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-from benchmarks import compile_table
+from benchmarks import compile_table, monitors, process, report
 from benchmarks.machine import facts
 from benchmarks.store import Store
 
-SECTIONS = {"compile": compile_table}
+SECTIONS = {module.SECTION: module for module in (process, monitors, compile_table)}
 
 
 def main() -> None:
@@ -28,6 +28,7 @@ def main() -> None:
     for name, section in SECTIONS.items():
         if options.only in (None, name):
             section.measure(store, options.timeout, lambda text: print(text, file=sys.stderr, flush=True))
+            report.RESULTS.write_text(report.render(store), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -44,8 +44,8 @@ def notation(formula: Formula) -> str:
 
 def main() -> None:
     """Read a formula in LTLf2DFA's notation, print the time in milliseconds and the size of the automaton."""
-    from ltlf2dfa.ltlf2dfa import to_dfa  # type: ignore[import-not-found,unused-ignore]
-    from ltlf2dfa.parser.ltlf import LTLfParser  # type: ignore[import-not-found,unused-ignore]
+    from ltlf2dfa.ltlf2dfa import to_dfa  # type: ignore[import-untyped,import-not-found,unused-ignore]
+    from ltlf2dfa.parser.ltlf import LTLfParser  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     formula = LTLfParser()(sys.stdin.read())
 

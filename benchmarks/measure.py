@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,10 +32,17 @@ class Run:
     timed_out: bool
 
 
-def run(command: Sequence[str], timeout_s: float, text: str = "", cwd: Path | None = None) -> Run:
+def run(
+    command: Sequence[str],
+    timeout_s: float,
+    text: str = "",
+    cwd: Path | None = None,
+    environment: Mapping[str, str] | None = None,
+) -> Run:
     """Run a command to its end, or kill its process group after ``timeout_s`` seconds of wall time.
 
-    ``text`` is its standard input; ``output`` holds its standard output, complete up to that moment.
+    ``text`` is its standard input, ``environment`` all of its variables (by default those of this process).
+    ``output`` of the result holds its standard output, complete up to its end.
     """
     with tempfile.TemporaryFile() as standard_input, tempfile.TemporaryFile() as output:
         standard_input.write(text.encode())
@@ -47,6 +54,7 @@ def run(command: Sequence[str], timeout_s: float, text: str = "", cwd: Path | No
             stdout=output,
             stderr=subprocess.DEVNULL,
             cwd=cwd,
+            env=environment,
             start_new_session=True,
             preexec_fn=_limit_memory,
         )

@@ -3,6 +3,7 @@
 A position of the string is a sample, an atom is the set of positions at which it holds, a temporal
 operator is a first-order quantifier over the positions that follow.  MONA's automaton is minimal.
 It has one initial state more than ours, as it first reads a letter that stands before the string.
+A string here is never empty.
 """
 
 from __future__ import annotations
@@ -24,29 +25,41 @@ def available() -> bool:
     return shutil.which("mona") is not None
 
 
-def solve(formula: Formula, timeout_s: float, *, empty_trace: bool = False) -> tuple[Run, int | None]:
-    """MONA's run on a formula and the states of its automaton, its own initial one not counted.
-
-    The count is None where MONA gave up.  ``empty_trace`` says whether the empty trace is in the language.
-    """
+def solve(formula: Formula, timeout_s: float) -> tuple[Run, int | None]:
+    """MONA's run on a formula, and the size of its automaton as we count; None where it gave up."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "formula.mona"
-        file.write_text(program(formula, empty_trace=empty_trace), encoding="ascii")
+        file.write_text(program(formula), encoding="ascii")
         made = run([*COMMAND, str(file)], timeout_s)
-    found = re.search(r"Automaton has (\d+) states?", made.output)
-    if found:
-        return made, int(found.group(1)) - 1
-    # Where no trace, or every one, is accepted, MONA prints no automaton: the least one has one state.
-    return made, 1 if re.search(r"Formula is (unsatisfiable|valid)", made.output) else None
+    return made, size(made.output)
 
 
-def program(formula: Formula, *, empty_trace: bool = False) -> str:
+def size(output: str) -> int | None:
+    """The states of the automaton that MONA printed, counted as ours: whether the empty trace is accepted is free.
+
+    MONA rejects it.  Where its state before the first sample differs from another one in acceptance only, ours is
+    one smaller.  Its own initial state stands before that one.
+    """
+    if "Formula is unsatisfiable" in output:
+        return 1  # it prints no automaton then
+    total = re.search(r"Automaton has (\d+) states?", output)
+    accepting = re.search(r"^Accepting states:(.*)$", output, flags=re.MULTILINE)
+    if not total or not accepting:
+        return None
+    edges: dict[str, set[tuple[str, str]]] = {}
+    for source, letters, target in re.findall(r"^State (\d+): ?(\S*) ?-> state (\d+)$", output, flags=re.MULTILINE):
+        edges.setdefault(source, set()).add((letters, target))
+    ((_, first),) = edges["0"]
+    reached_again = any(target == first for state in edges if state != "0" for _, target in edges[state])
+    shared = not reached_again and any(edges[state] == edges[first] for state in accepting.group(1).split())
+    return int(total.group(1)) - (2 if shared else 1)
+
+
+def program(formula: Formula) -> str:
     """The MONA program whose models are the traces that satisfy the formula at their first sample."""
     names = {atom: f"A{number}" for number, atom in enumerate(formula.atoms())}
     declaration = f"var2 {', '.join(names.values())};\n" if names else ""
-    body = _at(formula, "o", names, count(1))
-    start = f"all1 o: o = 0 => {body}" if empty_trace else f"ex1 o: o = 0 & {body}"
-    return f"m2l-str;\n{declaration}{start};\n"
+    return f"m2l-str;\n{declaration}ex1 o: o = 0 & {_at(formula, 'o', names, count(1))};\n"
 
 
 def _at(formula: Formula, here: str, names: dict[str, str], numbers: count[int]) -> str:

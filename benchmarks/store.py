@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +32,7 @@ class Store:
         self._content.setdefault(section, {})[key] = record
         partial = self._path.with_suffix(".partial")
         partial.write_text(json.dumps(self._content, indent=1) + "\n", encoding="utf-8")
-        os.replace(partial, self._path)
+        partial.replace(self._path)
 
 
 def source_digest(*packages: str) -> str:

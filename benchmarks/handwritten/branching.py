@@ -36,6 +36,8 @@ LIMIT = 600
 class Monitor:
     """States as in the picture: 0, 1, 3 wait for a switch, 4 for an exit, 5 is out, 2 is dead."""
 
+    __slots__ = ("done", "level_size", "progress", "state", "steps")
+
     def __init__(self, level_size: float = 20.0) -> None:
         self.level_size = level_size
         self.reset()
@@ -89,6 +91,4 @@ class Monitor:
                 reward -= (LIMIT - self.steps) / LIMIT
         self.state, self.progress = state, best
         self.done = self.done or state in (TRAP, GOAL) or self.steps >= LIMIT
-        return Step(
-            state, LABELS[state], VERDICTS[state], state == GOAL, self.done, best, reward, robustness, limiting
-        )
+        return Step(state, LABELS[state], VERDICTS[state], state == GOAL, self.done, best, reward, robustness, limiting)

@@ -23,17 +23,16 @@ class Step(NamedTuple):
 
 def read(signals: Mapping[str, float], names: Sequence[str]) -> list[float]:
     """The values of the signals; KeyError for a missing one, ValueError for one that is not finite."""
-    values = [float(signals[name]) for name in names]
-    for name, value in zip(names, values):
-        if not isfinite(value):
-            raise ValueError(f"{name} is {value}")
+    values = [signals[name] for name in names]
+    if not all(map(isfinite, values)):
+        raise ValueError(f"not finite: {dict(zip(names, values, strict=True))}")
     return values
 
 
 def near(distance: float, level_size: float) -> float:
     """Closeness in [-1, 1] (eq. 2 of the paper): 1 at the target, 0 at 1 m, -1 from ``level_size`` on."""
     if distance < 1.0:
-        return 1.0 - max(distance, 0.0)
+        return 1.0 - distance if distance > 0.0 else 1.0
     if distance <= level_size:
         return ((level_size - distance) / (level_size - 1.0)) ** 2 - 1.0
     return -1.0

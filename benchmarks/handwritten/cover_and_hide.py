@@ -28,6 +28,8 @@ LIMIT = 400
 class Monitor:
     """States as in the picture: 0, 1, 3 wait for a place, 4 has been everywhere, 2 is dead."""
 
+    __slots__ = ("done", "level_size", "progress", "state", "steps")
+
     def __init__(self, level_size: float = 20.0) -> None:
         self.level_size = level_size
         self.reset()
@@ -39,10 +41,15 @@ class Monitor:
         self.done = False
 
     def step(self, signals: Mapping[str, float]) -> Step:
-        *distances, health = read(signals, SIGNALS)
+        to_s1, to_s2, to_exit, health = read(signals, SIGNALS)
         alive = min(max(health, 0.0), 1.0)
-        closeness = [near(distance, self.level_size) for distance in distances]
-        if sum(value > 0.0 for value in closeness) > 1:
+        level_size = self.level_size
+        closeness = (near_s1, near_s2, near_exit) = (
+            near(to_s1, level_size),
+            near(to_s2, level_size),
+            near(to_exit, level_size),
+        )
+        if (near_s1 > 0.0) + (near_s2 > 0.0) + (near_exit > 0.0) > 1:
             raise ValueError(f"only one of {', '.join(ATOMS)} may hold at a time")
         state, limiting, progress = self.state, None, 0.0
         if state == TRAP:
@@ -53,13 +60,14 @@ class Monitor:
             robustness, progress = alive, 1.0
         else:
             place = PLACE[state]
-            if closeness[place] > 0.0:
-                state, robustness, progress = NEXT[state], min(closeness[place], alive), (place + 1) / 3
+            here = closeness[place]
+            if here > 0.0:
+                state, robustness, progress = NEXT[state], min(here, alive), (place + 1) / 3
             else:
-                elsewhere = max(-value if index == place else value for index, value in enumerate(closeness))
-                robustness = min(elsewhere, alive)
+                # Not here, or at one of the other places, which would say so too.
+                robustness = min(max(-here, closeness[place - 1], closeness[place - 2]), alive)
                 limiting = ATOMS[place]
-                progress = (place + 1.0 + closeness[place]) / 3
+                progress = (place + 1.0 + here) / 3
         self.steps += 1
         best = max(self.progress, progress)
         if self.done:
@@ -70,6 +78,4 @@ class Monitor:
                 reward -= (LIMIT - self.steps) / LIMIT
         self.state, self.progress = state, best
         self.done = self.done or state in (TRAP, GOAL) or self.steps >= LIMIT
-        return Step(
-            state, LABELS[state], VERDICTS[state], state == GOAL, self.done, best, reward, robustness, limiting
-        )
+        return Step(state, LABELS[state], VERDICTS[state], state == GOAL, self.done, best, reward, robustness, limiting)

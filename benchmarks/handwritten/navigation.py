@@ -15,6 +15,8 @@ LIMIT = 300
 class Monitor:
     """The state is the number of marks that were reached in order."""
 
+    __slots__ = ("done", "level_size", "progress", "state", "steps")
+
     def __init__(self, level_size: float = 20.0) -> None:
         self.level_size = level_size
         self.reset()

@@ -1,0 +1,100 @@
+"""The paper's specs as RTAMT and Reelay can say them: looking back from each sample instead of ahead.
+
+``F(a & X F(b & X F c)) & G p`` holds of a prefix iff at its end
+``once(c & previous once(b & previous once a)) & historically p`` does.  Neither tool has predicates
+with cases, so both are given the values of the atoms, computed beforehand and outside of the time
+that is measured.  Both answer with the robustness of the prefix and with nothing else: no state,
+no progress, no reward.
+
+A peer is a function of a spec's name and of the values of the atoms; it returns one pass over the
+trace, and a function that yields the outputs of a new monitor over it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+Values = list[dict[str, float]]
+Peer = tuple[Callable[[], None], Callable[[], list[float]]]
+
+NAMES = {
+    "near(s1)": "s1",
+    "near(s2)": "s2",
+    "near(s3)": "s3",
+    "near(exit)": "exit",
+    "near(e_right)": "right",
+    "near(e_left)": "left",
+    "open_right": "open_right",
+    "open_left": "open_left",
+    "alive": "alive",
+}
+
+RTAMT = {
+    "navigation": "once((exit > 0) and (prev (once((s2 > 0) and (prev (once(s1 > 0)))))))",
+    "cover_and_hide": "once((exit > 0) and (prev (once((s2 > 0) and (prev (once(s1 > 0)))))))"
+    " and historically(alive > 0)",
+    "branching": "once((((open_right > 0) and (right > 0)) or ((open_left > 0) and (left > 0))) and (prev "
+    "(once((s3 > 0) and (prev (once((s2 > 0) and (prev (once(s1 > 0)))))))))) and historically(alive > 0)",
+}
+
+REELAY = {
+    "navigation": "once({exit > 0} and pre(once({s2 > 0} and pre(once{s1 > 0}))))",
+    "cover_and_hide": "once({exit > 0} and pre(once({s2 > 0} and pre(once{s1 > 0})))) and historically{alive > 0}",
+    "branching": "once((({open_right > 0} and {right > 0}) or ({open_left > 0} and {left > 0})) and "
+    "pre(once({s3 > 0} and pre(once({s2 > 0} and pre(once{s1 > 0})))))) and historically{alive > 0}",
+}
+
+
+def rtamt_peer(name: str, atoms: Values) -> Peer:
+    """RTAMT's online monitor in discrete time, in Python as it is installed."""
+    import rtamt  # type: ignore[import-untyped,import-not-found,unused-ignore]
+
+    monitor = rtamt.StlDiscreteTimeSpecification()
+    for atom in atoms[0]:
+        monitor.declare_var(NAMES[atom], "float")
+    monitor.declare_var("out", "float")
+    monitor.spec = f"out = {RTAMT[name]}"
+    monitor.parse()
+    samples = [[(NAMES[atom], value) for atom, value in values.items()] for values in atoms]
+    monitor.update(0, samples[0])  # a monitor that has seen nothing cannot be reset
+
+    def outputs() -> list[float]:
+        monitor.reset()
+        return [float(monitor.update(step, sample)) for step, sample in enumerate(samples)]
+
+    def once() -> None:
+        monitor.reset()
+        update = monitor.update
+        for step, sample in enumerate(samples):
+            update(step, sample)
+
+    return once, outputs
+
+
+def reelay_peer(name: str, atoms: Values) -> Peer:
+    """Reelay's discrete robustness monitor, C++ behind Python.
+
+    It has no reset and making one takes longer than the trace, so in the passes that are timed one monitor goes on.
+    """
+    import reelay  # type: ignore[import-untyped,import-not-found,unused-ignore]
+
+    samples = [{NAMES[atom]: value for atom, value in values.items()} for values in atoms]
+
+    def new() -> Any:
+        return reelay.discrete_timed_monitor(pattern=REELAY[name], semantics="robustness", condense=False)
+
+    def outputs() -> list[float]:
+        monitor = new()
+        return [float(monitor.update(sample)["value"]) for sample in samples]
+
+    update = new().update
+
+    def once() -> None:
+        for sample in samples:
+            update(sample)
+
+    return once, outputs
+
+
+PEERS: dict[str, Callable[[str, Values], Peer]] = {"RTAMT": rtamt_peer, "Reelay": reelay_peer}

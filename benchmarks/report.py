@@ -1,0 +1,288 @@
+"""RESULTS.md from the stored records."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from benchmarks import compile_table, monitors, process, summary
+from benchmarks.reference import references
+from benchmarks.store import Record, Store
+
+RESULTS = Path(__file__).with_name("RESULTS.md")
+
+COMPILE_FACTOR = 3.0
+LTLF2DFA_FACTOR = 20.0
+PROCESS_FACTOR = 15.0
+MONITOR_FACTOR = 0.5
+
+
+def render(store: Store) -> str:
+    """The whole report in Markdown."""
+    compiled = store.section(compile_table.SECTION)
+    timeout_s = store.section("machine")["options"]["peer_timeout_s"]
+    rows = summary.families(compiled, references(), timeout_s)
+    parts = [
+        _head(store),
+        "## Goals\n\n" + _table(("goal", "figure", ""), _goals(store, rows)),
+        _families(rows, timeout_s),
+        _sizes(compiled),
+        _large(compiled),
+        _process(store.section(process.SECTION)),
+        _monitors(store.section(monitors.SECTION)),
+    ]
+    return "\n\n".join(part.strip() for part in parts) + "\n"
+
+
+def _head(store: Store) -> str:
+    digests = {
+        record["source"]
+        for section in (compile_table.SECTION, process.SECTION, monitors.SECTION)
+        for record in store.section(section).values()
+        if "source" in record
+    }
+    changed = (
+        ""
+        if len(digests) <= 2
+        else ("\nThe sources changed while this was measured: `python -m benchmarks --fresh` measures one state.\n")
+    )
+    return f"""
+# Benchmarks
+
+Made by `make bench`, which is `python -m benchmarks` in the project's environment with `benchmarks/requirements.txt`
+and MONA (Debian package `mona`) installed. A run that was stopped resumes; `--fresh` begins anew. All times are CPU
+times and medians of several runs unless said otherwise; what stands in one row was measured one after the other in the
+same run. Absolute figures are those of this machine; the ratios are what to compare.
+{changed}
+{_table(("", ""), store.section("machine")["facts"].items())}
+"""
+
+
+def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[str]]:
+    compiled = store.section(compile_table.SECTION)
+    slow = [f"{row.name} {row.to_spot:.1f}" for row in rows if row.to_spot > COMPILE_FACTOR]
+    worst = max((row.to_spot for row in rows if not math.isnan(row.to_spot)), default=math.nan)
+    yield (
+        "formula to minimal automaton within 3 times Spot's estimated median, on every family",
+        f"worst family {worst:.1f}" + (f"; over 3: {', '.join(slow)}" if slow else ""),
+        _verdict(bool(rows) and not slow),
+    )
+    for field, what in (
+        ("ltlf2dfa_over_minimal", "formula to minimal automaton"),
+        ("ltlf2dfa_over_build", "complete build"),
+    ):
+        ratios = [(getattr(row, field), row.name) for row in rows if getattr(row, field) is not None]
+        low = [f"{name} {ratio}" for ratio, name in ratios if ratio.value < LTLF2DFA_FACTOR]
+        least = min((ratio.value for ratio, _ in ratios), default=math.nan)
+        yield (
+            f"{what} at least 20 times faster than LTLf2DFA, on every family",
+            f"worst family {least:.0f}" + (f"; under 20: {', '.join(low)}" if low else ""),
+            _verdict(bool(ratios) and not low),
+        )
+    small = [record for record in compiled.values() if (record["states_expected"] or 601) <= summary.SOLVED_STATES]
+    unsolved = summary.unsolved(compiled)
+    slowest = max((record["build_ms"] for record in small if "build_ms" in record), default=math.nan)
+    memory = max((record["build_mb"] for record in small if "build_mb" in record), default=math.nan)
+    yield (
+        "every formula with at most 600 states built completely in under 5 s and 2 GB",
+        f"{len(small) - len(unsolved)} of {len(small)}; slowest {slowest / 1e3:.2f} s, most {memory:.0f} MB"
+        + (f"; not: {', '.join(unsolved)}" if unsolved else ""),
+        _verdict(bool(small) and not unsolved),
+    )
+    whole = store.section(process.SECTION).get("tltlc compile cover_and_hide.tltl", {})
+    if "cpu_ratio" in whole:
+        cpu, wall = whole["cpu_ratio"][1], whole["wall_ratio"][1]
+        yield (
+            "`tltlc compile` of one spec at most 15 times a bare `python -c pass`",
+            f"{cpu:.1f} of CPU time, {wall:.1f} of wall time",
+            _verdict(max(cpu, wall) <= PROCESS_FACTOR),
+        )
+    ratios_by_hand = [
+        record["generated_to_hand_written"][1]
+        for record in store.section(monitors.SECTION).values()
+        if "generated_to_hand_written" in record
+    ]
+    if ratios_by_hand:
+        yield (
+            "the generated Python monitor at least 0.5 of the speed of one written by hand, on the paper's specs",
+            f"least {min(ratios_by_hand):.2f}",
+            _verdict(min(ratios_by_hand) >= MONITOR_FACTOR),
+        )
+
+
+def _families(rows: Sequence[summary.Family], timeout_s: float) -> str:
+    header = (
+        "family",
+        "formulas",
+        "minimal ms",
+        "build ms",
+        "MONA ms",
+        "Spot est. ms",
+        "minimal / Spot",
+        "LTLf2DFA / minimal",
+        "LTLf2DFA / build",
+        "LTLf2DFA solved",
+    )
+    body = [
+        (
+            row.name,
+            row.formulas,
+            _ms(row.minimal_ms),
+            _ms(row.build_ms),
+            _ms(row.mona_ms),
+            _ms(row.spot_ms),
+            _ratio(row.to_spot),
+            row.ltlf2dfa_over_minimal or "–",
+            row.ltlf2dfa_over_build or "–",
+            f"{row.ltlf2dfa_solved} of {row.ltlf2dfa_tried}",
+        )
+        for row in rows
+    ]
+    return f"""
+## Compiling, by family of formulas
+
+*minimal*: from a formula in memory to the minimal automaton, normal form included, in one process with fresh tables.
+*build*: all that an artefact holds besides: guards as all prime implicants and in short form, distances, verdicts,
+labels shortened with proof, texts in three notations; each run in a fork, so that none profits from an earlier one.
+*MONA*: the whole process `mona -q -u -w` on a program written by `benchmarks/mona.py`; a few milliseconds of it are
+the start of the process. *Spot est.*: Spot 2.14's time in process, recorded in `benchmarks/reference.tsv`, times
+MONA's time here over MONA's time recorded there (where MONA ran out of time, the median of that factor).
+*LTLf2DFA*: `to_dfa` of a parsed formula with the MONA process that it starts, in a fork as above; shown is the median
+of the ratios of its time to ours, formula by formula.
+
+Peers are stopped after {timeout_s:g} s on a formula, which counts as that time (`≥`). After
+{compile_table.LTLF2DFA_FAILURES} such formulas LTLf2DFA is spared the rest of a family.
+
+{_table(header, body)}
+"""
+
+
+def _sizes(compiled: dict[str, Record]) -> str:
+    built = [record for record in compiled.values() if "states" in record]
+    known = sum(record["states_expected"] is not None for record in built)
+    mona_known = sum("mona_states" in record for record in built)
+    both = [record for record in built if "ltlf2dfa_states" in record]
+    same = sum(record["ltlf2dfa_states"] == record["states"] for record in both)
+    one_more = sum(record["ltlf2dfa_states"] == record["states"] + 1 for record in both)
+    wrong = summary.wrong_sizes(compiled)
+    verdict = f"these differ: {', '.join(wrong)}" if wrong else "all agree"
+    return f"""
+## Sizes
+
+Of {len(built)} automata that were built, {known} have a reference size and {mona_known} a size by MONA here, counted
+as ours are (`benchmarks/mona.py` says how): {verdict}. LTLf2DFA's have the same size in {same} cases of {len(both)}
+and one state more in {one_more}.
+"""
+
+
+def _large(compiled: dict[str, Record]) -> str:
+    shown = {
+        name: record
+        for name, record in compiled.items()
+        if (record["states_expected"] or 601) > summary.SOLVED_STATES or name in summary.unsolved(compiled)
+    }
+    body = [
+        (
+            name,
+            record["states_expected"] or record.get("mona_states") or "?",
+            _outcome(record, "minimal"),
+            _outcome(record, "build"),
+            f"{record.get('build_mb', record.get('minimal_mb', math.nan)):.0f}",
+            _outcome(record, "mona"),
+            _outcome(record, "ltlf2dfa"),
+        )
+        for name, record in shown.items()
+    ]
+    return f"""
+## Large automata
+
+Formulas with more than 600 states or an unknown number of them, and any smaller one that missed its goal. A code is
+that of the error which ends a blow-up: TLT0501 the state budget of 50,000, TLT0502 a guard with too many primes.
+
+{_table(("formula", "states", "minimal", "build", "MB", "MONA", "LTLf2DFA"), body)}
+"""
+
+
+def _process(records: dict[str, Record]) -> str:
+    body = [
+        (
+            f"`{name}`",
+            _ms(record["cpu_ms"]),
+            _ms(record["wall_ms"]),
+            _ms(record["bare_cpu_ms"]),
+            _spread(record["cpu_ratio"]),
+            _spread(record["wall_ratio"]),
+        )
+        for name, record in records.items()
+        if "cpu_ratio" in record
+    ]
+    whole = records.get("tltlc compile cover_and_hide.tltl", {})
+    imports = ", ".join(f"`{module}` {ms:.1f}" for module, ms in whole.get("imports", []))
+    return f"""
+## The whole process
+
+Each command and a bare `python -c pass` in turns, {process.ROUNDS} pairs; compiled modules are kept, as they are of
+an installed package. Ratios are those of pairs: median and, in brackets, quartiles.
+
+{_table(("command", "CPU ms", "wall ms", "bare CPU ms", "CPU ratio", "wall ratio"), body)}
+
+The slowest imports of the first one, in milliseconds of their own (with Python's tracing on): {imports or "–"}.
+"""
+
+
+def _monitors(records: dict[str, Record]) -> str:
+    whos = list(dict.fromkeys(who for record in records.values() for who in record.get("steps_per_s", {})))
+    body = [
+        (
+            name,
+            record["samples"],
+            *(f"{record['steps_per_s'][who]:,}" if who in record["steps_per_s"] else "–" for who in whos),
+            _spread(record["generated_to_hand_written"], 2),
+        )
+        for name, record in records.items()
+        if "steps_per_s" in record
+    ]
+    return f"""
+## Monitors, steps per second
+
+On the recorded trace of each of the paper's specs, the median of {monitors.ROUNDS} rounds in which all run one after
+the other. *generated*: `NAME_monitor.py`. *hand_written*: `benchmarks/handwritten/NAME.py`, plain Python for the same
+automaton with every field of a step (state, label, verdict, acceptance, end, progress, reward, robustness, limiting
+atom), checked to be equal on the trace before it is timed; it computes only the predicates that its state needs and
+gives no notices of clamped values. *tltlc.monitor*: the monitor behind `tltlc monitor`, which runs any automaton.
+*RTAMT* and *Reelay* compute the robustness of each prefix by the past-time form of the formula
+(`benchmarks/peer_monitors.py`) and nothing else, and are given the values of the predicates ready-made; the sign of
+their answers was checked against acceptance at each step.
+
+{_table(("spec", "samples", *whos, "generated / hand_written"), body)}
+"""
+
+
+def _outcome(record: Record, side: str) -> str:
+    if f"{side}_ms" in record:
+        ms = record[f"{side}_ms"]
+        return f"{ms / 1e3:.2f} s" if ms >= 1000 else f"{_ms(ms)} ms"
+    return str(record.get(f"{side}_failed", "–"))
+
+
+def _spread(quartiles: Sequence[float], digits: int = 1) -> str:
+    lower, middle, upper = quartiles
+    return f"{middle:.{digits}f} ({lower:.{digits}f}–{upper:.{digits}f})"
+
+
+def _ms(value: float) -> str:
+    return "–" if math.isnan(value) else f"{value:.2f}" if value < 10 else f"{value:.0f}"
+
+
+def _ratio(value: float) -> str:
+    return "–" if math.isnan(value) else f"{value:.1f}"
+
+
+def _verdict(met: bool) -> str:
+    return "met" if met else "**missed**"
+
+
+def _table(header: Sequence[str], body: Iterable[Sequence[object]]) -> str:
+    lines = [header, ["---"] * len(header), *body]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)

@@ -1,0 +1,76 @@
+"""Statistics, child processes and forks of the benchmarks."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import sys
+import time
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from benchmarks.measure import cpu_times_ms, forked, median, peak_memory_mb, quartiles, run
+
+NUMBERS = st.lists(st.floats(-1e6, 1e6), min_size=1)
+
+
+@given(NUMBERS)
+def test_quartiles_are_in_order_around_the_median(values: list[float]) -> None:
+    lower, middle, upper = quartiles(values)
+    assert min(values) <= lower <= middle <= upper <= max(values)
+    assert math.isclose(middle, statistics.median(values), abs_tol=1e-6)
+    assert median(values) == statistics.median(values)
+
+
+def test_the_median_of_nothing_is_no_number() -> None:
+    assert math.isnan(median([]))
+
+
+def test_a_child_is_fed_and_read() -> None:
+    made = run([sys.executable, "-c", "print(input()[::-1]); raise SystemExit(3)"], 30, "abc\n")
+    assert (made.output, made.status, made.timed_out) == ("cba\n", 3, False)
+    assert made.cpu_ms > 0
+
+
+def test_the_time_of_a_grandchild_counts() -> None:
+    burn = "import time\nwhile time.process_time() < 0.3: pass"
+    made = run([sys.executable, "-c", f"import subprocess, sys; subprocess.run([sys.executable, '-c', {burn!r}])"], 30)
+    assert made.cpu_ms >= 300
+
+
+def test_a_child_that_hangs_is_killed_and_its_output_kept() -> None:
+    started = time.perf_counter()
+    made = run([sys.executable, "-c", "import time; print('so far', flush=True); time.sleep(60)"], 0.7)
+    assert made.timed_out and made.output == "so far\n" and made.status != 0
+    assert time.perf_counter() - started < 20
+
+
+def test_repetition_stops_when_enough_time_is_spent() -> None:
+    def burn() -> None:
+        started = time.process_time()
+        while time.process_time() - started < 0.02:
+            pass
+
+    assert len(cpu_times_ms(burn, runs=50, enough_s=0.05)) in (2, 3)
+    assert len(cpu_times_ms(lambda: None, runs=4, enough_s=10)) == 4
+
+
+def test_a_fork_leaves_no_trace() -> None:
+    seen: list[int] = []
+
+    def work() -> dict[str, int]:
+        seen.append(1)
+        return {"answer": len(seen)}
+
+    made = forked(work), forked(work)
+    assert [result and result["answer"] for result in made] == [1, 1]
+    assert seen == []
+
+
+def test_a_fork_that_fails_gives_nothing() -> None:
+    assert forked(lambda: {"answer": 1 // 0}) is None
+
+
+def test_peak_memory_is_that_of_this_process() -> None:
+    assert 5 < peak_memory_mb() < 100_000

@@ -1,0 +1,116 @@
+"""From records to the figures of the report."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from benchmarks import summary
+from benchmarks.ltlf2dfa_peer import notation
+from benchmarks.reference import Reference, references
+from benchmarks.report import render
+from benchmarks.store import Record, Store
+from tests.reference_formulas import read_formula
+
+REFERENCES = [
+    Reference("one", "f", "F a", 2, spot_ms=0.3, mona_ms=9.0),
+    Reference("two", "f", "F b", 2, spot_ms=0.6, mona_ms=None),
+    Reference("three", "g", "G b", 2, spot_ms=None, mona_ms=5.0),
+]
+RECORDS: dict[str, Record] = {
+    "one": {
+        "family": "f",
+        "states_expected": 2,
+        "minimal_ms": 0.1,
+        "build_ms": 1.0,
+        "build_mb": 9.0,
+        "states": 2,
+        "mona_ms": 3.0,
+        "mona_states": 2,
+        "ltlf2dfa_ms": 50.0,
+        "ltlf2dfa_states": 2,
+    },
+    "two": {
+        "family": "f",
+        "states_expected": 2,
+        "minimal_ms": 0.4,
+        "build_ms": 9000.0,
+        "build_mb": 9.0,
+        "states": 3,
+        "mona_failed": "over 20 s",
+        "ltlf2dfa_failed": "over 20 s",
+    },
+    "three": {
+        "family": "g",
+        "states_expected": 700,
+        "minimal_ms": 1.0,
+        "build_failed": "TLT0501",
+        "mona_ms": 1.0,
+        "mona_states": 700,
+        "ltlf2dfa_failed": "left out",
+    },
+}
+
+
+def test_spot_is_estimated_by_mona_s_factor_or_the_usual_one() -> None:
+    estimates = summary.spot_estimates(RECORDS, REFERENCES)
+    # The factors are 3/9 and 1/5, their median 4/15.
+    assert estimates == pytest.approx({"one": 0.1, "two": 0.6 * 4 / 15})
+
+
+def test_a_family() -> None:
+    row, other = summary.families(RECORDS, REFERENCES, timeout_s=20)
+    assert (row.name, row.formulas, row.ltlf2dfa_solved, row.ltlf2dfa_tried) == ("f", 2, 1, 2)
+    assert row.minimal_ms == pytest.approx(0.25)
+    assert row.to_spot == pytest.approx(0.25 / 0.13)
+    # LTLf2DFA: 500 times slower on one, at least 50,000 times on the other; built, 50 and at least 2.2 times.
+    assert str(row.ltlf2dfa_over_minimal) == "500"
+    assert str(row.ltlf2dfa_over_build) == "≥ 2"
+    assert other.ltlf2dfa_over_minimal is None and other.ltlf2dfa_tried == 0
+    assert math.isnan(other.to_spot)
+
+
+def test_what_missed_its_goal() -> None:
+    assert summary.unsolved(RECORDS) == ["two"]
+    assert summary.wrong_sizes(RECORDS) == ["two"]
+
+
+def test_a_report_of_part_of_the_results_renders(tmp_path: Path) -> None:
+    store = Store(tmp_path / "results.json")
+    store.put("machine", "facts", {"processor": "abacus"})
+    store.put("machine", "options", {"peer_timeout_s": 20.0})
+    first = references()[0]
+    store.put("compile", first.name, RECORDS["one"] | {"family": first.family, "source": "x"})
+    text = render(Store(tmp_path / "results.json"))
+    assert "| processor | abacus |" in text
+    assert f"| {first.family} | 1 | 0.10 | 1.00 | 3.00 |" in text
+    assert "nan" not in text
+
+
+def test_a_fresh_store_forgets(tmp_path: Path) -> None:
+    path = tmp_path / "results.json"
+    Store(path).put("compile", "one", {"x": 1})
+    assert Store(path).section("compile") == {"one": {"x": 1}}
+    assert Store(path, fresh=True).section("compile") == {}
+
+
+def test_the_reference_table_reads() -> None:
+    rows = {row.name: row for row in references()}
+    assert rows["seq1"].states == 3 and rows["seq1"].mona_ms == 8.8
+    assert rows["branch5"].states is None and rows["branch5"].mona_ms is None
+    for row in rows.values():
+        read_formula(row.formula)
+
+
+@pytest.mark.parametrize(
+    ("text", "renamed"),
+    [
+        ("F(a & X (b U c)) -> G !a", "F(p0 & X (p1 U p2)) -> G !p0"),
+        ("WX a <-> (b R a)", "WX p0 <-> (p1 R p0)"),
+        ("true & (a | b | c)", "true & (p0 | p1 | p2)"),
+    ],
+)
+def test_the_notation_of_ltlf2dfa_is_the_same_formula(text: str, renamed: str) -> None:
+    assert read_formula(notation(read_formula(text))) is read_formula(renamed)
