@@ -54,3 +54,9 @@ def test_bottom_up_gives_each_subformula_once_and_after_its_operands(formula: Fo
 @given(formulas())
 def test_rebuilding_from_the_same_operands_changes_nothing(formula: Formula) -> None:
     assert f.rebuild(formula, formula.args) is formula
+
+
+def test_walking_is_left_before_right_also_where_parts_are_shared() -> None:
+    a, b = f.atom("a"), f.atom("b")
+    assert f.and_(f.or_(b, a), a, b).atoms() == ("b", "a")
+    assert f.and_(f.eventually(f.and_(a, b)), b, a).atoms() == ("a", "b")

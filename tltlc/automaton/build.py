@@ -13,14 +13,13 @@ from tltlc.automaton.composition import minimal_machine as compose
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfSteps
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
-from tltlc.automaton.labels import Labels, simplified
+from tltlc.automaton.labels import Labels
 from tltlc.automaton.machine import Machine, OutOfStates
 from tltlc.automaton.successors import Successors
 from tltlc.expression import Signal as SignalValue
 from tltlc.logic.formula import Formula, rebuild
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.printer import ascii_text, english_text, unicode_text
-from tltlc.logic.rewrite import size
 from tltlc.resolve.spec import Atom, Judge, Signal, Spec
 from tltlc.source import SourceFile, Span
 
@@ -226,21 +225,22 @@ def _labels(
     """The label of every state, with the operators of the source (``a -> b``, not ``!a | b``)."""
     diagrams = successors.diagrams
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
-    in_source = {negation_normal_form(part): part for part in source.walk() if part.op in ("implies", "iff")}
-    formulas = {state: _restored(labels.label(state), in_source) for state in minimal.transitions}
-    own = simplified(source)
-    if size(own) <= size(formulas[minimal.initial]):
+    restored = {negation_normal_form(part): part for part in source.walk() if part.op in ("implies", "iff")}
+    formulas = {state: _restored(labels.label(state), restored) for state in minimal.transitions}
+    own = labels.simplified(source)
+    if labels.size(own) <= labels.size(formulas[minimal.initial]):
         formulas[minimal.initial] = own
     texts = {state: _text(formula) for state, formula in formulas.items()}
     return {leaf: _at_the_end(texts[diagrams.low[leaf]], diagrams.high[leaf] == 1) for leaf in order}
 
 
-def _restored(formula: Formula, in_source: Mapping[Formula, Formula]) -> Formula:
+def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
     """The formula with every part that the source wrote with ``->`` or ``<->`` written so again."""
-    known = in_source.get(formula)
-    if known is not None:
-        return known
-    return rebuild(formula, tuple(_restored(argument, in_source) for argument in formula.args))
+    known = restored.get(formula)
+    if known is None:
+        known = rebuild(formula, tuple(_restored(argument, restored) for argument in formula.args))
+        restored[formula] = known
+    return known
 
 
 def _text(formula: Formula) -> Text:

@@ -14,7 +14,7 @@ from tltlc.automaton.machine import Machine, equivalent
 from tltlc.automaton.successors import Successors
 from tltlc.logic import formula as build
 from tltlc.logic.formula import Formula
-from tltlc.logic.rewrite import simplify, size
+from tltlc.logic.rewrite import simplify
 
 _TERM_LIMIT = 64
 """Sums of products with more terms are written as nested case distinctions instead."""
@@ -45,7 +45,7 @@ class Labels:
     are.  A count and not a clock, so that equal input gives equal output.
     """
 
-    __slots__ = ("_allowed", "_machine", "_members", "_position", "_successors", "_sums", "_work", "_written")
+    __slots__ = ("_allowed", "_machine", "_members", "_position", "_sizes", "_successors", "_sums", "_work", "_written")
 
     def __init__(
         self, successors: Successors, machine: Machine, source: Formula, allowed: int = ACCEPT, work: int = 3_000
@@ -55,6 +55,7 @@ class Labels:
         self._allowed = allowed
         self._work = work
         self._position = {part: index for index, part in enumerate(source.walk())}
+        self._sizes: dict[Formula, int] = {}
         self._written: dict[int, tuple[int, Formula]] = {}
         self._sums: dict[int, list[_Term] | None] = {FALSE: [], TRUE: [frozenset()]}
         self._members: dict[int, list[int]] = {}
@@ -63,9 +64,25 @@ class Labels:
 
     def label(self, state: int) -> Formula:
         """The shortest label found for a state of the machine, in negation normal form."""
-        members = sorted(self._members[state], key=lambda obligation: len(self._support(obligation)))
-        written = sorted((self.written(obligation) for obligation in members[:_MEMBERS]), key=size)
-        return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=size)
+        members = self._members[state]
+        if len(members) > 1:
+            members = sorted(members, key=lambda obligation: len(self._support(obligation)))
+        written = sorted((self.written(obligation) for obligation in members[:_MEMBERS]), key=self.size)
+        return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=self.size)
+
+    def size(self, formula: Formula) -> int:
+        """The number of nodes of the formula as it is written; remembered, since labels share their parts."""
+        sizes = self._sizes
+        stack = [formula]
+        while stack:
+            node = stack[-1]
+            missing = [argument for argument in node.args if argument not in sizes]
+            if missing:
+                stack += missing
+            else:
+                stack.pop()
+                sizes[node] = 1 + sum(sizes[argument] for argument in node.args)
+        return sizes[formula]
 
     def written(self, obligation: int) -> Formula:
         """The formula of an obligation, common factors first, operands in source order."""
@@ -181,14 +198,18 @@ class Labels:
 
     # --- shortening ---------------------------------------------------------------------------
 
+    def simplified(self, formula: Formula) -> Formula:
+        """The formula after the named rewrites, unless it is too long for anybody to read."""
+        return formula if self.size(formula) > _LONGEST_SIMPLIFIED else simplify(formula)
+
     def _shortened(self, formula: Formula, state: int) -> Formula:
-        formula = simplified(formula)
+        formula = self.simplified(formula)
         tried: set[Formula] = set()
-        progress = size(formula) <= _LONGEST_PROVED
+        progress = self.size(formula) <= _LONGEST_PROVED
         while progress and self._work > 0:
             progress = False
-            for shorter in sorted({simplify(f): None for f in _with_one_operand_less(formula)}, key=size):
-                if shorter in tried or size(shorter) >= size(formula):
+            for shorter in sorted({simplify(f): None for f in _with_one_operand_less(formula)}, key=self.size):
+                if shorter in tried or self.size(shorter) >= self.size(formula):
                     continue
                 tried.add(shorter)
                 if self._proved(shorter, state):
@@ -205,11 +226,6 @@ class Labels:
         except OutOfSteps:
             self._work -= _COST_OF_GIVING_UP
             return False
-
-
-def simplified(formula: Formula) -> Formula:
-    """The formula after the named rewrites, unless it is too long for anybody to read."""
-    return formula if size(formula) > _LONGEST_SIMPLIFIED else simplify(formula)
 
 
 def _joined(join: Callable[..., Formula], operands: list[tuple[int, Formula]]) -> tuple[int, Formula]:

@@ -24,6 +24,7 @@ class Successors:
 
     __slots__ = (
         "_atom_index",
+        "_obligation_of",
         "_of_formula",
         "_of_obligation",
         "_of_state",
@@ -39,6 +40,7 @@ class Successors:
         self.stands_for: dict[int, int] = {}
         self._variables: dict[Formula, int] = {}
         self._atom_index = {name: index for index, name in enumerate(atoms)}
+        self._obligation_of: dict[Formula, int] = {}
         self._of_formula: dict[Formula, int] = {}
         self._of_state: dict[int, int] = {}
         self._of_obligation: dict[int, int] = {FALSE: REJECT, TRUE: ACCEPT}
@@ -54,22 +56,21 @@ class Successors:
 
     def obligation(self, formula: Formula) -> int:
         """The obligation of a formula: its Boolean function over atoms and temporal subformulas."""
+        known = self._obligation_of.get(formula)
+        if known is None:
+            known = self._obligation_of[formula] = self._as_obligation(formula)
+        return known
+
+    def _as_obligation(self, formula: Formula) -> int:
         op = formula.op
         diagrams = self.diagrams
-        if op == "and":
-            result = TRUE
+        if op == "and" or op == "or":
+            combine, result = (diagrams.both, TRUE) if op == "and" else (diagrams.either, FALSE)
             for argument in reversed(formula.args):
-                result = diagrams.both(self.obligation(argument), result)
+                result = combine(self.obligation(argument), result)
             return result
-        if op == "or":
-            result = FALSE
-            for argument in reversed(formula.args):
-                result = diagrams.either(self.obligation(argument), result)
-            return result
-        if op == "true":
-            return TRUE
-        if op == "false":
-            return FALSE
+        if op == "true" or op == "false":
+            return TRUE if op == "true" else FALSE
         if op == "not":
             return diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
         itself = diagrams.obligation(self._variable(formula), FALSE, TRUE)

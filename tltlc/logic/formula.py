@@ -44,15 +44,14 @@ class Formula:
 
     def walk(self) -> Iterator[Formula]:
         """Every distinct subformula, this one first, left before right, without recursion."""
-        seen = {self}
+        seen: set[Formula] = set()
         stack = [self]
         while stack:
             node = stack.pop()
-            yield node
-            for argument in reversed(node.args):
-                if argument not in seen:
-                    seen.add(argument)
-                    stack.append(argument)
+            if node not in seen:
+                seen.add(node)
+                yield node
+                stack.extend(reversed(node.args))
 
     def bottom_up(self) -> Iterator[Formula]:
         """Every distinct subformula, each after its operands, this one last, without recursion."""

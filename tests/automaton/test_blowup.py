@@ -1,0 +1,69 @@
+"""Formulas that blow up end in an error that names the part, in bounded time."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from tests.reference_formulas import read_formula
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.logic.formula import Formula, and_, atom, eventually, next_, until, weak_next
+from tltlc.record import replace
+from tltlc.resolve.spec import Part, Spec
+from tltlc.source import Span
+
+
+def with_parts(*formulas: Formula) -> Spec:
+    """A spec whose parts span one character each of its source."""
+    spec = spec_from_formula(and_(*formulas))
+    return replace(
+        spec, parts=tuple(Part(formula, spec.source, Span(i, i + 1)) for i, formula in enumerate(formulas))
+    )
+
+
+def error(spec: Spec, budget: int) -> TltlError:
+    with pytest.raises(TltlError) as raised:
+        build(spec, state_budget=budget)
+    return raised.value
+
+
+def test_the_budget_names_the_part_that_is_too_large() -> None:
+    large = read_formula("G(a -> X X X X X X X X X X X X b)")
+    found = error(with_parts(read_formula("F c"), large), 3_000).diagnostics[0]
+    assert found.code == "TLT0501"
+    assert [label.span for label in found.labels] == [Span(1, 2)]
+
+
+def test_parts_that_are_large_only_together_are_named_together() -> None:
+    found = error(with_parts(*(eventually(atom(f"a{i}")) for i in range(8))), 100).diagnostics[0]
+    assert [label.message for label in found.labels] == ["2 states alone; the parts multiply"] * 3
+
+
+def test_the_budget_is_exact() -> None:
+    spec = with_parts(*(eventually(atom(f"a{i}")) for i in range(5)))
+    assert len(build(spec, state_budget=32).states) == 32
+    error(spec, 31)
+
+
+def test_a_spec_without_parts_is_named_itself() -> None:
+    assert error(spec_from_formula(read_formula("F a & F b & F c")), 3).diagnostics[0].labels
+
+
+@pytest.mark.parametrize("wrap", [next_, weak_next, eventually])
+def test_deep_formulas_need_no_deep_stack(wrap: type[next_]) -> None:
+    formula = atom("a")
+    for _ in range(1_000):
+        formula = wrap(formula)
+    before = sys.getrecursionlimit()
+    assert build(spec_from_formula(formula)).states
+    assert sys.getrecursionlimit() == before
+
+
+def test_a_long_chain_of_untils() -> None:
+    names = [atom(f"a{i}") for i in range(40)]
+    formula = names[-1]
+    for name in reversed(names[:-1]):
+        formula = until(name, formula)
+    assert len(build(spec_from_formula(formula)).states) == 41

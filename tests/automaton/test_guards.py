@@ -1,0 +1,82 @@
+"""Guard robustness: the signed L-infinity distance to the guard's border, however the guard is written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.logic.strategies import state_formulas
+from tltlc.automaton import guards
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Guard
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.logic import oracle
+from tltlc.logic.formula import Formula, and_, atom, iff, not_, or_
+
+ATOMS = ("a", "b", "c")
+VALUES = st.tuples(*[st.floats(-1, 1).filter(lambda x: x != 0)] * len(ATOMS))
+
+
+def guard_of(formula: Formula) -> Guard | None:
+    """The guard under which a one-sample trace meets the formula, None where none does."""
+    # All atoms are mentioned, in order, so that indices are those of ATOMS.
+    mentioned = [or_(atom(name), not_(atom(name))) for name in ATOMS]
+    fspa = build(spec_from_formula(and_(*mentioned, formula)))
+    assert [a.name for a in fspa.atoms] == list(ATOMS)
+    goal = [state.id for state in fspa.states if state.accepting]
+    found = [edge.guard for edge in fspa.edges_from(0) if edge.target in goal]
+    return found[0] if found else None
+
+
+def robustness(guard: Guard | None, values: Sequence[float]) -> float:
+    """Max over primes of min over literals; true is 1 and false -1 (semantics, section 3)."""
+    if guard is None:
+        return -1.0
+    return max(
+        min((values[index] if polarity else -values[index] for index, polarity in prime), default=1.0)
+        for prime in guard.primes
+    )
+
+
+def signed_distance(formula: Formula, values: Sequence[float]) -> float:
+    """How far the nearest letter with the other truth value lies, by brute force over letters."""
+    here = tuple(value > 0 for value in values)
+    true = {
+        letter
+        for letter in product((False, True), repeat=len(ATOMS))
+        if oracle.holds(formula, [{name for name, value in zip(ATOMS, letter, strict=True) if value}])
+    }
+    others = [letter for letter in product((False, True), repeat=len(ATOMS)) if (letter in true) != (here in true)]
+    distance = min(
+        (max(abs(v) for v, a, b in zip(values, here, letter, strict=True) if a != b) for letter in others), default=1.0
+    )
+    return distance if here in true else -distance
+
+
+@given(state_formulas(ATOMS, max_leaves=8), VALUES)
+@settings(max_examples=400)
+def test_robustness_is_the_signed_distance_to_the_border(formula: Formula, values: tuple[float, ...]) -> None:
+    assert robustness(guard_of(formula), values) == signed_distance(formula, values)
+
+
+@given(state_formulas(ATOMS, max_leaves=6))
+@settings(max_examples=100)
+def test_robustness_does_not_depend_on_how_the_guard_is_written(formula: Formula) -> None:
+    """Shannon's expansion, which min and max do not respect, leaves the primes as they are."""
+    split = or_(and_(atom("a"), formula), and_(not_(atom("a")), formula))
+    one, other = guard_of(formula), guard_of(split)
+    assert (one is None) == (other is None)
+    if one is not None and other is not None:
+        assert one == other
+
+
+def test_a_guard_with_too_many_primes_names_the_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guards, "PRIME_LIMIT", 3)
+    parity = iff(atom("a"), iff(atom("b"), atom("c")))
+    with pytest.raises(TltlError) as raised:
+        build(spec_from_formula(parity))
+    assert raised.value.diagnostics[0].code == "TLT0502"
