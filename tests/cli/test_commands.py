@@ -73,3 +73,11 @@ def test_new(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("empty").mkdir()
     assert tltlc("new", "empty").status == 0
     assert tltlc("new", "hide.tltl").status == 2
+
+
+def test_the_way_to_start_is_the_way_to_start(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    lines = tltlc("--help").out.split("Start here:\n")[1].split("\n\n")[0].splitlines()
+    commands = [line.strip().split("  ")[0].split() for line in lines]
+    assert len(commands) == 3
+    for program, *arguments in commands:
+        assert (program, tltlc(*arguments).status) == ("tltlc", 0)

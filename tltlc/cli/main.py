@@ -157,8 +157,20 @@ def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
         ctx.exit()
 
 
+_HELP: Final = """\
+Compile plans for a game, written in temporal logic, to automata that judge and reward a player.
+
+\b
+Start here:
+  tltlc new my_game                                a project that compiles
+  tltlc compile my_game/first_level.tltl -o build  its automaton and its monitor
+  tltlc render my_game/first_level.tltl -o level.svg
+"""
+
+
 @click.group(
     cls=CommandLine,
+    help=_HELP,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="`tltlc COMMAND --help` shows the options of a command, with examples.",
 )
@@ -166,14 +178,7 @@ def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:
     "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Show the version and exit."
 )
 def cli() -> None:
-    r"""Compile plans for a game, written in temporal logic, to automata that judge and reward a player.
-
-    \b
-    Start here:
-      tltlc new my_game                          a project that compiles
-      tltlc compile my_game/level.tltl -o build  its automaton and its monitor
-      tltlc render my_game/level.tltl -o level.svg
-    """
+    """Compile plans for a game, written in temporal logic, to automata that judge and reward a player."""
 
 
 if os.environ.get("TLTLC_DEBUG") == "1":
