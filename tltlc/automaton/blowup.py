@@ -14,7 +14,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.resolve.spec import Part, Spec
 
-_RECURSION_ROOM = 20_000
+_RECURSION_ROOM = 10_000
 _PART_BUDGET = 2_000
 """States tried for one part alone: enough to rank the parts, small enough to answer soon."""
 

@@ -236,11 +236,10 @@ def _labels(
 
 def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
     """The formula with every part that the source wrote with ``->`` or ``<->`` written so again."""
-    known = restored.get(formula)
-    if known is None:
-        known = rebuild(formula, tuple(_restored(argument, restored) for argument in formula.args))
-        restored[formula] = known
-    return known
+    for node in formula.bottom_up():
+        if node not in restored:
+            restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
+    return restored[formula]
 
 
 def _text(formula: Formula) -> Text:

@@ -174,7 +174,7 @@ class Diagrams:
     def _transition_operation(
         self, absorbing: int, neutral: int, combine: Callable[[int, int], int], *, conjunction: bool
     ) -> Callable[[int, int], int]:
-        atom, low, high, nodes, add, leaf = self.atom, self.low, self.high, self._nodes, self._add, self.leaf
+        atom, low, high, nodes, add = self.atom, self.low, self.high, self._nodes, self._add
         memo: dict[tuple[int, int], int] = {}
         self._memos.append(memo)
 
@@ -195,7 +195,9 @@ class Diagrams:
             if ax == ay:
                 if ax == LEAF:
                     accepted = high[x] & high[y] if conjunction else high[x] | high[y]
-                    result = memo[key] = leaf(combine(low[x], low[y]), accepted)
+                    triple = (LEAF, combine(low[x], low[y]), accepted)
+                    result = nodes.get(triple)
+                    memo[key] = result = add(triple) if result is None else result
                     return result
                 below, above = operate(low[x], low[y]), operate(high[x], high[y])
             elif ax < ay:
