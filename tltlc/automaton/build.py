@@ -236,9 +236,8 @@ def _labels(
 
 def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
     """The formula with every part that the source wrote with ``->`` or ``<->`` written so again."""
-    for node in formula.bottom_up():
-        if node not in restored:
-            restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
+    for node in formula.bottom_up(known=restored):
+        restored[node] = rebuild(node, tuple(restored[argument] for argument in node.args))
     return restored[formula]
 
 

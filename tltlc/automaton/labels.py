@@ -72,17 +72,9 @@ class Labels:
 
     def size(self, formula: Formula) -> int:
         """The number of nodes of the formula as it is written; remembered, since labels share their parts."""
-        sizes = self._sizes
-        stack = [formula]
-        while stack:
-            node = stack[-1]
-            missing = [argument for argument in node.args if argument not in sizes]
-            if missing:
-                stack += missing
-            else:
-                stack.pop()
-                sizes[node] = 1 + sum(sizes[argument] for argument in node.args)
-        return sizes[formula]
+        for node in formula.bottom_up(known=self._sizes):
+            self._sizes[node] = 1 + sum(self._sizes[argument] for argument in node.args)
+        return self._sizes[formula]
 
     def written(self, obligation: int) -> Formula:
         """The formula of an obligation, common factors first, operands in source order."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from tltlc.logic import formula as build
+from tltlc.logic.bounded import Bounded, bounded, with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.implication import DUAL
 from tltlc.logic.notation import ASCII, Notation, write
@@ -48,9 +49,10 @@ def _clause(node: Formula, when: str, depth: int) -> _Clause:
         return f"{_keep(node, 'have', 'avoid')} {when}", _PLAIN
     if depth == 0:
         return f"satisfy {write(node, ASCII)}", _SCOPED
-    bounded = _bounded(node, depth)
-    if bounded is not None:
-        return bounded
+    if node.op in ("and", "or"):
+        found = bounded(node)
+        if found is not None:
+            return _bounded(found, depth)
     match node.op:
         case "not":
             return _clause(_without_negation(node), when, depth)
@@ -78,9 +80,10 @@ def _clause(node: Formula, when: str, depth: int) -> _Clause:
 def _parts(node: Formula) -> list[Formula]:
     """The operands, with those without temporal operators gathered where the first of them stands."""
     make = build.and_ if node.op == "and" else build.or_
-    together = [part for part in node.args if _is_state(part)]
+    operands = with_bounds(node)
+    together = [part for part in operands if _is_state(part)]
     parts: list[Formula] = []
-    for part in node.args:
+    for part in operands:
         if not _is_state(part):
             parts.append(part)
         elif part is together[0]:
@@ -208,18 +211,10 @@ def _next(node: Formula, depth: int) -> _Clause:
     return f"{moment}, {_inner(body, depth)}", _SCOPED
 
 
-def _bounded(node: Formula, depth: int) -> _Clause | None:
-    """The expansions ``p | X(p | X p)`` and ``p & N(p & N p)`` of bounded operators."""
-    if node.op not in ("and", "or"):
-        return None
-    step, steps, rest = "X" if node.op == "or" else "N", 0, node
-    make = build.or_ if node.op == "or" else build.and_
-    body = make(*node.args[:-1])
-    while rest.op == node.op and rest.args[-1].op == step and make(*rest.args[:-1]) is body:
-        rest, steps = rest.args[-1].args[0], steps + 1
-    if not steps or rest is not body:
-        return None
-    if node.op == "or":
+def _bounded(found: Bounded, depth: int) -> _Clause:
+    """``p | X(p | X p)`` and ``p & N(p & N p)``, the expansions of bounded operators."""
+    steps, body = found.steps, found.body
+    if found.op == "F":
         within = f"within {steps} step{'s' * (steps > 1)}"
         if _is_state(body):
             return f"reach {_bracketed(body)} {within}", _PLAIN

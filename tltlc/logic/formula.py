@@ -7,7 +7,7 @@ and ``&`` and ``|`` keep the order of their operands.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from typing import Final, Literal
 from weakref import WeakValueDictionary
 
@@ -53,15 +53,18 @@ class Formula:
                 yield node
                 stack.extend(reversed(node.args))
 
-    def bottom_up(self) -> Iterator[Formula]:
-        """Every distinct subformula, each after its operands, this one last, without recursion."""
+    def bottom_up(self, known: Container[Formula] = ()) -> Iterator[Formula]:
+        """Every distinct subformula, each after its operands, this one last, without recursion.
+
+        Subformulas in ``known`` are left out, and so is what stands only in them.
+        """
         seen: set[Formula] = set()
         stack = [(self, False)]
         while stack:
             node, operands_done = stack.pop()
             if operands_done:
                 yield node
-            elif node not in seen:
+            elif node not in seen and node not in known:
                 seen.add(node)
                 stack.append((node, True))
                 stack.extend((argument, False) for argument in reversed(node.args))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final, NamedTuple
 
+from tltlc.logic.bounded import LEAST, Bounded, bounded, with_bounds
 from tltlc.logic.formula import Formula, Op
 
 _OPERAND: Final = 6
@@ -25,6 +26,8 @@ class Notation(NamedTuple):
     """How operators and constants are written: ``prefix`` before an operand, ``infix`` between two.
 
     ``brackets_between_infix`` asks for brackets wherever one infix operator stands in another.
+    ``within`` and ``during`` are the prefixes of ``F[0,n]`` and ``G[0,n]``, with ``{last}`` for n and
+    ``{count}`` for the n + 1 samples.
     """
 
     prefix: Mapping[Op, str]
@@ -32,6 +35,8 @@ class Notation(NamedTuple):
     constants: Mapping[Op, str]
     space_before_bracket: bool
     brackets_between_infix: bool = False
+    within: str = ""
+    during: str = ""
 
 
 LETTERS: Final[Mapping[Op, str]] = {"U": " U ", "W": " W ", "R": " R ", "M": " M "}
@@ -41,47 +46,62 @@ ASCII: Final = Notation(
     {"and": " & ", "or": " | ", "implies": " -> ", "iff": " <-> ", **LETTERS},
     {"true": "true", "false": "false"},
     space_before_bracket=False,
+    within="F[0,{last}] ",
+    during="G[0,{last}] ",
 )
 
 
-def write(formula: Formula, notation: Notation) -> str:
-    """The formula in a notation, with only the brackets that it needs.
+_Item = str | tuple[Formula, int]
+"""A text, or what is to be written and the least strength at which it needs no brackets."""
 
-    Works on an explicit stack of texts and of (formula, least strength that needs no brackets).
-    """
+
+def write(formula: Formula, notation: Notation) -> str:
+    """The formula in a notation, with only the brackets that it needs; works on an explicit stack."""
     pieces: list[str] = []
-    stack: list[str | tuple[Formula, int]] = [(formula, 0)]
+    stack: list[_Item] = [(formula, 0)]
     while stack:
         item = stack.pop()
         if isinstance(item, str):
             pieces.append(item)
             continue
         node, least = item
-        if _needs_brackets(node, least):
-            pieces.append("(")
-            stack += [")", (node, 0)]
+        bound = _bound(node)
+        if bound is not None:
+            prefix = notation.within if bound.op == "F" else notation.during
+            _push_operand(stack, prefix.format(last=bound.steps, count=bound.steps + 1), bound.body, notation)
+        elif _needs_brackets(node, least):
+            stack += [")", (node, 0), "("]
         elif node.op == "atom":
             pieces.append(node.name)
         elif node.op in notation.constants:
             pieces.append(notation.constants[node.op])
         elif len(node.args) == 1:
-            prefix = notation.prefix[node.op]
-            bracket = _needs_brackets(node.args[0], _OPERAND) and not notation.space_before_bracket
-            pieces.append(prefix.rstrip() if bracket else prefix)
-            stack.append((node.args[0], _OPERAND))
+            _push_operand(stack, notation.prefix[node.op], node.args[0], notation)
         else:
             _push_infix(stack, node, notation)
     return "".join(pieces)
 
 
-def _push_infix(stack: list[str | tuple[Formula, int]], node: Formula, notation: Notation) -> None:
+def _bound(node: Formula) -> Bounded | None:
+    """The bounded operator that a node expands, where it is long enough to be written so."""
+    found = bounded(node) if node.op in ("or", "and") else None
+    return found if found is not None and found.steps >= LEAST else None
+
+
+def _push_operand(stack: list[_Item], prefix: str, operand: Formula, notation: Notation) -> None:
+    bracket = _needs_brackets(operand, _OPERAND) and not notation.space_before_bracket
+    stack += [(operand, _OPERAND), prefix.rstrip() if bracket else prefix]
+
+
+def _push_infix(stack: list[_Item], node: Formula, notation: Notation) -> None:
     """Push the operands of an infix operator, the last one first, with its symbol between them."""
     strength, inner = _STRENGTH[node.op], _OPERAND if notation.brackets_between_infix else 0
+    operands = with_bounds(node) if node.op in ("or", "and") else node.args
     # All infix operators but <-> group to the right, and operands of & and | are never of the same operator.
     last = strength + 1 if node.op == "iff" else strength
-    for index in range(len(node.args) - 1, -1, -1):
-        is_last = index == len(node.args) - 1
-        stack.append((node.args[index], max(inner, last if is_last else strength + 1)))
+    for index in range(len(operands) - 1, -1, -1):
+        is_last = index == len(operands) - 1
+        stack.append((operands[index], max(inner, last if is_last else strength + 1)))
         if index:
             stack.append(notation.infix[node.op])
 
@@ -90,4 +110,6 @@ def _needs_brackets(node: Formula, least: int) -> bool:
     """Whether a node needs brackets where its operator must bind at least as tightly as ``least``."""
     if node.op == "atom" and least and ("<" in node.name or ">" in node.name):
         return True  # a comparison: the grammar reads F a > 0 as F(a > 0), a person might not
-    return _STRENGTH[node.op] < least
+    if _STRENGTH[node.op] >= least:
+        return False
+    return _bound(node) is None

@@ -16,6 +16,8 @@ _UNICODE: Final = Notation(
     {"and": " ∧ ", "or": " ∨ ", "implies": " ⇒ ", "iff": " ⇔ ", **LETTERS, "U": " 𝒰 "},
     {"true": "⊤", "false": "⊥"},
     space_before_bracket=False,
+    within="◇[0,{last}] ",
+    during="□[0,{last}] ",
 )
 _WORDS: Final = Notation(
     {"not": "not ", "X": "next ", "N": "weak_next ", "F": "eventually ", "G": "always "},
@@ -31,6 +33,8 @@ _WORDS: Final = Notation(
     },
     {"true": "true", "false": "false"},
     space_before_bracket=True,
+    within="eventually within {last} steps ",
+    during="always for {count} steps ",
 )
 
 
