@@ -53,9 +53,9 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
 
 def reading_error(name: str, error: OSError | ValueError) -> TltlError:
     """TLT0001 for a file that the system does not give us."""
-    way_out = None
+    way_out: str | None = "check its name and its permissions"
     if isinstance(error, FileNotFoundError):
-        way_out = _neighbour(name)
+        way_out = _neighbour(name) or "check its spelling, and the folder that you are in"
     elif isinstance(error, IsADirectoryError):
         way_out = "name a file in it"
     return TltlError([Diagnostic("TLT0001", f"cannot read `{name}`: {reason(error)}", help=way_out)])

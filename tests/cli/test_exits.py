@@ -29,6 +29,15 @@ def test_errors_are_1(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-d
         assert tltlc("check", name).status == 1, name
 
 
+@pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="needs a file that opens and cannot be read")
+def test_a_file_that_only_an_import_names_is_never_3(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("lib.tltl").symlink_to("/proc/self/mem")
+    Path("import.tltl").write_text("import lib\n" + HIDE)
+    found = tltlc("check", "import.tltl")
+    assert (found.status, found.err.splitlines()[0][:37]) == (1, "error[TLT0010]: cannot read `lib.tltl")
+    assert "imported here" in found.err
+
+
 def test_every_file_is_checked(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     found = tltlc("check", "missing.tltl", "hide.tltl")
     assert found.status == 3
@@ -68,7 +77,11 @@ def test_wrong_usage_is_2(arguments: tuple[str, ...], tltlc, inside: Path) -> No
         ("check", "."),
         ("check", "nul\0byte.tltl"),
         ("check", "n" * 300 + ".tltl"),
+        ("check", "n" * 5000 + "/a.tltl"),
         ("check", "--library", "nowhere", "hide.tltl"),
+        ("check", "--library", "n" * 5000, "hide.tltl"),
+        ("test", "n" * 5000),
+        ("new", "n" * 5000),
         ("compile", "hide.tltl", "-t", "json", "-o", "hide.tltl"),
         ("compile", "hide.tltl", "-t", "json", "-o", "hide.tltl/deeper"),
         ("render", "hide.tltl", "-o", "nowhere/hide.svg"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from pathlib import Path
 
 import jsonschema
@@ -69,6 +70,14 @@ def test_long_lines_are_cut_around_the_place() -> None:
         assert max(map(len, shown)) < 180
         caret = shown[3].index("^")
         assert shown[2][caret] == "@"
+
+
+def test_a_line_of_a_megabyte_is_not_looked_at_as_a_whole() -> None:
+    source = SourceFile("a.tltl", "a\t" * 500_000 + "\x01")
+    found = [Diagnostic("TLT0101", "a title", (Label(source, Span(i, i + 1)),)) for i in range(0, 1_000_000, 5_000)]
+    start = time.process_time()
+    assert len(render(found).splitlines()) == 5 * len(found) - 1
+    assert time.process_time() - start < 1
 
 
 def test_several_places() -> None:

@@ -45,6 +45,9 @@ def test_message(
     assert CODE.match(case.name)[0] in found  # type: ignore[index]
     assert exit_.value.code in (0, 1, 2, 3, 4)
     assert "Traceback" not in found
+    # Every message says a way out: as a help, or behind the caret.
+    messages = re.split(r"^(?=(?:error|warning|note)\[)", found, flags=re.MULTILINE)[1:]
+    assert all(re.search(r"  help: |\^ .*(did you mean|write|divide)", message) for message in messages)
     # The names of the grammar's terminals are no words of the language.
     assert not re.search(r"\b(LPAR|RPAR|LSQB|LBRACE|NAME_|COLON|AT_MOST|WEAK_NEXT)\b|\$END|__", found)
 

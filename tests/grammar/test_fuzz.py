@@ -100,10 +100,10 @@ BIG = MAX_CHARACTERS // 8
     ids=lambda text: repr(text[:12]),
 )
 def test_large_texts_end_within_seconds(text: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     _, diagnostics = parse(SourceFile("a", text))
     render(diagnostics)
-    assert time.perf_counter() - start < 5
+    assert time.process_time() - start < 5
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isclose
 
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.resolve.helpers import codes, formula, only, value
@@ -13,9 +13,11 @@ from tests.resolve.helpers import codes, formula, only, value
 NUMBERS = st.integers(-50, 50)
 
 
-@given(low=NUMBERS, high=NUMBERS, c=NUMBERS, x=st.floats(0, 1), op=st.sampled_from("<>"))
-def test_scaled_to_one_at_the_ends_and_zero_at_the_threshold(low: int, high: int, c: int, x: float, op: str) -> None:
-    assume(low <= c < high if op == ">" else low < c <= high)
+@given(c=NUMBERS, holding=st.integers(1, 50), failing=st.integers(0, 50), x=st.floats(0, 1), op=st.sampled_from("<>"))
+def test_scaled_to_one_at_the_ends_and_zero_at_the_threshold(
+    c: int, holding: int, failing: int, x: float, op: str
+) -> None:
+    low, high = (c - failing, c + holding) if op == ">" else (c - holding, c + failing)
     spec = only(f"signal x in [{low}, {high}] spec s = F x {op} {c}")
     name = f"x {op} {c}"
     assert [atom.name for atom in spec.atoms] == [name]

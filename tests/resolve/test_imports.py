@@ -121,3 +121,12 @@ def test_tests_and_specs_of_an_import_stay_there(tmp_path: Path) -> None:
     program = good("import lib spec here = F a", str(tmp_path / "main.tltl"))
     assert [spec.name for spec in program.specs] == ["here"]
     assert program.tests == ()
+
+
+def test_a_prefix_is_proposed_that_can_be_written(tmp_path: Path) -> None:
+    write(tmp_path, orbit="signal a: bool let goal = F a")
+    clash = "signal b: bool let goal = G b"
+    for target, proposed in ((' "./orbit.tltl"', 'import "./orbit.tltl" as lib'), (" orbit", "import orbit as lib")):
+        (error,) = resolved(f"import{target} {clash}", str(tmp_path / "main.tltl"))[1]
+        assert proposed in (error.help or "")
+        assert _in(tmp_path, f"{proposed} {clash} spec s = goal & lib.goal") == []

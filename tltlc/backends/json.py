@@ -51,7 +51,7 @@ def read(text: str, name: str) -> Fspa:
             if len(found) == MOST_PROBLEMS:
                 break
     except RecursionError:
-        raise TltlError([Diagnostic("TLT0601", f"`{name}` is nested too deeply")]) from None
+        raise TltlError([Diagnostic("TLT0601", f"`{name}` is nested too deeply", help=RECOMPILE)]) from None
     if found:
         raise TltlError(found)
     return fspa
@@ -65,12 +65,14 @@ def _document(source: SourceFile) -> dict[str, Any]:
         document = json.loads(source.text, parse_constant=_no_constant)
     except json.JSONDecodeError as error:
         where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _remark(error.msg))
-        raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,))]) from None
+        raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,), RECOMPILE)]) from None
     except _NoNumberError as error:
-        raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON: {error} is no number")]) from None
+        title = f"`{source.name}` is not JSON: {error} is no number"
+        raise TltlError([Diagnostic("TLT0601", title, help=RECOMPILE)]) from None
     except ValueError:
         # Python refuses to convert whole numbers of thousands of digits.
-        raise TltlError([Diagnostic("TLT0601", f"a number in `{source.name}` has too many digits")]) from None
+        title = f"a number in `{source.name}` has too many digits"
+        raise TltlError([Diagnostic("TLT0601", title, help=RECOMPILE)]) from None
     if not isinstance(document, dict) or document.get("format") != "fspa":
         title = f"`{source.name}` is JSON, but not an artefact"
         raise TltlError([Diagnostic("TLT0601", title, help="`tltlc compile` writes artefacts: NAME.fspa.json")])
@@ -83,7 +85,9 @@ def _document(source: SourceFile) -> dict[str, Any]:
         raise TltlError([_broken_schema(source, error)]) from None
     if document["semantics"] == "infinite" or "acceptance" in document:
         title = "automata over infinite traces cannot be read yet"
-        raise TltlError([_problem(source, "TLT0605", title, ("semantics",), way_out=None)])
+        raise TltlError(
+            [_problem(source, "TLT0605", title, ("semantics",), "compile the spec without `semantics infinite`")]
+        )
     return document
 
 

@@ -9,6 +9,7 @@ notation = "unicode"                  # of formulas in pictures: unicode, ascii 
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -42,7 +43,7 @@ def project_for(path: str) -> Project:
     folder = Path(path).absolute().parent if path != "-" else Path.cwd()
     for place in (folder, *folder.parents):
         candidate = place / FILE_NAME
-        if candidate.is_file():
+        if os.path.isfile(candidate):  # noqa: PTH113 (pathlib raises where a name is too long)
             return read_project(candidate)
     return Project()
 
@@ -68,7 +69,7 @@ def read_project(path: Path) -> Project:
         raise _wrong(source, "notation", 'one of "unicode", "ascii", "english"', notation)
     folders = tuple(path.parent / library for library in libraries)
     for library, folder in zip(libraries, folders, strict=True):
-        if not folder.is_dir():
+        if not os.path.isdir(folder):  # noqa: PTH112
             raise _wrong(source, "libraries", "folders beside this file", library)
     return Project(folders, targets, notation)
 
@@ -101,7 +102,8 @@ def _syntax_error(source: SourceFile, message: str) -> Diagnostic:
             end_of_line = source.text.index("\n", end_of_line) + 1
         start = min(end_of_line + int(found[2]) - 1, len(source.text))
         label = Label(source, Span(start, min(start + 1, len(source.text))), label.message)
-    return Diagnostic("TLT0701", f"`{source.name}` is not TOML", (label,))
+    help_ = 'values are written as in `targets = ["json", "dot"]`'
+    return Diagnostic("TLT0701", f"`{source.name}` is not TOML", (label,), help_)
 
 
 def _known(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> None:

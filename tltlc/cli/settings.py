@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
@@ -76,8 +77,9 @@ format_option = click.option(
 def check_libraries(libraries: tuple[Path, ...]) -> None:
     """Error TLT0001 for a library folder that is none."""
     for folder in libraries:
-        if not folder.is_dir():
-            raise TltlError([Diagnostic("TLT0001", f"the library folder `{folder}` is not there")])
+        if not os.path.isdir(folder):  # noqa: PTH112 (pathlib raises where a name is too long)
+            title = f"the library folder `{folder}` is not there"
+            raise TltlError([Diagnostic("TLT0001", title, help="name a folder that is there")])
 
 
 def _params(written: tuple[str, ...]) -> dict[str, str]:

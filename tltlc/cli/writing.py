@@ -19,7 +19,7 @@ def write_files(folder: Path, files: Mapping[str, str | bytes]) -> tuple[Path, .
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise _error(folder, error) from None
     return _write({folder / name: content for name, content in files.items()})
 
@@ -52,7 +52,7 @@ def _write(files: Mapping[Path, str | bytes]) -> tuple[Path, ...]:
             temporary, shown = waiting[0]
             temporary.replace(shown)
             waiting.pop(0)
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise _error(shown, error) from None
     finally:
         for temporary, _ in waiting:
@@ -67,6 +67,6 @@ def _mode(path: Path) -> int | None:
         return None
 
 
-def _error(path: Path, error: OSError) -> TltlError:
+def _error(path: Path, error: OSError | ValueError) -> TltlError:
     title = f"cannot write `{path}`: {reason(error)}"
     return TltlError([Diagnostic("TLT0005", title, help="name another place with -o")])

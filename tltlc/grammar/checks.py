@@ -72,7 +72,7 @@ def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.Bound) -> 
 def _check_spec(source: SourceFile, spec: tree.SpecDecl) -> Iterator[Diagnostic]:
     if "." in spec.name:
         plain = spec.name.replace(".", "_")
-        yield _error(source, "TLT0113", "the name of a spec has no dots", spec.name_span, f"`{plain}`")
+        yield _error(source, "TLT0113", "the name of a spec has no dots", spec.name_span, f"write `{plain}`")
     if not any(clause.kind in _FORMULA_CLAUSES for clause in spec.clauses):
         title = f"`{spec.name}` asks for nothing"
         help_ = "add a clause: `reach`, `keep`, `avoid` or `require`"

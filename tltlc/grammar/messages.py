@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -43,14 +42,16 @@ def never_closed(source: SourceFile, opening: Token) -> Diagnostic:
     return Diagnostic("TLT0105", title, (Label(source, opening.span),), f"write the missing `{closing}`")
 
 
-@dataclass(frozen=True)
 class _Place:
     """Where reading ended, and what the rules below ask about it."""
 
-    source: SourceFile
-    tokens: Sequence[Token]
-    stop: lalr.UnexpectedTokenError
-    start: str
+    def __init__(
+        self, source: SourceFile, tokens: Sequence[Token], stop: lalr.UnexpectedTokenError, start: str
+    ) -> None:
+        self.source = source
+        self.tokens = tokens
+        self.stop = stop
+        self.start = start
 
     @property
     def found(self) -> Token:
@@ -189,10 +190,11 @@ def _unknown_keyword(place: _Place) -> Diagnostic | None:
     if token.type in _OPENING.values():
         return None
     if place.start == "declaration" and token.text in CLAUSES:
-        help_ = f"`spec NAME {{ {token.text} … }}`"
+        help_ = f"put it into one: `spec NAME {{ {token.text} … }}`"
         return place.error("TLT0107", f"`{token.text}` stands only inside a spec", help_)
     if place.start == "declaration" and token.text in TEST_ITEMS:
-        return place.error("TLT0107", f"`{token.text}` stands only inside a test", DECLARATIONS["test"])
+        help_ = f"put it into one: {DECLARATIONS['test']}"
+        return place.error("TLT0107", f"`{token.text}` stands only inside a test", help_)
     near = closest(token.text, tuple(keywords)) if token.type == "NAME" else None
     message = f"did you mean `{near}`?" if near else ""
     listed = ", ".join(f"`{word}`" for word in keywords)
@@ -248,6 +250,13 @@ def _missing_type(place: _Place) -> Diagnostic | None:
     return place.error("TLT0101", "expected a type after `:`", place.form(), span=before.span)
 
 
+def _quantified_over(place: _Place) -> Diagnostic | None:
+    """``all x in a: p``, without brackets around the entities."""
+    if place.allowed != {"LPAR"} or place.before is None or place.before.type != "IN":
+        return None
+    return place.error("TLT0101", place.expectation(), "the form is `all x in (a, b): p` or `any x in (a, b): p`")
+
+
 def _misspelt_operator(place: _Place) -> Diagnostic | None:
     """A name where an operator should stand."""
     before, token = place.before, place.found
@@ -276,5 +285,6 @@ _RULES: Final = (
     _bounds,
     _reserved,
     _missing_type,
+    _quantified_over,
     _misspelt_operator,
 )

@@ -98,7 +98,7 @@ def _readings(source: SourceFile, operand: Expr, other: Expr, last: bool) -> str
         inner = operand.left if last else operand.right
         head, tail = ("", f" {operator} {right}") if last else (f"{left} {operator} ", "")
     else:
-        return "put it in brackets"
+        inner, head, tail = operand, "", ""
     if len(whole) + len(neighbour) > _SHORT:
         return "put the operand, or the whole sequence, in brackets"
     if last:

@@ -76,7 +76,7 @@ def _unmet(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
     else:
         label = fspa.states[step.state].label
         if _squeezed(str(expect.value)) not in map(_squeezed, (label.ascii, label.unicode, label.english)):
-            return _failure(expect, f"the state is `{label.ascii}`")
+            return _failure(expect, f"the state is `{label.ascii}`", "`tltlc render` shows every state with its label")
     return None
 
 

@@ -20,7 +20,7 @@ def match(
     for position, argument in enumerate(arguments):
         name = _parameter_for(argument, position, use, binding, parameters, scope)
         if name in given:
-            raise problem("TLT0210", f"`{name}` is given twice", scope.source, argument.span)
+            raise problem("TLT0210", f"`{name}` is given twice", scope.source, argument.span, advice="leave one out")
         given[name] = argument.value
     for parameter in parameters:
         if parameter.name not in given and parameter.default is None:
@@ -51,7 +51,10 @@ def _parameter_for(
 
         close = get_close_matches(argument.name, names, n=1)
         hint = f"did you mean `{close[0]}`?" if close else ""
-        raise problem("TLT0210", f"`{binding.name}` has no `{argument.name}`", scope.source, argument.span, hint)
+        listed = ", ".join(f"`{name}`" for name in names)
+        advice = None if close else f"it takes {listed}" if names else "it takes no arguments"
+        title = f"`{binding.name}` has no `{argument.name}`"
+        raise problem("TLT0210", title, scope.source, argument.span, hint, advice=advice)
     if position >= len(names):
         count = {0: "no arguments", 1: "one argument"}.get(len(names), f"{len(names)} arguments")
         raise problem(
@@ -60,6 +63,7 @@ def _parameter_for(
             scope.source,
             argument.span,
             "one too many",
+            advice=f"write `{use.name}({', '.join(names)})`" if names else f"write `{use.name}`",
             other=(Label(binding.scope.source, binding.span, "declared here"),),
         )
     return names[position]

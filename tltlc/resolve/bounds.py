@@ -22,12 +22,11 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
     high = samples(bound.high, env)
     low = samples(bound.low, env) if bound.low is not None else 0
     if expr.op in ("X", "N"):
-        if bound.low is not None and low != high:
-            raise problem("TLT0312", "next takes one number of steps, not a range", source, bound.span)
         low = high
     elif bound.words and expr.op == "G":
         if high == 0:
-            raise problem("TLT0312", "`for` needs at least one step", source, bound.high.span)
+            advice = "write e.g. `always for 20 steps p`"
+            raise problem("TLT0312", "`for` needs at least one step", source, bound.high.span, advice=advice)
         high -= 1
     if low > high:
         advice = "write the smaller number first, e.g. `[0, 20]`"

@@ -48,7 +48,7 @@ def samples(value: Number, env: Env) -> int:
     source = env.scope.source
     if value.unit in (None, "step", "steps"):
         if value.value != value.value // 1 or not 0 <= value.value < inf:
-            raise problem("TLT0312", "expected a whole number of steps", source, value.span)
+            raise problem("TLT0312", "expected a whole number of steps", source, value.span, advice="write e.g. `20`")
         return int(value.value)
     found = units.in_si(value.value, value.unit)
     if found is None or found[1] != units.TYPES["time"]:

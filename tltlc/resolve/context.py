@@ -15,7 +15,7 @@ from tltlc.source import SourceFile, Span
 LARGEST_EXPANSION = 100_000
 """Nodes of a formula, written out as a tree, that bounds, quantifiers and lets may expand to."""
 MOST_EXPANSIONS = 50_000
-"""Uses of lets and quantifiers that one formula may expand."""
+"""Uses of lets and quantifiers that the formulas of a program may expand."""
 
 
 @record

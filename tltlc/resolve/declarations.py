@@ -50,7 +50,7 @@ def _range(declaration: SignalDecl | ParamDecl, type_: ValueType, env: Env) -> t
     if declaration.interval is not None:
         if type_ == "bool":
             title = f"`{declaration.name}` is a bool: it has no range"
-            raise problem("TLT0303", title, env.scope.source, declaration.interval.span)
+            raise problem("TLT0303", title, env.scope.source, declaration.interval.span, advice="leave the range out")
         return interval(declaration.interval, units.TYPES[type_], env)
     return (0.0, 1.0) if type_ in ("ratio", "bool") else (None, None)
 
@@ -95,6 +95,7 @@ def _param(declaration: ParamDecl, env: Env, places: dict[str, Label], ranged: s
             scope.source,
             declaration.value.span,
             f"the range is {_range_text(low, high)}",
+            advice="choose a value inside it, or widen it",
         )
     new = Param(declaration.name, type_, value, low, high, declaration.doc)
     old = env.context.params.get(new.name)

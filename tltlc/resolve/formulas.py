@@ -49,7 +49,6 @@ _NARY: dict[str, Callable[..., Formula]] = {"and": logic.and_, "or": logic.or_}
 
 def formula(expr: Expr, env: Env) -> Formula:
     """The formula that an expression stands for; raises ResolutionError where it is none."""
-    env.context.expansions = 0
     try:
         return _run(_formula(expr, env))
     except ResolutionError:
@@ -81,7 +80,6 @@ def check_unused(binding: Binding, env: Env) -> None:
     for parameter in declaration.parameters:
         values[parameter.name] = Entity(parameter.name) if parameter.type == "entity" else Unknown(parameter.name)
     inside = Env(env.context, binding.scope, values, symbolic=bool(declaration.parameters))
-    env.context.expansions = 0
     try:
         _run(_expand(declaration, binding, inside, declaration.name_span, env))
     except ResolutionError:
@@ -234,4 +232,5 @@ def _count(what: str, span: Span, env: Env) -> None:
     env.context.expansions += 1
     if env.context.expansions > MOST_EXPANSIONS:
         env.context.broken.update(env.context.expanding)
-        raise too_large(what, env.scope.source, span)
+        first = env.context.expansions == MOST_EXPANSIONS + 1
+        raise too_large(what, env.scope.source, span) if first else ResolutionError(None)

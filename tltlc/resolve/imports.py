@@ -170,7 +170,9 @@ def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log:
     except TltlError as failure:
         here = Label(source, declaration.target_span, "imported here")
         found = failure.diagnostics[0]
-        raise ResolutionError(replace(found, labels=(*found.labels, here))) from None
+        # TLT0001 is for the files that a command names.
+        code = "TLT0010" if found.code == "TLT0001" else found.code
+        raise ResolutionError(replace(found, code=code, labels=(*found.labels, here))) from None
     module, diagnostics = parse(text)
     for diagnostic in diagnostics:
         log.add(diagnostic)

@@ -13,6 +13,14 @@ from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
 
 
+_WAYS_TO_DECLARE = {
+    "predicate": "declare it, e.g. `signal {name}: bool`, or import the library that has it",
+    "signal or param": "declare it, e.g. `signal {name} in [0, 1]`, or import the library that has it",
+    "entity": "declare it: `entity {name}`",
+}
+"""What to do where nothing of a like name is known, by the kind that was looked for."""
+
+
 def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> Binding:
     """What a name stands for in a scope; raises ResolutionError (TLT0201) with a suggestion where it is unknown.
 
@@ -27,6 +35,8 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
     hint = suggestion(use.name, env.scope, wanted, env.local)
     library = None if hint else library_with(use.name)
     advice = f"`{use.name}` is in the library {library}: add `import {library}`" if library else None
+    if not hint and not library:
+        advice = _WAYS_TO_DECLARE[what].format(name=use.name)
     raise problem("TLT0201", f"no {what} `{use.name}` here", env.scope.source, span, hint, advice=advice)
 
 
@@ -92,8 +102,10 @@ def described_kind(expr: Expr, env: Env) -> str:
 def not_a_formula(expr: Expr, env: Env) -> ResolutionError:
     """The problem of a number or an entity where a formula must stand."""
     advice = None
-    if kind_of(expr, env) == "number" and isinstance(expr, (Name, Call)):
-        advice = f"compare it, e.g. `{env.scope.source.slice(expr.span)} > 0.5`"
+    if kind_of(expr, env) == "number":
+        text = env.scope.source.slice(expr.span)
+        short = len(text) <= 40 and not isinstance(expr, tree.When)
+        advice = f"compare it, e.g. `{text} > 0.5`" if short else "compare it with a number"
     elif kind_of(expr, env) == "entity":
         advice = f"say what holds of it, e.g. `near({env.scope.source.slice(expr.span)})`"
     found = described_kind(expr, env)

@@ -35,7 +35,8 @@ def _unknown(name: str, params: Mapping[str, Param]) -> Diagnostic:
     from difflib import get_close_matches
 
     close = get_close_matches(name, list(params), n=1)
-    advice = f"did you mean `{close[0]}`?" if close else None
+    listed = ", ".join(f"`{known}`" for known in params)
+    advice = f"did you mean `{close[0]}`?" if close else f"there are: {listed}" if params else "there are none"
     return Diagnostic("TLT0308", f"there is no param `{name}` to set", (), advice)
 
 

@@ -71,7 +71,7 @@ def _group(declaration: ExclusiveDecl, env: Env) -> tuple[str, ...]:
         names[found.name] = None
     if len(names) < 2:
         title = "`exclusive` needs at least two different atoms"
-        raise problem("TLT0316", title, env.scope.source, declaration.span)
+        raise problem("TLT0316", title, env.scope.source, declaration.span, advice="name another one, or leave it out")
     return tuple(names)
 
 

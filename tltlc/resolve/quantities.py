@@ -141,9 +141,11 @@ def _named(expr: Name | Call, env: Env, depth: int) -> Quantity:
             env.scope.source,
             expr.span,
             "only numbers and their arithmetic",
+            advice=f"write a number in place of `{expr.name}`",
         )
     if expr.name == "inf" and "inf" not in env.scope.names:
-        raise problem("TLT0303", "`inf` may only stand at the end of a range", env.scope.source, expr.span)
+        title = "`inf` may only stand at the end of a range"
+        raise problem("TLT0303", title, env.scope.source, expr.span, advice="write a number")
     binding = lookup(expr, env, ("signal", "param", "predicate"), "signal or param")
     if binding.kind == "param":
         match(expr, binding, (), env.scope)
@@ -229,6 +231,7 @@ def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Q
             f"{units.described(base.dimension)} needs a constant exponent",
             env.scope.source,
             expr.right.span,
+            advice="write a number there, or divide by a quantity of the same kind before",
         )
     return _applied("^", (base, exponent), units.power(base.dimension, exponent.expression.value), expr, env)
 
@@ -241,11 +244,13 @@ def _function(expr: Call, env: Env, depth: int) -> Quantity:
     wanted = _ARGUMENTS.get(name)
     named = next((argument for argument in expr.arguments if argument.name is not None), None)
     if named is not None:
-        raise problem("TLT0210", f"`{name}` takes its arguments by position", env.scope.source, named.span)
+        title, advice = f"`{name}` takes its arguments by position", f"leave out `{named.name} =`"
+        raise problem("TLT0210", title, env.scope.source, named.span, advice=advice)
     if len(expr.arguments) != wanted if wanted else len(expr.arguments) < 2:
         count = {1: "one argument", 3: "three arguments: the value, its low and its high end"}
         text = count.get(wanted or 0, "at least two arguments")
-        raise problem("TLT0210", f"`{name}` takes {text}", env.scope.source, expr.span)
+        example = {1: "(x)", 3: "(x, 0, 1)"}.get(wanted or 0, "(x, y)")
+        raise problem("TLT0210", f"`{name}` takes {text}", env.scope.source, expr.span, advice=f"`{name}{example}`")
     args = tuple(quantity(argument.value, env, depth) for argument in expr.arguments)
     dimension = args[0].dimension
     if name in ("exp", "tanh"):
@@ -283,12 +288,13 @@ def _applied(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, e
     result = apply(op, args, dimension)
     if result is None:
         text = f"{args[0].text} {op} {args[1].text}" if op in _ARITHMETIC else f"{op}({args[0].text})"
-        raise problem("TLT0309", f"`{text}` has no value", env.scope.source, expr.span)
+        advice = "write numbers that give a finite value"
+        raise problem("TLT0309", f"`{text}` has no value", env.scope.source, expr.span, advice=advice)
     return result
 
 
 def _not_a_number(expr: Expr, env: Env) -> ResolutionError:
-    advice = None
+    advice = "arithmetic takes numbers: signals, params and predicates"
     if isinstance(expr, tree.Binary) and expr.op in _COMPARISONS:
         advice = "join two comparisons with `and`, e.g. `0.2 < health and health < 0.8`"
     title = f"expected a number, found {described_kind(expr, env)}"
@@ -296,6 +302,8 @@ def _not_a_number(expr: Expr, env: Env) -> ResolutionError:
 
 
 def _too_deep(expr: Expr, env: Env) -> ResolutionError:
+    # Reported once for all predicates on the way, or a chain of a thousand would be followed a thousand times.
+    env.context.broken.update(env.context.expanding)
     return problem(
         "TLT0317",
         f"this arithmetic is more than {DEEPEST_ARITHMETIC} operators deep",

@@ -160,7 +160,7 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
             scope.source,
             known.span,
             "declared here",
-            advice=f"rename it, or give the other one a prefix: `import {binding.via} as {_short(binding.via)}`",
+            advice=f"rename it, or give the other one a prefix: `{_prefixed(binding.via)}`",
             other=(Label(binding.scope.source, binding.span, f"and in {binding.via}"),),
         ).diagnostic
     return problem(
@@ -168,7 +168,7 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
         f"both {known.via} and {binding.via} offer `{name}`",
         scope.source,
         span,
-        advice=f"give one of them another name in front, e.g. `import {binding.via} as {_short(binding.via)}`",
+        advice=f"give one of them another name in front, e.g. `{_prefixed(binding.via)}`",
         other=(
             Label(known.scope.source, known.span, f"the one of {known.via}"),
             Label(binding.scope.source, binding.span, f"the one of {binding.via}"),
@@ -184,7 +184,10 @@ def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str,
     return problem("TLT0205", f"{library} offers no `{wanted.name}`", scope.source, wanted.span, hint).diagnostic
 
 
-def _short(library: str | None) -> str:
-    """A short name to put in front of a library's own."""
-    letters = "".join(c for c in (library or "").rsplit("/", 1)[-1] if c.isalpha())
-    return letters[:2] or "lib"
+def _prefixed(target: str | None) -> str:
+    """The import of a library or file that puts a short name in front of its own."""
+    target = target or ""
+    letters = "".join(c for c in target.rsplit("/", 1)[-1] if c.isascii() and c.isalpha())[:2].lower()
+    written = f'"{target}"' if "/" in target or target.endswith(".tltl") else target
+    # `or` is the one reserved word of two letters.
+    return f"import {written} as {letters if len(letters) == 2 and letters != 'or' else 'lib'}"

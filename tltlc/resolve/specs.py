@@ -148,7 +148,8 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
         raise problem("TLT0312", "a limit needs a unit", env.scope.source, clause.value.span, advice=advice)
     steps = samples(clause.value, env)
     if steps < 1:
-        raise problem("TLT0312", "a limit is at least one step", env.scope.source, clause.value.span)
+        title, advice = "a limit is at least one step", "write e.g. `limit 400 steps`"
+        raise problem("TLT0312", title, env.scope.source, clause.value.span, advice=advice)
     return steps
 
 

@@ -23,7 +23,10 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
 
         close = get_close_matches(name, list(specs), n=1)
         hint = f"did you mean `{close[0]}`?" if close else ""
-        context.log.add(problem("TLT0208", f"no spec `{name}` here", source, declaration.spec.span, hint).diagnostic)
+        listed = ", ".join(f"`{known}`" for known in specs)
+        advice = None if close else f"the specs are {listed}" if specs else f"declare it: `spec {name} {{ … }}`"
+        title = f"no spec `{name}` here"
+        context.log.add(problem("TLT0208", title, source, declaration.spec.span, hint, advice=advice).diagnostic)
         return None
     spec = specs[name]
     if spec is None:
@@ -49,7 +52,13 @@ def _step(item: TestStep, spec: Spec, env: Env) -> Step:
             title = f"`{name}` is no atom of the spec `{spec.name}`"
             raise problem("TLT0209", title, source, written.span, advice=f"its atoms are {known}")
         if values.setdefault(name, holds) != holds:
-            raise problem("TLT0217", f"`{name}` cannot hold and not hold in one step", source, written.span)
+            raise problem(
+                "TLT0217",
+                f"`{name}` cannot hold and not hold in one step",
+                source,
+                written.span,
+                advice="leave one out",
+            )
     return Step(item.times, frozenset(name for name, holds in values.items() if holds))
 
 
@@ -67,6 +76,7 @@ def _literal(written: Expr, env: Env) -> tuple[str, bool]:
 def _expect(item: TestExpect, env: Env) -> Expect:
     source = env.scope.source
     if item.kind == "progress" and not (isinstance(item.value, (int, float)) and 0 <= item.value <= 1):
-        raise problem("TLT0217", "progress lies in [0, 1]", source, item.span)
+        advice = "write a number from 0 to 1, or a percentage such as `50 %`"
+        raise problem("TLT0217", "progress lies in [0, 1]", source, item.span, advice=advice)
     kind = cast(Literal["verdict", "progress", "state"], item.kind)
     return Expect(kind, item.value, item.comparison, source, item.span)

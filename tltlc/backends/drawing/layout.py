@@ -61,5 +61,5 @@ def _laid_out(dot: str, picture_format: str, engine: str, limit_s: float) -> byt
         return None  # the process was ended from outside, mostly since it used up the memory or the stack
     if done.returncode or not done.stdout:
         reason = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit status {done.returncode}"]
-        raise TltlError([Diagnostic("TLT0712", f"the picture could not be drawn: {reason[-1]}")])
+        raise TltlError([Diagnostic("TLT0712", f"the picture could not be drawn: {reason[-1]}", help=WHOLE_GRAPH)])
     return done.stdout

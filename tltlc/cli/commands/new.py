@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Final
 
@@ -24,13 +25,21 @@ def command(folder: Path) -> int:
     from tltlc.cli.writing import write_files
 
     with Report() as report:
-        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        if not _is_free(folder):
             title = f"`{folder}` is there already, and not empty"
             raise TltlError([Diagnostic("TLT0722", title, help="choose another name, or remove it first")])
         for path in write_files(folder, _FILES):
             report.say(f"wrote {path}")
         report.say(f"Next: tltlc test {folder}")
     return report.status
+
+
+def _is_free(folder: Path) -> bool:
+    """Whether there is nothing of that name, or an empty folder."""
+    try:
+        return not os.path.lexists(folder) or not os.listdir(folder)  # noqa: PTH208
+    except OSError:
+        return False
 
 
 _SPEC: Final = """\

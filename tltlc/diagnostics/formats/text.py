@@ -58,9 +58,14 @@ def _place(label: Label, gutter: int, colour: str, color: bool) -> list[str]:
 
 def _window(line: str, start: int, length: int) -> tuple[str, int, int]:
     """A line as it is shown, and the columns where the caret starts and how many it takes."""
-    before, marked, after = (
-        _expand(part) for part in (line[:start], line[start : start + length], line[start + length :])
+    # No more of a part is shown than this, and a line may be a megabyte long.
+    end = start + length
+    parts = (
+        line[max(0, start - _WIDTH) : start],
+        line[start : min(end, start + _WIDTH + 1)],
+        line[end : end + _WIDTH + 1],
     )
+    before, marked, after = map(_expand, parts)
     # A tab is as wide as its place asks, so the part before it must be measured first.
     before = _expand_tabs(before, 0)
     marked = _expand_tabs(marked, columns(before))
