@@ -16,7 +16,10 @@ def holds(guard: Guard, values: Sequence[float]) -> bool:
 
 
 def robustness(guard: Guard, values: Sequence[float]) -> float:
-    """The greatest robustness of a prime implicant, in [-1, 1]."""
+    """The greatest robustness of a prime implicant, in [-1, 1].
+
+    ▲ The paper takes the guard as it is written; over all primes the value does not depend on how that is.
+    """
     return max(prime_robustness(prime, values) for prime in guard.primes)
 
 

@@ -1,0 +1,187 @@
+"""The language reference names everything that the language has, and what its tables say is so."""
+
+from __future__ import annotations
+
+import re
+from math import isclose, pi
+
+import pytest
+
+import tltlc
+from tests.docs.blocks import DOCS
+from tltlc import files
+from tltlc.automaton.build import DEFAULT_STATE_BUDGET
+from tltlc.automaton.guards import PRIME_LIMIT
+from tltlc.diagnostics.codes import codes
+from tltlc.grammar import lexer, nesting, words
+from tltlc.grammar.parser import parse_formula
+from tltlc.grammar.tables import load
+from tltlc.resolve import context, quantities, scope, units
+from tltlc.source import SourceFile
+
+PAGE = (DOCS / "language.md").read_text(encoding="utf-8")
+IN_CODE = {found.replace(r"\|", "|") for found in re.findall(r"`([^`\n]+)`", PAGE)}
+SIGNALS = "signal a: bool signal b: bool signal c: bool signal p: bool "
+
+
+def rows(heading: str) -> list[list[str]]:
+    """The cells of the first table behind a heading, without the one that names the columns."""
+    table = re.search(rf"^#+ {heading}\n.*?((?:^\|[^\n]*\|\n)+)", PAGE, re.MULTILINE | re.DOTALL)
+    assert table
+    lines = [re.split(r"(?<!\\)\|", line.strip("|")) for line in table[1].splitlines()]
+    return [[cell.strip().replace(r"\|", "|") for cell in line] for line in lines[2:]]
+
+
+def code(cell: str) -> list[str]:
+    return re.findall(r"`([^`]+)`", cell)
+
+
+def formula(text: str) -> str:
+    (fspa,) = tltlc.compile_text(f"{SIGNALS} spec s = {text}")
+    return fspa.formula.ascii
+
+
+def test_every_word_and_sign_is_there() -> None:
+    tables = load()
+    brackets = set("()[]{}:,=")
+    assert set(tables.words) | set(tables.soft) - {"x"} <= IN_CODE
+    alone = {sign for name in IN_CODE for sign in [*name.split(), *re.split(r"[\w\s(),…]+", name)]}
+    assert set(tables.signs) - brackets <= alone
+
+
+def test_the_reserved_words_are_those_of_the_grammar() -> None:
+    found = re.search(r"- \*\*Reserved\*\*(.*?)The small words(.*?) are free", PAGE, re.DOTALL)
+    assert found
+    tables = load()
+    capitals = set("FGXNUWRM")
+    assert set(code(found[1])) == set(tables.words) - set(tables.soft) - capitals | {"F G X N U W R M"}
+    assert set(code(found[2])) == set(tables.soft) | {"step 3x"}
+
+
+def test_every_type_unit_and_function_is_there() -> None:
+    assert [code(row[0]) for row in rows("Declarations")[:1]] == [["import stealth"]]
+    assert set(units.TYPES) <= IN_CODE
+    assert set(load().units) <= IN_CODE
+    for name in scope.FUNCTIONS:
+        assert any(text.startswith(f"{name}(") for text in IN_CODE), name
+
+
+def test_every_declaration_clause_and_expectation_is_there() -> None:
+    for name in (*words.DECLARATIONS, *words.CLAUSES, *words.TEST_ITEMS):
+        assert any(text.split()[0] == name for text in IN_CODE), name
+    assert set(words.VERDICTS) <= IN_CODE
+    for form in ("judge at", "semantics"):
+        for word in words.JUDGE if form == "judge at" else words.SEMANTICS:
+            assert f"{form} {word}" in IN_CODE
+
+
+@pytest.mark.parametrize("row", rows("Formulas"), ids=lambda row: row[0])
+def test_spellings(row: list[str]) -> None:
+    spellings = [spelling for cell in row[1:] for spelling in code(cell)]
+    assert spellings
+    if row[0] == "true, false":
+        words_, signs = code(row[1]), code(row[3])
+        assert [formula(text) for text in signs] == [formula(text) for text in words_] == ["true", "false"]
+        return
+    prefix = spellings[0] in ("not", "eventually", "always", "next", "weak_next")
+    assert len({formula(f"{spelling} a" if prefix else f"a {spelling} b") for spelling in spellings}) == 1
+    known = {word: kind for table in (load().words, load().signs) for word, kind in table.items()}
+    assert set(spellings) == {word for word, kind in known.items() if kind == known[spellings[0]]}
+
+
+@pytest.mark.parametrize(
+    "short, long",
+    [
+        ("a U b U c", "a U (b U c)"),
+        ("a -> b -> c", "a -> (b -> c)"),
+        ("a then b then c", "a then (b then c)"),
+        ("F a & b", "(F a) & b"),
+        ("!a U b", "(!a) U b"),
+        ("a U b & c", "(a U b) & c"),
+        ("a & b | c", "(a & b) | c"),
+        ("a | b -> c", "(a | b) -> c"),
+        ("a -> b <-> c", "(a -> b) <-> c"),
+        ("a then b", "F(a & X F b)"),
+    ],
+)
+def test_order_of_operators(short: str, long: str) -> None:
+    assert formula(short) == formula(long)
+
+
+@pytest.mark.parametrize("clause, meaning", rows("Specifications"), ids=lambda text: text)
+def test_clauses(clause: str, meaning: str) -> None:
+    (fspa,) = tltlc.compile_text(f"{SIGNALS} spec s {{ {clause.strip('`')} }}")
+    assert fspa.formula.ascii == formula(meaning.strip("`"))
+
+
+@pytest.mark.parametrize("row", rows("Bounds"), ids=lambda row: "".join(row[:2]))
+def test_bounds(row: list[str]) -> None:
+    written = [text for cell in row for text in code(cell)]
+    same = {formula(text) for text in written}
+    expanded = {
+        "F[2,3] p": "X X(p | X p)",
+        "G[1,2] p": "N(p & N p)",
+        "F[0,3] p": "p | X(p | X(p | X p))",
+        "G[0,2] p": "p & N(p & N p)",
+    }
+    same |= {formula(expanded[text]) for text in written if text in expanded}
+    assert len(same) == 1
+    assert len(written) + sum(text in expanded for text in written) >= 2
+
+
+def test_units() -> None:
+    text = PAGE[PAGE.index("| unit | is | unit | is |") :].split("\n\n")[0]
+    cells = [cell.strip() for line in text.splitlines()[2:] for cell in line.strip("|").split("|")]
+    said = {unit: cell for names, cell in zip(cells[::2], cells[1::2], strict=True) for unit in code(names)}
+    assert set(said) == set(load().units)
+    values = {"metre": 1, "second": 1, "radian": 1, "1 per second": 1, "π/180 rad": pi / 180}
+    for unit, meaning in said.items():
+        found = units.in_si(1.0, unit)
+        if found is None:
+            assert unit in ("step", "steps")
+        else:
+            assert isclose(found[0], values.get(meaning) or float(meaning.split()[0])), unit
+
+
+def test_limits() -> None:
+    said = {
+        row[0]: [float(number.replace(",", "")) for number in re.findall(r"[\d,]*\d", row[1])] for row in rows("Limits")
+    }
+    assert list(said.values()) == [
+        [files.MAX_SOURCE_BYTES / 2**20, lexer.MAX_TOKENS],
+        [nesting.MAX_BRACKETS],
+        [nesting.MAX_DEPTH],
+        [quantities.DEEPEST_ARITHMETIC],
+        [context.LARGEST_EXPANSION],
+        [context.MOST_EXPANSIONS],
+        [DEFAULT_STATE_BUDGET],
+        [PRIME_LIMIT],
+    ]
+    assert {row[2] for row in rows("Limits")} <= set(codes())
+
+
+def test_names_of_atoms() -> None:
+    text = """import stealth  entity s1  signal coins in [0, 50]
+    spec s = F near(s1) & F near(s1, 1 m) & F near(s1, close = 100 cm) & F near(s1, close = 3 m)
+             & F coins >= 30 & F 10 < coins"""
+    (fspa,) = tltlc.compile_text(text)
+    names = [atom.name for atom in fspa.atoms]
+    assert names == ["near(s1)", "near(s1, close=3)", "coins < 30", "coins > 10"]
+    assert set(names) <= IN_CODE
+
+
+def test_what_is_said_of_exclusive() -> None:
+    text = next(block for block in re.findall(r"```tltl\n(.*?)```", PAGE, re.DOTALL) if "two_levers" in block)
+    two, one = tltlc.compile_text(text)
+    assert (len(two.states), len(two.atoms), two.exclusive, two.spec_size) == (4, 3, ((0, 1, 2),), 2)
+    assert (len(one.states), [atom.name for atom in one.atoms], one.exclusive) == (2, ["pulled(red)"], ())
+    (without,) = tltlc.compile_text("signal a: bool signal b: bool spec s = F a & F b")
+    assert without.spec_size == 1
+
+
+def test_the_sign_of_a_power() -> None:
+    bare, _ = parse_formula(SourceFile("t", "-x^2 > 0"))
+    assert bare is not None
+    (fspa,) = tltlc.compile_text("signal x in [0, 3] spec s = F -x^2 < -1")
+    assert fspa.atoms[0].name == "-x^2 < -1"
+    assert tltlc.compile_text("signal x in [0, 3] spec s = F -(x^2) < -1")[0].atoms == fspa.atoms

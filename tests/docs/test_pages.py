@@ -1,0 +1,125 @@
+"""The pages speak of files, tests, fields and columns that are there, and of all of them."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tltlc
+from tests.docs.blocks import DOCS, ROOT
+from tltlc.backends import emit
+from tltlc.cli import exits
+from tltlc.monitor import Step
+from tltlc.monitor.run import header
+
+PAGES = sorted([*DOCS.rglob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"])
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+TEST_FILE = re.compile(r"`(tests/[\w/]+\.py)`(?:\s*\(((?:`test_\w+`,?\s*)+)\))?")
+
+
+def anchors(page: Path) -> set[str]:
+    heads = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\s-]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for link in LINK.findall(page.read_text(encoding="utf-8")):
+        if link.startswith("https://"):
+            continue
+        target, _, anchor = link.partition("#")
+        path = (page.parent / target).resolve() if target else page
+        assert path.exists(), link
+        if anchor:
+            assert anchor in anchors(path), link
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_tests_they_name_are_there(page: Path) -> None:
+    for file, names in TEST_FILE.findall(page.read_text(encoding="utf-8")):
+        source = (ROOT / file).read_text(encoding="utf-8")
+        for name in re.findall(r"`(\w+)`", names):
+            assert f"\ndef {name}(" in source, f"{file}: {name}"
+
+
+@pytest.mark.parametrize(
+    "said, file, remark",
+    [
+        ("Truth decides", "reward.py", "by truth"),
+        ("The paper evaluates the formula as it is written", "guards.py", "as it is written"),
+        ("r is capped at 0", "reward.py", "capped at 0"),
+        ("Where S is 0", "tables.py", "the paper divides"),
+        ("A trap has none", "reward.py", "a trap has no progress"),
+        ("Judging at the limit", "reward.py", "judged at its limit"),
+        ("notices the end one step later", "reward.py", "not one step later"),
+        ("It is the signed distance", "reward_modes/sparse.py", "robustness of the formula"),
+        ("Edges into a trap", "reward_modes/edge.py", "left out"),
+    ],
+)
+def test_a_deviation_from_the_paper_is_marked_here_and_in_the_code(said: str, file: str, remark: str) -> None:
+    page = (DOCS / "semantics.md").read_text(encoding="utf-8")
+    assert re.search(rf"▲[^▲]*{re.escape(said)}", page)
+    code = (ROOT / "tltlc" / "monitor" / file).read_text(encoding="utf-8")
+    assert re.search(rf"▲[^▲\n]*{re.escape(remark)}", code)
+
+
+def test_no_other_code_deviates() -> None:
+    marked = {path.name for path in (ROOT / "tltlc").rglob("*.py") if "▲" in path.read_text(encoding="utf-8")}
+    assert marked == {"reward.py", "guards.py", "tables.py", "sparse.py", "edge.py"}
+
+
+ARTEFACT = (DOCS / "artefact.md").read_text(encoding="utf-8")
+SPEC = """import stealth
+clock 20 Hz
+entity s1, s2
+exclusive near(s1), near(s2)
+/// Doc.
+spec s { level one limit 10 s tag quick reach near(s1) then near(s2) keep alive }
+"""
+
+
+def keys(value: Any) -> Iterator[str]:
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield key
+            yield from keys(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from keys(inner)
+
+
+def test_every_field_of_the_artefact_is_there() -> None:
+    schema = json.loads((ROOT / "tltlc/backends/artefact/fspa.schema.json").read_text())
+    expression = schema["definitions"]["expression"]["properties"]
+    operators = {*expression["op"]["enum"], *schema["definitions"]["condition"]["properties"]["op"]["enum"]}
+    (fspa,) = tltlc.compile_text(SPEC)
+    (text,) = emit("json", fspa).values()
+    fields = {*keys(json.loads(text)), *schema["properties"], *schema["properties"]["spec"]["properties"]}
+    said = set(re.findall(r"[\w+*/^<>=-]+", " ".join(re.findall(r"`([^`]+)`", ARTEFACT))))
+    said |= {part for name in said for part in name.split(".")}
+    assert fields | operators <= said
+
+
+def test_the_fields_of_a_step_are_those() -> None:
+    table = ARTEFACT[ARTEFACT.index("| field of `Step` |") :].split("\n\n")[0]
+    assert re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE) == list(Step._fields)
+
+
+def test_the_columns_are_those() -> None:
+    (fspa,) = tltlc.compile_text(SPEC)
+    assert f"\n    {','.join(header(fspa)[:5])}\n" in ARTEFACT
+    (generated,) = emit("python", fspa).values()
+    found = re.search(r'print\("(step,[\w,]+)"\)', str(generated))
+    assert found
+    assert f"\n    {found[1]}\n" in ARTEFACT
+
+
+def test_the_exit_statuses_are_those() -> None:
+    said = re.findall(r"^\| ([\d, ]+) \|", ARTEFACT[ARTEFACT.index("## Exit statuses") :], re.MULTILINE)
+    used = {value for name, value in vars(exits).items() if name.isupper() and isinstance(value, int)}
+    assert {int(number) for cell in said for number in cell.split(",")} == used

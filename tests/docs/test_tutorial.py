@@ -1,0 +1,92 @@
+"""The tutorial is run from its first line to its last: what it prints is what the tool prints."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import DOCS, ROOT, blocks
+
+PAGE = DOCS / "tutorial.md"
+ANYTHING = "…"
+_PART = re.compile(
+    r"^```console\n(?P<session>.*?)^```$|^<!-- in (?P<file>\S+): (?P<edit>.*?) -->$", re.DOTALL | re.MULTILINE
+)
+_COMMAND = re.compile(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", re.MULTILINE)
+
+
+class Shell:
+    """A folder and a last status, and the commands of this checkout."""
+
+    def __init__(self, folder: Path) -> None:
+        programs = folder / "bin"
+        programs.mkdir()
+        for name, arguments in (("tltlc", " -m tltlc"), ("python", "")):
+            (programs / name).write_text(f'#!/bin/sh\nexec "{sys.executable}"{arguments} "$@"\n')
+            (programs / name).chmod(0o755)
+        self._environment = {
+            **os.environ,
+            "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
+            "PYTHONPATH": str(ROOT),
+            "TLTLC_CACHE_DIR": "",
+        }
+        self.folder = folder
+        self._status = 0
+
+    def run(self, command: str) -> str:
+        """Everything that the command prints, standard output first."""
+        if command.startswith("cd "):
+            self.folder /= command[3:]
+            return ""
+        if command == "echo $?":
+            return f"{self._status}\n"
+        done = subprocess.run(
+            ["/bin/sh", "-c", command],
+            cwd=self.folder,
+            env=self._environment,
+            capture_output=True,
+            encoding="utf-8",
+            timeout=60,
+            check=False,
+        )
+        self._status = done.returncode
+        return done.stdout + done.stderr
+
+
+def matches(printed: str, shown: str) -> bool:
+    """Whether the two are the same, where a line `…` stands for any number of lines."""
+    parts = [re.escape(part) for part in re.split(rf"^ *{ANYTHING}\n", shown, flags=re.MULTILINE)]
+    return re.fullmatch(r"(?:.*\n)*".join(parts), printed) is not None
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the tutorial speaks to a POSIX shell")
+def test_it_runs(tmp_path: Path) -> None:
+    shell = Shell(tmp_path)
+    text = PAGE.read_text(encoding="utf-8")
+    commands = 0
+    for part in _PART.finditer(text):
+        if part["file"]:
+            path = shell.folder / part["file"]
+            before, after = part["edit"].split(" => ")
+            source = path.read_text(encoding="utf-8")
+            assert before in source, part[0]
+            path.write_text(source.replace(before, after, 1), encoding="utf-8")
+            continue
+        for command, shown in _COMMAND.findall(part["session"]):
+            printed = shell.run(command)
+            assert matches(printed, shown), f"$ {command}\n{printed}"
+            commands += 1
+    assert commands >= 12
+
+    found = blocks(PAGE)
+    spec = next(block.text for block in found if block.kind == "tltl")
+    assert (shell.folder / "first_level.tltl").read_text(encoding="utf-8") == spec
+    program, printed = next((block, after) for block, after in pairwise(found) if block.kind == "python")
+    (shell.folder / "build" / "game.py").write_text(program.text)
+    assert shell.run("python build/game.py") == printed.text
