@@ -21,7 +21,7 @@ _SIZES_JSON = _ROOT / "tests" / "corpus" / "sizes.json"
 _SIZES_TSV = _ROOT.parent / "shared" / "reference" / "ltlf_sizes.tsv"
 
 _TOKEN = re.compile(
-    r"\s*(?:(?P<op><->|->|&&?|\|\|?|!|WX(?![\w.])|[XNFGUWRM](?![\w.])|[()])"
+    r"\s*(?:(?P<op><->|->|&&?|\|\|?|!|[FG]\[0,\d+\]|WX(?![\w.])|[XNFGUWRM](?![\w.])|[()])"
     r"|(?P<constant>true|false|[01])(?![\w.])"
     r"|(?P<atom>[A-Za-z_][\w.]*(?:\([\w., -]*\))?)"
     r"|(?P<end>$))"
@@ -51,7 +51,8 @@ class Entry(NamedTuple):
 
 
 def read_formula(text: str) -> Formula:
-    """The formula in ``text``: ``! & | -> <-> X WX N F G U W R M``, ``true false 1 0``, names such as ``near(s1)``.
+    """The formula in ``text``: ``! & | -> <-> X WX N F G U W R M F[0,2] G[0,2]``, ``true false 1 0``, names
+    such as ``near(s1)``.
 
     Unary operators bind tightest, then ``U W R M``, ``&``, ``|``, ``->`` and ``<->``; what is not ``&`` or ``|``
     groups to the right.  Takes linear time and no recursion.  Raises ValueError where the text is no formula.
@@ -67,7 +68,8 @@ def read_formula(text: str) -> Formula:
         position = match.end()
         kind, token = match.lastgroup, match.group().strip()
         token = {"&&": "&", "||": "|"}.get(token, token)
-        if (kind in ("constant", "atom") or token in _UNARY or token == "(") != operand_next:
+        prefix = token in _UNARY or token.endswith("]") or token == "("
+        if (kind in ("constant", "atom") or prefix) != operand_next:
             raise ValueError(f"no formula: {token or 'the end'} is out of place before {position}")
         if kind == "constant":
             operands.append(TRUE if token in ("true", "1") else FALSE)
@@ -75,7 +77,7 @@ def read_formula(text: str) -> Formula:
         elif kind == "atom":
             operands.append(f.atom(token))
             operand_next = False
-        elif token in _UNARY or token == "(":
+        elif prefix:
             operators.append(token)
         elif token == ")" or kind == "end":
             _reduce(operands, operators, 0)
@@ -94,10 +96,12 @@ def read_formula(text: str) -> Formula:
 
 def _reduce(operands: list[Formula], operators: list[str], strength: int) -> None:
     """Apply the operators on the stack that bind tighter than ``strength``."""
-    while operators and _STRENGTH[operators[-1]] > strength:
+    while operators and _STRENGTH.get(operators[-1], _STRENGTH["!"]) > strength:
         operator = operators.pop()
         if operator in _UNARY:
             operands.append(_UNARY[operator](operands.pop()))
+        elif operator.endswith("]"):
+            operands.append(_bounded(operator[0], int(operator[4:-1]), operands.pop()))
         elif operator in _BINARY:
             right = operands.pop()
             operands.append(_BINARY[operator](operands.pop(), right))
@@ -107,6 +111,14 @@ def _reduce(operands: list[Formula], operators: list[str], strength: int) -> Non
                 operators.pop()
                 count += 1
             operands[-count:] = [_NARY[operator](*operands[-count:])]
+
+
+def _bounded(operator: str, last: int, body: Formula) -> Formula:
+    """``F[0,last] body`` or ``G[0,last] body``."""
+    result = body
+    for _ in range(last):
+        result = f.or_(body, f.next_(result)) if operator == "F" else f.and_(body, f.weak_next(result))
+    return result
 
 
 def corpus() -> Iterator[Entry]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from tests.logic.small_formulas import formulas_up_to
 from tests.logic.strategies import formulas
@@ -123,6 +124,37 @@ def parsed(text: str) -> Formula:
     return _from_tree(expr, source)
 
 
+def bounded_formula(op: str, last: int, body: Formula) -> Formula:
+    """``F[0,last] body`` or ``G[0,last] body``, expanded as the language does."""
+    result = body
+    for _ in range(last):
+        result = f.or_(body, f.next_(result)) if op == "F" else f.and_(body, f.weak_next(result))
+    return result
+
+
+@given(st.sampled_from("FG"), st.integers(2, 6), formulas(max_leaves=4), formulas(max_leaves=4))
+def test_bounds_are_written_as_bounds_and_read_back(op: str, last: int, body: Formula, other: Formula) -> None:
+    formula = bounded_formula(op, last, body)
+    for whole in (formula, f.not_(formula), f.and_(other, formula), f.or_(formula, other), f.until(other, formula)):
+        for write in (ascii_text, unicode_text, words_text):
+            assert parsed(write(whole)) is whole
+
+
+@pytest.mark.parametrize(
+    ("formula", "text"),
+    [
+        (bounded_formula("F", 20, f.atom("a")), "F[0,20] a"),
+        (bounded_formula("G", 2, f.or_(f.atom("a"), f.atom("b"))), "G[0,2](a | b)"),
+        (bounded_formula("F", 1, f.atom("a")), "a | X a"),
+        (f.next_(bounded_formula("F", 3, f.or_(f.atom("a"), f.atom("b")))), "X F[0,3](a | b)"),
+        (f.and_(f.atom("b"), bounded_formula("G", 2, f.atom("a")), f.atom("c")), "b & G[0,2] a & c"),
+        (f.or_(f.atom("b"), bounded_formula("F", 2, f.or_(f.atom("a"), f.atom("c")))), "b | F[0,2](a | c)"),
+    ],
+)
+def test_bounds(formula: Formula, text: str) -> None:
+    assert ascii_text(formula) == text
+
+
 _UNARY = {"not": f.not_, "X": f.next_, "N": f.weak_next, "F": f.eventually, "G": f.always}
 _BINARY: dict[str, Callable[[Formula, Formula], Formula]] = {
     "and": f.and_,
@@ -142,6 +174,9 @@ def _from_tree(expr: tree.Expr, source: SourceFile) -> Formula:
             return _from_tree(expr.inner, source)
         case tree.Constant():
             return TRUE if expr.value else FALSE
+        case tree.Unary() if expr.bound is not None:
+            last = int(expr.bound.high.value) - (expr.op == "G" and expr.bound.words)
+            return bounded_formula(expr.op, last, _from_tree(expr.operand, source))
         case tree.Unary() if expr.op in _UNARY:
             return _UNARY[expr.op](_from_tree(expr.operand, source))
         case tree.Binary() if expr.op in _BINARY:
