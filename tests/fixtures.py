@@ -18,9 +18,7 @@ def cover_and_hide() -> Fspa:
         f"◇({a} ∧ ○◇({b} ∧ ○◇{c})) ∧ □{p}",
         f"Eventually {a}, then {b}, then {c}; and always {p}.",
     )
-    second = Text(
-        f"F ({b} & X F {c}) & G {p}", f"◇({b} ∧ ○◇{c}) ∧ □{p}", f"Eventually {b}, then {c}; and always {p}."
-    )
+    second = Text(f"F ({b} & X F {c}) & G {p}", f"◇({b} ∧ ○◇{c}) ∧ □{p}", f"Eventually {b}, then {c}; and always {p}.")
     third = Text(f"F {c} & G {p}", f"◇{c} ∧ □{p}", f"Eventually {c}; and always {p}.")
     goal = Text(f"G {p}", f"□{p}", f"Always {p}.")
     trap = Text("false", "⊥", "Never.")

@@ -18,9 +18,7 @@ from tltlc.source import Span
 def with_parts(*formulas: Formula) -> Spec:
     """A spec whose parts span one character each of its source."""
     spec = spec_from_formula(and_(*formulas))
-    return replace(
-        spec, parts=tuple(Part(formula, spec.source, Span(i, i + 1)) for i, formula in enumerate(formulas))
-    )
+    return replace(spec, parts=tuple(Part(formula, spec.source, Span(i, i + 1)) for i, formula in enumerate(formulas)))
 
 
 def error(spec: Spec, budget: int) -> TltlError:
