@@ -10,9 +10,8 @@ from typing import Any, TypeVar
 import click
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diagnostics.render import FORMATS
 from tltlc.record import EMPTY, record
-
-FORMATS = ("text", "json", "sarif", "github")
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
