@@ -1,0 +1,40 @@
+"""The example on the page of a code causes that code, or is in order where something else than a source causes it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import tltlc
+from tests.docs.blocks import blocks
+from tltlc.diagnostics import codes
+from tltlc.pipeline import compile_source
+from tltlc.source import SourceFile
+
+FOLDER = Path(codes.__file__).parent / "pages"
+ABBREVIATED = {"TLT0103", "TLT0317"}
+"""What causes these is too long for a page; the examples hint at it."""
+AT_RUN_TIME = {"TLT0613": "TLT0306", "TLT0616": "TLT0306"}
+"""A source that would cause these is answered before it runs, as their pages say."""
+
+FROM_A_SOURCE_TOO = {"TLT0501", "TLT0503", *AT_RUN_TIME}
+
+
+@pytest.mark.parametrize("code", sorted(set(codes.codes()) - ABBREVIATED))
+def test_the_example(code: str, inside: Path) -> None:
+    examples = [block for block in blocks(FOLDER / f"{code}.md") if block.kind == "tltl"]
+    for block in examples:
+        Path(block.file).write_text(block.text, encoding="utf-8")
+    # Where there are several, the last one uses the others.
+    for block in examples[-1:]:
+        try:
+            found = compile_source(SourceFile(block.file, block.text)).diagnostics
+        except tltlc.TltlError as error:
+            found = error.diagnostics
+        caused = AT_RUN_TIME.get(code, code)
+        from_a_source = ("TLT0010" <= code < "TLT0500" and code != "TLT0308") or code in FROM_A_SOURCE_TOO
+        assert {diagnostic.code for diagnostic in found} <= {caused}
+        assert bool(found) == from_a_source
+        assert caused == code or re.search(rf"\({caused}\)", codes.page(code))
