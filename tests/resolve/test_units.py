@@ -24,6 +24,7 @@ from tltlc.resolve.units import in_si
         (57, "%", 0.57),
         (180, "deg", pi),
         (2, "min", 120),
+        (0.5, "h", 1800),
         (7, "ms", 0.007),
         (35, "cm", 0.35),
         (20, "Hz", 20),
@@ -60,6 +61,8 @@ signal n in [0, 4]
         "v * t > d",
         "v > 3 m/s",
         "v > 3 m / 2 s",
+        "v > 20 km/h",
+        "t > 0.001 h",
         "w > 90 deg",
         "w < 1 rad",
         "sqrt(d * d) > 2 m",
@@ -104,6 +107,14 @@ def test_units_that_fit(comparison: str) -> None:
 )
 def test_units_that_do_not_fit(comparison: str) -> None:
     assert codes(f"{DECLARED} spec s = F {comparison}") == ["TLT0305"]
+
+
+def test_a_signal_takes_the_place_of_a_unit_except_in_constants() -> None:
+    text = "signal h: time in [1 s, 2 s] signal v: speed in [0 km/h, 90 km/h] spec s = F v > 10 m/h"
+    spec = only(text)
+    (v, h) = spec.signals
+    assert (v.high, h.name) == (25.0, "h")
+    assert spec.atoms[0].name == "v > 10 / h"
 
 
 def test_the_message_of_a_wrong_unit_gives_the_right_literal() -> None:

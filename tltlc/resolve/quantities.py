@@ -208,7 +208,10 @@ def _infix(expr: tree.Binary, env: Env, depth: int) -> Quantity:
 
 
 def _is_per_time(expr: tree.Binary, env: Env) -> bool:
-    """Whether this is a literal speed such as ``3 m/s``: a unit lexes as a name behind the ``/``."""
+    """Whether this is a literal speed such as ``3 m/s``: a unit lexes as a name behind the ``/``.
+
+    A signal or param of that name takes precedence, except in constants, where it could not stand.
+    """
     return (
         expr.op == "/"
         and isinstance(expr.left, Number)
@@ -216,7 +219,11 @@ def _is_per_time(expr: tree.Binary, env: Env) -> bool:
         and isinstance(expr.right, Name)
         and expr.right.name in units.time_units()
         and expr.right.name not in env.local
-        and (expr.right.name not in env.scope.names or env.scope.names[expr.right.name].kind not in ("param", "signal"))
+        and (
+            env.constant
+            or expr.right.name not in env.scope.names
+            or env.scope.names[expr.right.name].kind not in ("param", "signal")
+        )
     )
 
 

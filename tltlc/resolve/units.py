@@ -30,6 +30,7 @@ _UNITS: Final[dict[str, tuple[float, float, Dimension]]] = {
     "s": (1.0, 1.0, TYPES["time"]),
     "ms": (1.0, 1000.0, TYPES["time"]),
     "min": (60.0, 1.0, TYPES["time"]),
+    "h": (3600.0, 1.0, TYPES["time"]),
     "rad": (1.0, 1.0, TYPES["angle"]),
     "deg": (pi, 180.0, TYPES["angle"]),
     "%": (1.0, 100.0, PLAIN),
