@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from hypothesis import strategies as st
 
 from tests.logic.strategies import formulas
@@ -26,10 +28,13 @@ def _several(inner: st.SearchStrategy[Expression], low: int, high: int) -> st.Se
     return st.lists(inner, min_size=low, max_size=high).map(tuple)
 
 
+_connectives: st.SearchStrategy[Literal["and", "or", "not"]] = st.sampled_from(["and", "or", "not"])
+
+
 @st.composite
 def _conditions(draw: st.DrawFn, inner: st.SearchStrategy[Expression], depth: int = 2) -> Condition:
     if depth and draw(st.integers(0, 2)) == 0:
-        op = draw(st.sampled_from(["and", "or", "not"]))
+        op = draw(_connectives)
         count = 1 if op == "not" else draw(st.integers(2, 3))
         return Condition(op, tuple(draw(_conditions(inner, depth - 1)) for _ in range(count)))
     return Condition(draw(st.sampled_from(["<", "<=", ">", ">="])), (draw(inner), draw(inner)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
 from typing import Literal
 
 import pytest
@@ -28,7 +29,7 @@ def automaton(formula: f.Formula, limit: int | None, judge: Literal["goal", "lim
     return replace(fspa, limit_steps=limit, judge=judge or fspa.judge)
 
 
-def episode(monitor: Monitor, trace: list[tuple[float, ...]]) -> list[Step]:
+def episode(monitor: Monitor, trace: Sequence[tuple[float, ...]]) -> list[Step]:
     """The steps up to the end of the episode."""
     steps: list[Step] = []
     for values in trace:

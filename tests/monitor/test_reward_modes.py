@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 
 import pytest
@@ -19,7 +20,7 @@ A, B, P = f.atom("a"), f.atom("b"), f.atom("p")
 SPARSE, EDGE = RewardOptions(mode="sparse"), RewardOptions(mode="edge")
 
 
-def last_reward(formula: f.Formula, trace: list[tuple[float, ...]]) -> float:
+def last_reward(formula: f.Formula, trace: Sequence[tuple[float, ...]]) -> float:
     """The reward of the mode `sparse` at the end of an episode as long as the trace."""
     fspa = replace(build(spec_from_formula(formula)), limit_steps=len(trace), judge="limit")
     monitor = Monitor(fspa, reward=SPARSE)
