@@ -6,6 +6,7 @@ frozen, know nothing of the surface language and hold no units: every number is 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Literal, Union
 
 from tltlc.record import record
@@ -60,3 +61,17 @@ class When:
 
 
 Expression = Union[Const, Signal, Param, Op, When]
+
+
+def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition]:
+    """Every node, in order of appearance, each before its parts; takes no recursion."""
+    stack: list[Expression | Condition] = [expression]
+    while stack:
+        node = stack.pop()
+        yield node
+        if isinstance(node, (Op, Condition)):
+            stack.extend(reversed(node.args))
+        elif isinstance(node, When):
+            stack.append(node.otherwise)
+            for condition, value in reversed(node.cases):
+                stack += (value, condition)

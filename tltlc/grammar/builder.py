@@ -41,6 +41,9 @@ OPERATORS = {
 }
 """The canonical spelling of each operator's terminal."""
 
+MOST_REPETITIONS = 100_000
+"""How often a step of a test may be repeated."""
+
 
 class Builder:
     """Makes the nodes of one file; what it cannot make sense of goes to ``diagnostics``.
@@ -153,9 +156,10 @@ class Builder:
         count = 1
         if times is not None:
             count = int(times.text) if times.text.isdigit() and len(times.text) < 10 else 0
-            if count == 0:
+            if not 0 < count <= MOST_REPETITIONS:
                 title = f"a step cannot be repeated {times.text} times"
-                self._error("TLT0109", title, times.span, "write a whole number, as in `step 3x alive`")
+                advice = f"write a whole number from 1 to {MOST_REPETITIONS}, as in `step 3x alive`"
+                self._error("TLT0109", title, times.span, advice)
         return tree.TestStep(count, atoms, span)
 
     def make_expect(self, span: Span, _expect: Token, verdict: Token) -> tree.TestExpect:

@@ -55,7 +55,9 @@ def run_test(test: Test, fspa: Fspa) -> TestResult:
         values = [1.0 if atom.name in item.holds else -1.0 for atom in fspa.atoms]
         try:
             for _ in range(item.times):
-                last = monitor.step_atoms(values)
+                before, last = last, monitor.step_atoms(values)
+                if last == before:
+                    break  # the same sample again would change nothing
         except MonitorError as error:
             label = Label(test.source, test.span, "in this test")
             advice = "let each step name one of them at most"

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import re
-from math import ceil, inf
+from math import ceil, inf, isinf
 
 from tltlc.expression import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr, Group, Interval, Number
 from tltlc.record import replace
 from tltlc.resolve import units
-from tltlc.resolve.problem import problem
+from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import mismatch, quantity
 from tltlc.resolve.units import Dimension
 from tltlc.resolve.values import Env
+
+MOST_SAMPLES = 10**9
+"""The greatest number of samples that a bound or a limit may name."""
 
 
 def number(expr: Expr, dimension: Dimension, env: Env, what: str) -> float:
@@ -47,15 +50,17 @@ def samples(value: Number, env: Env) -> int:
     """
     source = env.scope.source
     if value.unit in (None, "step", "steps"):
-        if value.value != value.value // 1 or not 0 <= value.value < inf:
+        if value.value != value.value // 1 and value.value <= MOST_SAMPLES:
             raise problem("TLT0312", "expected a whole number of steps", source, value.span, advice="write e.g. `20`")
-        return int(value.value)
+        return _counted(value.value, value, env)
     found = units.in_si(value.value, value.unit)
     if found is None or found[1] != units.TYPES["time"]:
         described = units.described(found[1]) if found else f"`{value.unit}`"
         title = f"expected a number of steps or a time, found {described}"
         raise problem("TLT0312", title, source, value.span, advice="write e.g. `20 steps` or `2 s`")
     period = env.context.clock_s
+    if period is None and env.context.clock_failed:
+        raise ResolutionError(None)
     if period is None:
         raise problem(
             "TLT0313",
@@ -65,27 +70,36 @@ def samples(value: Number, env: Env) -> int:
             advice="declare how often the game is sampled, e.g. `clock 20 Hz`, or write the bound in steps",
         )
     # The tolerance keeps 0.15 s at 20 Hz at 3 samples.
-    return ceil(found[0] / period - 1e-9)
+    return _counted(found[0] / period - 1e-9, value, env)
+
+
+def _counted(steps: float, value: Number, env: Env) -> int:
+    """The number rounded up; raises ResolutionError where it is past all use."""
+    if steps > MOST_SAMPLES:
+        title = f"this is more than {MOST_SAMPLES:,} steps"
+        raise problem("TLT0312", title, env.scope.source, value.span, advice="write a smaller number")
+    return ceil(steps)
 
 
 _OVERRIDE = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([A-Za-z%/]*)\s*\Z")
 
 
 def override(text: str) -> tuple[float, Dimension | None] | None:
-    """The value of ``--param NAME=25 m`` in SI units, dimension None without a unit; None where it is no number."""
+    """The value of ``--param NAME=25 m`` in SI units, dimension None without a unit; None where it is none."""
     found = _OVERRIDE.match(text)
     if found is None:
         return None
     value, unit = float(found[1]), found[2]
     if not unit:
-        return value, None
+        return None if isinf(value) else (value, None)
     over, _, under = unit.partition("/")
     top = units.in_si(value, over)
     bottom = units.in_si(1.0, under) if under else (1.0, units.PLAIN)
     if top is None or bottom is None:
         return None
-    dimension = units.product(top[1], bottom[1], -1.0)
-    return top[0] / bottom[0], dimension
+    if isinf(top[0] / bottom[0]):
+        return None
+    return top[0] / bottom[0], units.product(top[1], bottom[1], -1.0)
 
 
 def _end(expr: Expr, dimension: Dimension, env: Env) -> float:

@@ -63,6 +63,7 @@ class Context:
         "_sizes",
         "atoms",
         "broken",
+        "clock_failed",
         "clock_s",
         "expanding",
         "expansions",
@@ -79,6 +80,7 @@ class Context:
         self.signal_infos: dict[str, SignalInfo] = {}
         self.params: dict[str, Param] = {}
         self.clock_s: float | None = None
+        self.clock_failed = False
         self.signals: dict[str, Signal] = {}
         self.atoms: dict[str, Atom] = {}
         self.instances: dict[tuple[int, Any], Instance] = {}

@@ -36,6 +36,7 @@ def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) 
                     clock = _clock(declaration, env, clock)
             except ResolutionError as failure:
                 context.log.add(failure.diagnostic)
+                context.clock_failed = context.clock_failed or isinstance(declaration, ClockDecl)
     _override(options, context)
 
 
@@ -137,6 +138,9 @@ def _clock(declaration: ClockDecl, env: Env, old: Label | None) -> Label:
         period = found[0]
     else:
         title = "a clock is a frequency or a period, above zero"
+        raise problem("TLT0314", title, source, written.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
+    if not 1e-9 <= period <= 1e9:
+        title = "a clock has between 1e-9 and 1e9 seconds from step to step"
         raise problem("TLT0314", title, source, written.span, advice="write e.g. `clock 20 Hz` or `clock 0.05 s`")
     here = Label(source, declaration.span)
     if old is not None and period != env.context.clock_s:

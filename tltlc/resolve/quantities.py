@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, isinf
 from typing import cast
 
 from tltlc.expression import Condition, ConditionOp, Const, When
@@ -121,6 +121,9 @@ def _number(expr: Number, env: Env) -> Quantity:
             advice="steps count samples: they belong to bounds such as `within 20 steps` and to `limit`",
         )
     value, dimension = found
+    if isinf(value):
+        advice = "write a number that is finite in SI units"
+        raise problem("TLT0109", "this number is too large", env.scope.source, expr.span, advice=advice)
     return constant(value, None if value == 0 and expr.unit is None else dimension)
 
 

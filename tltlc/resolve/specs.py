@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Literal, cast
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression import Condition, Expression, Op, When
+from tltlc.expression import Expression, nodes
 from tltlc.expression import Param as ParamNode
 from tltlc.expression import Signal as SignalNode
 from tltlc.grammar.tree import Binary, Clause, Expr, Name, Number, SpecDecl
@@ -159,16 +159,4 @@ def _word(clause: Clause | None) -> str | None:
 
 def _variables(expression: Expression) -> list[SignalNode | ParamNode]:
     """The signals and params of an expression, in order of appearance."""
-    found: list[SignalNode | ParamNode] = []
-    stack: list[Expression | Condition] = [expression]
-    while stack:
-        node = stack.pop()
-        if isinstance(node, (SignalNode, ParamNode)):
-            found.append(node)
-        elif isinstance(node, (Op, Condition)):
-            stack.extend(reversed(node.args))
-        elif isinstance(node, When):
-            stack.append(node.otherwise)
-            for condition, value in reversed(node.cases):
-                stack += (value, condition)
-    return found
+    return [node for node in nodes(expression) if isinstance(node, (SignalNode, ParamNode))]

@@ -8,7 +8,7 @@ from typing import Union
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.backends.artefact.guards import guard_problems
 from tltlc.backends.artefact.place import Path
-from tltlc.expression import Condition, Const, Expression, Param, Signal, When
+from tltlc.expression import Param, Signal, nodes
 from tltlc.record import record
 from tltlc.resolve import spec
 
@@ -49,25 +49,11 @@ def _names(fspa: Fspa) -> Iterator[Problem]:
                 yield Problem((kind, index, "name"), f"two {kind} are named `{item.name}`")
             known[kind].add(item.name)
     for index, atom in enumerate(fspa.atoms):
-        for node in _nodes(atom.expression):
+        for node in nodes(atom.expression):
             if isinstance(node, Signal) and node.name not in known["signals"]:
                 yield Problem(("atoms", index, "expression"), f"there is no signal `{node.name}`")
             elif isinstance(node, Param) and node.name not in known["params"]:
                 yield Problem(("atoms", index, "expression"), f"there is no param `{node.name}`")
-
-
-def _nodes(expression: Expression | Condition) -> Iterator[Expression | Condition]:
-    """Every node of an expression, without recursion."""
-    stack = [expression]
-    while stack:
-        node = stack.pop()
-        yield node
-        if isinstance(node, When):
-            for condition, value in node.cases:
-                stack += (condition, value)
-            stack.append(node.otherwise)
-        elif not isinstance(node, (Const, Signal, Param)):
-            stack.extend(node.args)
 
 
 def _values(fspa: Fspa) -> Iterator[Problem]:

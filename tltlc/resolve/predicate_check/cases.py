@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When, nodes
 from tltlc.record import record
 
 LARGEST_NUMBER_OF_CASES = 64
@@ -64,33 +65,12 @@ def whens(expression: Expression) -> Iterator[When]:
 
 def size(expression: Expression, most: int) -> int:
     """The number of nodes, counted only as far as just past ``most``."""
-    stack: list[Expression | Condition] = [expression]
-    count = 0
-    while stack and count <= most:
-        node = stack.pop()
-        count += 1
-        if isinstance(node, (Op, Condition)):
-            stack += node.args
-        elif isinstance(node, When):
-            stack += [node.otherwise, *(part for case in node.cases for part in case)]
-    return count
+    return sum(1 for _ in islice(nodes(expression), most + 1))
 
 
 def variables(expression: Expression | Condition) -> dict[Signal | Param, None]:
     """The signals and params that an expression reads, in order of appearance."""
-    found: dict[Signal | Param, None] = {}
-    stack: list[Expression | Condition] = [expression]
-    while stack:
-        node = stack.pop()
-        if isinstance(node, (Signal, Param)):
-            found[node] = None
-        elif isinstance(node, (Op, Condition)):
-            stack.extend(reversed(node.args))
-        elif isinstance(node, When):
-            stack.append(node.otherwise)
-            for condition, value in reversed(node.cases):
-                stack += (value, condition)
-    return found
+    return dict.fromkeys(node for node in nodes(expression) if isinstance(node, (Signal, Param)))
 
 
 def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iterator[Case]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import islice, permutations, product
 from math import inf, isfinite, prod
 
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression import Const, Expression, Param, Signal, nodes
 from tltlc.expression_eval import evaluate
 from tltlc.record import record
 from tltlc.resolve.predicate_check.interval import Interval
@@ -106,17 +106,8 @@ def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[floa
     return tuple(dict.fromkeys(x + 0.0 for x in candidates if isfinite(x) and low <= x <= high))
 
 
-def _constants(node: Expression | Condition) -> Iterator[float]:
-    if isinstance(node, Const):
-        yield node.value
-    elif isinstance(node, (Op, Condition)):
-        for arg in node.args:
-            yield from _constants(arg)
-    elif isinstance(node, When):
-        for condition, value in node.cases:
-            yield from _constants(condition)
-            yield from _constants(value)
-        yield from _constants(node.otherwise)
+def _constants(expression: Expression) -> Iterator[float]:
+    return (node.value for node in nodes(expression) if isinstance(node, Const))
 
 
 def _fraction(number: int, position: int) -> float:
