@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa as Fspa
+    from tltlc.automaton.graph import to_networkx as to_networkx
     from tltlc.diagnostics.diagnostic import Diagnostic as Diagnostic
     from tltlc.diagnostics.diagnostic import TltlError as TltlError
     from tltlc.logic.formula import Formula as Formula
@@ -27,7 +28,17 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-__all__ = ["Diagnostic", "Formula", "Fspa", "TltlError", "__version__", "compile_file", "compile_text", "load"]
+__all__ = [
+    "Diagnostic",
+    "Formula",
+    "Fspa",
+    "TltlError",
+    "__version__",
+    "compile_file",
+    "compile_text",
+    "load",
+    "to_networkx",
+]
 
 _HOMES = {
     "Diagnostic": "tltlc.diagnostics.diagnostic",
@@ -37,6 +48,7 @@ _HOMES = {
     "compile_file": "tltlc.pipeline",
     "compile_text": "tltlc.pipeline",
     "load": "tltlc.pipeline",
+    "to_networkx": "tltlc.automaton.graph",
 }
 
 

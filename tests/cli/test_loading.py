@@ -45,7 +45,9 @@ def loaded(*arguments: str | Path, folder: Path) -> set[str]:
 )
 def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Path) -> None:
     loaded("check", EXAMPLE, folder=tmp_path)
-    assert not loaded(*arguments, folder=tmp_path) & HEAVY
+    # The target `dot` is one of the default ones, and graphviz writes it.
+    written = {"graphviz"} if arguments[0] == "compile" else set()
+    assert not loaded(*arguments, folder=tmp_path) & HEAVY - written
 
 
 def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tltlc.automaton.fspa import Edge, Fspa, State, Verdict
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import Guards, label, visible, wrapped
+
+if TYPE_CHECKING:
+    from graphviz import Digraph
 
 TARGET = Target("dot", "a graph for Graphviz", (".dot",))
 
@@ -25,14 +30,19 @@ FILLS: dict[Verdict, str] = {
 
 LABEL_WIDTH, GUARD_WIDTH = 30, 22
 
-HEAD = """\
-    graph [rankdir="LR", bgcolor="white", pad="0.2", nodesep="0.45", ranksep="0.7", tooltip=" "];
-    node [shape="box", style="rounded,filled", margin="0.04,0.04", penwidth="1.4", fontname="Helvetica,Arial,sans-serif", fontsize="13", fontcolor="#0f172a"];
-    edge [color="#64748b", arrowsize="0.75", fontname="Helvetica,Arial,sans-serif", fontsize="11", fontcolor="#334155"];
-    start [shape="point", style="filled", width="0.09", color="#475569", tooltip="start"];"""  # noqa: E501
-
-
-SKETCH = '    graph [overlap="prism", K="1.2", splines="line", outputorder="edgesfirst"];'
+FONT = "Helvetica,Arial,sans-serif"
+GRAPH = {"rankdir": "LR", "bgcolor": "white", "pad": "0.2", "nodesep": "0.45", "ranksep": "0.7", "tooltip": " "}
+SKETCH = {"overlap": "prism", "K": "1.2", "splines": "line", "outputorder": "edgesfirst"}
+NODE = {
+    "shape": "box",
+    "style": "rounded,filled",
+    "margin": "0.04,0.04",
+    "penwidth": "1.4",
+    "fontname": FONT,
+    "fontsize": "13",
+    "fontcolor": "#0f172a",
+}
+EDGE = {"color": "#64748b", "arrowsize": "0.75", "fontname": FONT, "fontsize": "11", "fontcolor": "#334155"}
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -47,22 +57,29 @@ def graph(fspa: Fspa, options: Options, guards: bool = True) -> str:
     Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting
     states are green with a double outline, traps red.
     """
+    from graphviz import Digraph
+
     texts = Guards(fspa, options.notation)
-    lines = [f"digraph {_quoted(fspa.name)} {{", HEAD, f"    label={_title(fspa)}; labelloc=t; labeljust=l;"]
-    lines += [] if guards else [SKETCH]
-    lines += [_node(state, label(state.label, options.notation), guards) for state in fspa.states]
-    lines.append("    start -> 0;")
-    lines += [_edge(fspa, edge, texts.text(edge.guard.text), guards) for edge in fspa.edges]
-    return "\n".join([*lines, "}", ""])
+    title = {"label": _title(fspa), "labelloc": "t", "labeljust": "l"}
+    drawn = Digraph(visible(fspa.name), graph_attr={**GRAPH, **title, **({} if guards else SKETCH)})
+    drawn.attr("node", **NODE)
+    drawn.attr("edge", **EDGE)
+    drawn.node("start", shape="point", style="filled", width="0.09", color="#475569", tooltip="start")
+    for state in fspa.states:
+        _draw_state(drawn, state, label(state.label, options.notation), guards)
+    drawn.edge("start", "0")
+    for edge in fspa.edges:
+        _draw_edge(drawn, fspa, edge, texts.text(edge.guard.text), guards)
+    return str(drawn.source)
 
 
 def _title(fspa: Fspa) -> str:
     name = f'<B>{_html(fspa.name)}</B><BR ALIGN="LEFT"/>'
     doc = "".join(f'{_html(line)}<BR ALIGN="LEFT"/>' for line in wrapped(fspa.doc, 100, 3)) if fspa.doc.strip() else ""
-    return f'<<FONT FACE="Helvetica,Arial,sans-serif" POINT-SIZE="13" COLOR="#0f172a">{name}{doc}</FONT>>'
+    return f'<<FONT FACE="{FONT}" POINT-SIZE="13" COLOR="#0f172a">{name}{doc}</FONT>>'
 
 
-def _node(state: State, text: str, full: bool) -> str:
+def _draw_state(drawn: Digraph, state: State, text: str, full: bool) -> None:
     line, fill = LINES[state.verdict], FILLS[state.verdict]
     distance = "∞" if state.distance is None else str(state.distance)
     body = "<BR/>".join(map(_html, wrapped(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
@@ -73,31 +90,35 @@ def _node(state: State, text: str, full: bool) -> str:
         f'<TD BGCOLOR="{line}" STYLE="ROUNDED">{mark}</TD></TR>'
         f'<TR><TD COLSPAN="12" CELLPADDING="6">{body}</TD></TR></TABLE>>'
     )
-    rings = ', peripheries="2"' if state.accepting else ""
-    tip = f"state {state.id}, {state.verdict}, distance {distance}: {text}"
-    return f'    {state.id} [label={html}, color="{line}", fillcolor="{fill}", tooltip={_quoted(tip)}{rings}];'
+    rings = {"peripheries": "2"} if state.accepting else {}
+    tip = _plain(f"state {state.id}, {state.verdict}, distance {distance}: {text}")
+    drawn.node(str(state.id), label=html, color=line, fillcolor=fill, tooltip=tip, **rings)
 
 
-def _edge(fspa: Fspa, edge: Edge, text: str, full: bool) -> str:
-    attributes = [f"tooltip={_quoted(text)}", *_manner(fspa.states[edge.source], fspa.states[edge.target])]
+def _draw_edge(drawn: Digraph, fspa: Fspa, edge: Edge, text: str, full: bool) -> None:
+    attributes = {"tooltip": _plain(text), **_manner(fspa.states[edge.source], fspa.states[edge.target])}
     if full:
         lines = "<BR/>".join(map(_html, wrapped(text, GUARD_WIDTH)))
-        attributes.append(f'label=<<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="3"><TR><TD>{lines}</TD></TR></TABLE>>')
-    return f"    {edge.source} -> {edge.target} [{', '.join(attributes)}];"
+        attributes["label"] = f'<<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="3"><TR><TD>{lines}</TD></TR></TABLE>>'
+    drawn.edge(str(edge.source), str(edge.target), **attributes)
 
 
-def _manner(source: State, target: State) -> list[str]:
+def _manner(source: State, target: State) -> dict[str, str]:
     """How an edge is drawn: progress is dark and kept straight, ways into a trap are pale red and give way."""
     if source.distance is None or source.id == target.id:
-        return []
+        return {}
     if target.distance is None:
-        return ['color="#f87171"', 'weight="0"']
-    return ['color="#0f172a"', 'penwidth="1.5"', 'weight="8"'] if target.distance < source.distance else []
+        return {"color": "#f87171", "weight": "0"}
+    return {"color": "#0f172a", "penwidth": "1.5", "weight": "8"} if target.distance < source.distance else {}
 
 
-def _quoted(text: str) -> str:
-    """A DOT string; backslashes are doubled, since an odd one would take the closing quote with it."""
-    return '"' + visible(text).replace("\\", "\\\\").replace('"', '\\"') + '"'
+def _plain(text: str) -> str:
+    """A text that means itself: no escapes, and no markup though it may look like it."""
+    from graphviz import escape
+
+    # A subclass of str says so: made a bare str again, "<b>" would be markup.
+    plain: str = escape(visible(text))
+    return plain
 
 
 def _html(text: str) -> str:

@@ -1,0 +1,26 @@
+"""The networkx view, and with it distances and verdicts against networkx's own algorithms."""
+
+from __future__ import annotations
+
+import networkx
+from hypothesis import given, settings
+
+from tests.logic.strategies import formulas
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.graph import to_networkx
+from tltlc.logic.formula import Formula
+
+
+@given(formulas(atoms=("a", "b", "c"), max_leaves=8))
+@settings(max_examples=100)
+def test_networkx_finds_the_same_distances_and_traps(formula: Formula) -> None:
+    fspa = build(spec_from_formula(formula))
+    graph = to_networkx(fspa)
+    assert [graph.nodes[state.id]["label"] for state in fspa.states] == [state.label.ascii for state in fspa.states]
+    assert {(u, v): d["primes"] for u, v, d in graph.edges(data=True)} == {
+        (edge.source, edge.target): edge.guard.primes for edge in fspa.edges
+    }
+    goals = {state.id for state in fspa.states if state.accepting}
+    found = networkx.multi_source_dijkstra_path_length(graph.reverse(), goals) if goals else {}
+    assert {state.id: state.distance for state in fspa.states} == {s.id: found.get(s.id) for s in fspa.states}
+    assert networkx.descendants(graph, graph.graph["initial"]) | {0} == set(graph.nodes)
