@@ -134,3 +134,39 @@ def test_an_interrupt_is_quiet(inside: Path) -> None:
             running.send_signal(signal.SIGINT)
         out, err = running.communicate(timeout=30)
     assert (running.returncode, out, err) == (130, b"", b"")
+
+
+def test_nothing_asked_for_shows_the_help(process) -> None:  # type: ignore[no-untyped-def]
+    found = process()
+    assert (found.status, found.out) == (2, "")
+    assert found.err == process("--help").out
+
+
+def test_choices_stand_on_one_line(tltlc) -> None:  # type: ignore[no-untyped-def]
+    assert (
+        "missing argument '{predicates|targets|codes}'. Choose from: predicates, targets, codes\n" in tltlc("list").err
+    )
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device without room")
+def test_standard_output_without_room_is_3() -> None:
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "tltlc", "list", "codes"], stdout=full, stderr=-1, check=False, cwd=ROOT
+        )
+    assert done.returncode == 3
+    assert done.stderr.startswith(b"error[TLT0005]: cannot write to standard output")
+
+
+def test_a_missing_folder_is_called_one(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    found = tltlc("render", "hide.tltl", "-o", "nowhere/hide.svg")
+    assert found.status == 3
+    assert found.err.splitlines()[0].endswith("there is no such folder")
+
+
+def test_a_summary_counts_the_files_without_tests(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("broken.tltl").write_text("spec x = F b\n")
+    Path("other.tltl").write_text("spec x = F c\n")
+    found = tltlc("test", "broken.tltl", "other.tltl")
+    assert found.out == "0 passed, 0 failed, 2 files with errors\n"
+    assert "\n\nerror[" in found.err

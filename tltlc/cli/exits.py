@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Iterable
@@ -35,6 +36,10 @@ _STATUS_OF_CODE: Final = {
 
 _COMPONENTS: Final = {"graphviz", "pygraphviz", "sympy", "networkx", "rich", "tomli"}
 """Modules that come with tltlc, and that an installation by parts may lack."""
+
+
+_NO_ROOM: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
+"""What standard output may say to a write; files that a command names have their own messages."""
 
 
 class StopQuietlyError(Exception):
@@ -75,6 +80,9 @@ def report(error: Exception) -> int:
         error = TltlError([_usage(error)])
     if isinstance(error, ModuleNotFoundError) and (component := (error.name or "").partition(".")[0]) in _COMPONENTS:
         error = missing_component("this command", component, component)
+    if isinstance(error, OSError) and error.filename is None and error.errno in _NO_ROOM:
+        _discard_output()
+        error = _full_output(error)
     if isinstance(error, TltlError):
         from tltlc.cli.report import show
 
@@ -85,7 +93,8 @@ def report(error: Exception) -> int:
 
 def _usage(error: click.ClickException) -> Diagnostic:
     """A complaint about the command line, as a diagnostic."""
-    message = error.format_message().rstrip(".")
+    # click lists choices one a line.
+    message = " ".join(error.format_message().rstrip(".").split())
     context = error.ctx if isinstance(error, click.UsageError) else None
     command = context.command_path if context else "tltlc"
     if message[1:2].islower():
@@ -93,8 +102,15 @@ def _usage(error: click.ClickException) -> Diagnostic:
     return Diagnostic("TLT0700", message, help=f"`{command} --help` shows how to use it")
 
 
+def _full_output(error: OSError) -> TltlError:
+    from tltlc.files import reason
+
+    title = f"cannot write to standard output: {reason(error)}"
+    return TltlError([Diagnostic("TLT0005", title, help="make room, or send it to another place")])
+
+
 def _discard_output() -> None:
-    """Let Python's own flush at exit go nowhere: whoever read our output has gone."""
+    """Let Python's own flush at exit go nowhere: whoever read our output has gone, or is full."""
     # Where standard output is no file of the system, nothing is flushed to one.
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -53,6 +53,13 @@ class CommandLine(click.Group):
             status = exits.report(error)
         sys.exit(status)
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """As click does; the help where nothing is asked for, which is wrong usage."""
+        if not args and not ctx.resilient_parsing:
+            click.echo(ctx.get_help(), err=True)
+            raise exits.StopQuietlyError(exits.USAGE)
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; click would answer these two with a status of its own."""
         try:

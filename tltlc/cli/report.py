@@ -29,10 +29,12 @@ class Report:
     def add(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Show (or keep for the end) what was found."""
         new = tuple(diagnostics)
+        if self.format == "text":
+            if self.found and new:
+                print(file=sys.stderr)
+            show(new, "text", sys.stderr)
         self.found.extend(new)
         self.status = self.status or exits.status_of(new)
-        if self.format == "text":
-            show(new, "text", sys.stderr)
 
     def say(self, text: str) -> None:
         """Narration: a line on standard error, only beside diagnostics for people."""

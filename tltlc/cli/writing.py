@@ -68,5 +68,7 @@ def _mode(path: Path) -> int | None:
 
 
 def _error(path: Path, error: OSError | ValueError) -> TltlError:
-    title = f"cannot write `{path}`: {reason(error)}"
+    # A file that we are to make is never missing itself.
+    why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)
+    title = f"cannot write `{path}`: {why}"
     return TltlError([Diagnostic("TLT0005", title, help="name another place with -o")])

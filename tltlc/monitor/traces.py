@@ -144,7 +144,7 @@ def _cell(cell: str, name: str, column: int, at: _Lines) -> float:
             raise ValueError
         return float(text)
     except ValueError:
-        remark = f"`{name}` is no number" if text else f"`{name}` has no value"
+        remark = f"this value of `{name}` is no number" if text else f"`{name}` has no value"
         raise at.error(remark, _cell_span(at.text, column), help="write a number, `true` or `false`") from None
 
 

@@ -39,6 +39,11 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
         except ResolutionError as failure:
             context.log.add(failure.diagnostic)
             complete = False
+    if complete and not any(isinstance(item, Expect) for item in items):
+        advice = "add an `expect`, e.g. `expect satisfied`: without one no run can fail"
+        where = declaration.spec.span
+        context.log.add(problem("TLT0217", "this test expects nothing", source, where, advice=advice).diagnostic)
+        return None
     return Test(declaration.title, name, tuple(items), source, declaration.span) if complete else None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from pathlib import Path
 from typing import Final
 
@@ -30,7 +31,7 @@ def command(folder: Path) -> int:
             raise TltlError([Diagnostic("TLT0722", title, help="choose another name, or remove it first")])
         for path in write_files(folder, _FILES):
             report.say(f"wrote {path}")
-        report.say(f"Next: tltlc test {folder}")
+        report.say(f"Next: tltlc test {shlex.quote(str(folder))}")
     return report.status
 
 

@@ -33,19 +33,20 @@ def command(paths: tuple[str, ...], settings: Settings, format: str) -> int:  # 
     """
     from tltlc.cli.report import Report
 
-    passed = failed = 0
+    passed = failed = unread = 0
     with Report(format, results=True) as report:
         for path in _files(paths):
             try:
                 results = _run(path, settings, report.add)
             except TltlError as error:
                 report.add(error.diagnostics)
+                unread += 1
                 continue
             for result in results:
                 print(f"{'passed' if result.passed else 'FAILED'}  {_place(result)}  {result.test.title}", flush=True)
                 passed, failed = passed + result.passed, failed + (not result.passed)
                 report.add([result.failure] if result.failure else [])
-        print(f"{passed} passed, {failed} failed")
+        print(f"{passed} passed, {failed} failed{_unread(unread)}")
     return report.status
 
 
@@ -73,6 +74,11 @@ def _run(path: str, settings: Settings, add: Callable[[Iterable[Diagnostic]], No
     opened = open_input(path, settings)
     add(opened.diagnostics)
     return run_tests(opened.program, opened.automata) if opened.program else ()
+
+
+def _unread(files: int) -> str:
+    """How many files have errors, so that none of their tests ran."""
+    return f", {files} {'file' if files == 1 else 'files'} with errors" if files else ""
 
 
 def _place(result: TestResult) -> str:
