@@ -1,0 +1,148 @@
+"""An obligation written back as a formula: common factors first, operands in source order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tltlc.automaton.diagrams import FALSE, TRUE
+from tltlc.automaton.successors import Successors
+from tltlc.logic import formula as build
+from tltlc.logic.formula import Formula
+
+_TERM_LIMIT = 64
+"""Sums of products with more terms are written as nested case distinctions instead."""
+
+_MOST_FACTORED = 40
+"""Obligations over more variables are written out as they are built, without a search for common factors."""
+
+_Term = frozenset[tuple[int, bool]]
+_Placed = tuple[int, Formula]
+"""The place of a formula's first part in the source, and the formula."""
+
+
+class Writer:
+    """Writes the obligations of one table; operands stand in the order in which ``source`` has them."""
+
+    __slots__ = ("_position", "_successors", "_sums", "_written")
+
+    def __init__(self, successors: Successors, source: Formula) -> None:
+        self._successors = successors
+        self._position = {part: index for index, part in enumerate(source.walk())}
+        self._written: dict[int, _Placed] = {}
+        self._sums: dict[int, list[_Term] | None] = {FALSE: [], TRUE: [frozenset()]}
+
+    def formula(self, obligation: int) -> Formula:
+        """The formula of an obligation."""
+        return self._placed(obligation)[1]
+
+    def support(self, obligation: int) -> list[int]:
+        """The variables that the obligation depends on, ascending."""
+        diagrams = self._successors.diagrams
+        seen, stack = {FALSE, TRUE, obligation}, [obligation]
+        variables: set[int] = set()
+        while stack:
+            node = stack.pop()
+            if node in (FALSE, TRUE):
+                continue
+            variables.add(diagrams.variable[node])
+            for child in (diagrams.absent[node], diagrams.present[node]):
+                if child not in seen:
+                    seen.add(child)
+                    stack.append(child)
+        return sorted(variables)
+
+    def _placed(self, obligation: int) -> _Placed:
+        """The place of the formula's first part in the source, and the formula of the obligation."""
+        known = self._written.get(obligation)
+        if known is None:
+            known = self._written[obligation] = self._write(obligation)
+        return known
+
+    def _write(self, obligation: int) -> _Placed:
+        if obligation == FALSE:
+            return 0, build.FALSE
+        if obligation == TRUE:
+            return 0, build.TRUE
+        for absorbing, join in ((FALSE, build.and_), (TRUE, build.or_)):
+            factors, rest = self._factors(obligation, absorbing)
+            if factors:
+                operands = [self._literal(*factor) for factor in factors]
+                if rest not in (FALSE, TRUE):
+                    operands.append(self._placed(rest))
+                return _joined(join, operands)
+        terms = self._terms(obligation)
+        if terms is not None:
+            return _joined(
+                build.or_, [_joined(build.and_, [self._literal(*literal) for literal in term]) for term in terms]
+            )
+        diagrams = self._successors.diagrams
+        test = self._literal(diagrams.variable[obligation], True)
+        present = _joined(build.and_, [test, self._placed(diagrams.present[obligation])])
+        return _joined(build.or_, [present, self._placed(diagrams.absent[obligation])])
+
+    def _factors(self, obligation: int, absorbing: int) -> tuple[list[tuple[int, bool]], int]:
+        """The literals without (for TRUE: with) which the obligation is ``absorbing``, and what is left of it."""
+        factors: list[tuple[int, bool]] = []
+        wanted = absorbing == FALSE
+        support = self.support(obligation)
+        for variable in support if len(support) <= _MOST_FACTORED else support[:1]:
+            for polarity in (True, False):
+                if self._restricted(obligation, variable, polarity != wanted) == absorbing:
+                    factors.append((variable, polarity))
+                    obligation = self._restricted(obligation, variable, polarity == wanted)
+                    break
+        return factors, obligation
+
+    def _restricted(self, obligation: int, variable: int, value: bool) -> int:
+        """The obligation where a variable is known to hold or not."""
+        diagrams = self._successors.diagrams
+        memo: dict[int, int] = {}
+
+        def restrict(node: int) -> int:
+            tested = diagrams.variable[node]
+            if tested > variable:
+                return node
+            if tested == variable:
+                return diagrams.present[node] if value else diagrams.absent[node]
+            result = memo.get(node)
+            if result is None:
+                absent, present = restrict(diagrams.absent[node]), restrict(diagrams.present[node])
+                result = memo[node] = diagrams.obligation(tested, absent, present)
+            return result
+
+        return restrict(obligation)
+
+    def _terms(self, obligation: int) -> list[_Term] | None:
+        """A sum of products of the obligation, or None where it has too many terms."""
+        if obligation in self._sums:
+            return self._sums[obligation]
+        diagrams = self._successors.diagrams
+        variable = diagrams.variable[obligation]
+        absent, present = diagrams.absent[obligation], diagrams.present[obligation]
+        shared = diagrams.both(absent, present)
+        common, alone = self._terms(shared), self._terms(present)
+        # A temporal variable only ever helps: then `shared` is `absent`, and no term asks for its absence.
+        without = common if shared == absent else self._terms(absent)
+        terms: list[_Term] | None = None
+        if common is not None and alone is not None and without is not None:
+            terms = [
+                *(term | {(variable, True)} for term in alone if not any(other <= term for other in common)),
+                *(term | {(variable, False)} for term in without if not any(other <= term for other in common)),
+                *common,
+            ]
+            if len(terms) > _TERM_LIMIT:
+                terms = None
+        self._sums[obligation] = terms
+        return terms
+
+    def _literal(self, variable: int, polarity: bool) -> _Placed:
+        formula = self._successors.formulas[variable]
+        if formula is None:
+            return self._placed(self._successors.stands_for[variable])
+        place = self._position.get(formula, len(self._position) + variable)
+        return place, formula if polarity else build.not_(formula)
+
+
+def _joined(join: Callable[..., Formula], operands: list[_Placed]) -> _Placed:
+    operands.sort(key=lambda operand: operand[0])
+    return operands[0][0] if operands else 0, join(*(formula for _, formula in operands))
