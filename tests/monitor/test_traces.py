@@ -95,9 +95,18 @@ HEADER = 'open,"near(a, b)"\n'
         ("open\n1\n", ("TLT0621", "the trace has no column for `near(a, b)`", "1:1", "")),
         (HEADER + "1,1\n1\n", ("TLT0622", "line 3 of the trace cannot be read", "3:1", "1 value, under 2 columns")),
         (HEADER + "1,\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "`near(a, b)` has no value")),
-        (HEADER + "x,1\n", ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this value of `open` is no number")),
-        (HEADER + "1,1_0\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "this value of `near(a, b)` is no number")),
-        (HEADER + "1,١\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "this value of `near(a, b)` is no number")),
+        (
+            HEADER + "x,1\n",
+            ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this value of `open` is no number"),
+        ),
+        (
+            HEADER + "1,1_0\n",
+            ("TLT0622", "line 2 of the trace cannot be read", "2:3", "this value of `near(a, b)` is no number"),
+        ),
+        (
+            HEADER + "1,١\n",
+            ("TLT0622", "line 2 of the trace cannot be read", "2:3", "this value of `near(a, b)` is no number"),
+        ),
         (
             'open,open,"near(a, b)"\n',
             ("TLT0622", "line 1 of the trace cannot be read", "1:1", "two columns are called `open`"),
