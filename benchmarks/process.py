@@ -23,10 +23,10 @@ SLOWEST_IMPORTS = 12
 
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
-    """Measure each command that the store does not have yet."""
+    """Measure each command that the store does not have yet, or that failed."""
     with tempfile.TemporaryDirectory() as folder:
         for key, arguments in _commands(Path(folder)).items():
-            if key not in store.section(SECTION):
+            if "cpu_ratio" not in store.section(SECTION).get(key, {}):
                 record = _compared(arguments, _with_bytecode(Path(folder)))
                 store.put(SECTION, key, record)
                 ratio = f"{record['cpu_ratio'][1]:.1f} times a bare interpreter" if "cpu_ratio" in record else "failed"
