@@ -40,7 +40,9 @@ def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> Sour
     """
     if len(data) > max_bytes:
         title = f"`{name}` is larger than {max_bytes >> 20} MiB"
-        raise TltlError([Diagnostic("TLT0004", title, help="split it: a file may `import` others")])
+        split = max_bytes == MAX_SOURCE_BYTES
+        advice = "split it: a file may `import` others" if split else "name a smaller file"
+        raise TltlError([Diagnostic("TLT0004", title, help=advice)])
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise TltlError([Diagnostic("TLT0002", f"`{name}` is UTF-16 text", help="save it as UTF-8")])
     if b"\0" in data:

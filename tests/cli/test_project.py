@@ -1,11 +1,14 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.cli.conftest import EXAMPLE, Outcome
 from tltlc.cli.project import Project, project_for, read_project
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -57,3 +60,14 @@ def test_any_text_is_read_or_refused(text: str) -> None:
             read_project(path)
         except TltlError as error:
             assert {diagnostic.code for diagnostic in error.diagnostics} <= {"TLT0003", "TLT0701", "TLT0702", "TLT0703"}
+
+
+def test_a_deleted_current_folder_is_no_bug(
+    tltlc: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert tltlc("check", EXAMPLE).status == 0
+    assert tltlc("check", "hide.tltl").status == 3

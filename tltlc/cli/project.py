@@ -40,7 +40,10 @@ def project_for(path: str) -> Project:
 
     For standard input that is the current folder.  Errors: those of :func:`read_project`.
     """
-    folder = Path(path).absolute().parent if path != "-" else Path.cwd()
+    try:
+        folder = Path(path).absolute().parent if path != "-" else Path.cwd()
+    except FileNotFoundError:
+        return Project()  # the current folder has been deleted: nothing is above it
     for place in (folder, *folder.parents):
         candidate = place / FILE_NAME
         if os.path.isfile(candidate):  # noqa: PTH113 (pathlib raises where a name is too long)

@@ -91,7 +91,10 @@ def _path_of(source: SourceFile) -> Path:
     standard = standard_library()
     if source.name.startswith(STANDARD_LIBRARY_NAME):
         return standard / source.name[len(STANDARD_LIBRARY_NAME) + 1 :]
-    return Path(source.name).absolute()
+    try:
+        return Path(source.name).absolute()
+    except FileNotFoundError:
+        return Path(source.name)  # the current folder has been deleted
 
 
 def _folder(source: SourceFile) -> Path:

@@ -10,7 +10,7 @@ from tltlc.resolve.spec import Param, Signal
 
 
 def encode(fspa: Fspa) -> dict[str, Any]:
-    """The document, its keys in the order in which they are written; ``doc`` is left out where it is empty."""
+    """The document, its keys in the order in which they are written; an atom without documentation has no ``doc``."""
     return {
         "format": "fspa",
         "version": 1,
