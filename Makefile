@@ -32,7 +32,6 @@ format: $(VENV)/.installed-dev
 # Rewrite the files that are made from others and kept in the repository.
 generate: $(VENV)/.installed-dev
 	$(BIN)/python -m tltlc.grammar.tables
-	$(BIN)/python -m tltlc.resolve.prove
 	$(BIN)/python -m tltlc.backends.artefact.generate
 	$(BIN)/tltlc render examples/cover_and_hide.tltl -o docs/images/cover_and_hide.svg
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
 from tltlc.expression_eval import evaluate
 from tltlc.resolve import spec
-from tltlc.resolve.predicate_check import Finding, check_predicate, memory
+from tltlc.resolve.predicate_check import Finding, check_predicate
 
 D, X, Y, H, OPEN = Signal("distance(s1)"), Signal("x"), Signal("y"), Signal("health"), Signal("open")
 FAR, CLOSE = Param("far"), Param("close")
@@ -31,10 +31,8 @@ PARAMS = {
 
 
 @pytest.fixture(autouse=True)
-def no_memory(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def no_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", "")
-    with memory.computed_anew():
-        yield
 
 
 def op(name: str, *args: Expression | float) -> Op:

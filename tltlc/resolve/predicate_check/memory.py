@@ -1,8 +1,7 @@
 """Remembers the answers that needed sympy, so that each question costs its import at most once.
 
-Two files: the answers for the standard library, which ship with the package and are only read, and the
-user's own in ``$TLTLC_CACHE_DIR`` (set but empty: none) or the system's place for caches.  A file that
-cannot be read or written is as good as none.
+They are kept in ``$TLTLC_CACHE_DIR`` (set but empty: nowhere) or the system's place for caches.  A file
+that cannot be read or written is as good as none.
 """
 
 from __future__ import annotations
@@ -10,8 +9,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from tltlc.expression import Condition, Const, Expression, Op, When
@@ -19,11 +17,9 @@ from tltlc.resolve.predicate_check.cases import variables
 from tltlc.resolve.predicate_check.region import Box, Variable
 
 CHECKER_VERSION = 1  # raise it whenever an answer may change
-SHIPPED = Path(__file__).parent.parent / "proved.json"
 
 _FILE_NAME = "predicates.json"
 _MOST_ANSWERS = 2000
-_anew: dict[str, bool] | None = None
 
 
 def answer(question: str, compute: Callable[[], bool]) -> bool:
@@ -31,14 +27,8 @@ def answer(question: str, compute: Callable[[], bool]) -> bool:
     from hashlib import sha256
 
     key = sha256(question.encode()).hexdigest()
-    if _anew is not None:
-        _anew[key] = compute()
-        return _anew[key]
-    shipped = read(SHIPPED)
-    if key in shipped:
-        return shipped[key]
     folder = cache_folder()
-    own = read(folder / _FILE_NAME) if folder else {}
+    own = _read(folder / _FILE_NAME) if folder else {}
     if key in own:
         return own[key]
     result = compute()
@@ -46,17 +36,6 @@ def answer(question: str, compute: Callable[[], bool]) -> bool:
         kept = list(own.items())[1 - _MOST_ANSWERS :]
         _write(folder / _FILE_NAME, dict([*kept, (key, result)]))
     return result
-
-
-@contextmanager
-def computed_anew() -> Iterator[Mapping[str, bool]]:
-    """While this lasts, files are left alone and every answer is computed; gives the answers by question."""
-    global _anew
-    _anew = {}
-    try:
-        yield _anew
-    finally:
-        _anew = None
 
 
 def question(kind: str, expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float) -> str:
@@ -85,7 +64,7 @@ def cache_folder() -> Path | None:
         return None
 
 
-def read(path: Path) -> dict[str, bool]:
+def _read(path: Path) -> dict[str, bool]:
     """The answers in a file; none where it is missing, damaged or of another version."""
     try:
         content = json.loads(path.read_text("utf-8"))
@@ -99,17 +78,12 @@ def read(path: Path) -> dict[str, bool]:
     return {key: value for key, value in answers.items() if isinstance(value, bool)}
 
 
-def file_text(answers: Mapping[str, bool]) -> str:
-    """The text of a file of answers."""
-    return json.dumps({"version": CHECKER_VERSION, "answers": answers}, indent=1) + "\n"
-
-
 def _write(path: Path, answers: Mapping[str, bool]) -> None:
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            temporary.write_text(file_text(answers), "utf-8")
+            temporary.write_text(json.dumps({"version": CHECKER_VERSION, "answers": answers}, indent=1), "utf-8")
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)
