@@ -99,11 +99,17 @@ def _check_test(source: SourceFile, test: tree.TestDecl) -> Iterator[Diagnostic]
             yield from _check_word(source, word, span, VERDICTS, "expect")
 
 
+_COMPARED: Final = {
+    "progress": "say how much: `expect progress >= 0.5`",
+    "state": 'name its label: `expect state "F a"`',
+}
+
+
 def _check_word(source: SourceFile, word: str, span: Span, words: tuple[str, ...], form: str) -> Iterator[Diagnostic]:
     if word not in words:
         near = closest(word, words)
         listed = ", ".join(f"`{form} {other}`" for other in words[:-1]) + f" or `{form} {words[-1]}`"
-        help_ = f"did you mean `{near}`?" if near else listed
+        help_ = _COMPARED.get(word) or (f"did you mean `{near}`?" if near else listed)
         yield _error(source, "TLT0108", f"`{word}` is not known here", span, help_)
 
 

@@ -21,6 +21,7 @@ _ARITHMETIC: Final = {"PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "POWER", "LESS", 
 _COMPARISONS: Final = {"LESS", "AT_MOST", "MORE", "AT_LEAST"}
 _INFIX: Final = {"AND", "OR", "IMPLIES", "IFF", "THEN", "UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
 _UNTILS: Final = {"UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
+_BOUNDED: Final = {"F", "G", "X", "N", "eventually", "always", "next", "weak_next", "<>", "[]", "◇", "□", "○"}
 _OPERAND: Final = {"NAME", "NUMBER", "LPAR"}
 _PLAIN: Final = {"NAME": "a name", "NUMBER": "a number", "STRING": "a text in quotes", "UNIT": "a unit"}
 
@@ -119,7 +120,8 @@ class _Place:
             items.append("an operator")
             allowed -= _INFIX | _ARITHMETIC | {"UNIT", "LPAR"}
         items += [text for kind, text in _PLAIN.items() if kind in allowed]
-        signs = {terminal: text for text, terminal in {**load().soft, **load().signs}.items()}
+        spellings = sorted({**load().soft, **load().signs}.items(), key=lambda item: item[0].isascii())
+        signs = {terminal: text for text, terminal in spellings}
         items += [f"`{signs[kind]}`" for kind in sorted(allowed) if kind in signs]
         words = {terminal: text for text, terminal in load().words.items()}
         rest = [f"`{words[kind]}`" for kind in sorted(allowed) if kind in words and kind not in _PLAIN]
@@ -168,9 +170,10 @@ def _strange(place: _Place) -> Diagnostic | None:
 
 def _equality(place: _Place) -> Diagnostic | None:
     """A single ``=`` where a comparison was meant."""
-    if place.found.type != "EQUAL" or not place.wants_operator:
+    expectation = place.tokens[0].text == "expect"
+    if place.found.type != "EQUAL" or not (place.wants_operator or expectation):
         return None
-    help_ = "compare with `<`, `<=`, `>` or `>=`; a bool signal is an atom by itself"
+    help_ = "compare with `<`, `<=`, `>` or `>=`" + ("" if expectation else "; a bool signal is an atom by itself")
     return place.error("TLT0110", "`=` does not compare", help_)
 
 
@@ -218,8 +221,12 @@ def _brackets(place: _Place) -> Diagnostic | None:
 
 
 def _bounds(place: _Place) -> Diagnostic | None:
-    """A bound without a unit, or behind an operator that takes none."""
+    """A bound without a unit, with a name for a number, or behind an operator that takes none."""
     before = place.before
+    if place.found.type == "NAME" and before and _is_bound(place):
+        example = "F[0, 20]" if before.text in ("[", ",") else f"{before.text} 20 steps"
+        title = f"a bound is a number, and {shown(place.found)} is a name"
+        return place.error("TLT0111", title, f"write the number, e.g. `{example}`")
     if place.allowed == {"UNIT"} and before:
         return place.error(
             "TLT0111", f"expected a unit after {shown(before)}", f"`{before.text} steps` or `{before.text} s`"
@@ -228,6 +235,17 @@ def _bounds(place: _Place) -> Diagnostic | None:
         help_ = "bound an `F` beside it: `(a U b) & F[0,20] b`"
         return place.error("TLT0111", f"`{before.text}` takes no bound", help_)
     return None
+
+
+def _is_bound(place: _Place) -> bool:
+    """Whether a number of a bound should stand here, as in ``F[0,`` or ``eventually within``."""
+    index = place.stop.index - 1
+    if place.open_brackets and place.open_brackets[-1].text == "[":
+        opening = place.open_brackets[-1]
+        index = next(index for index, token in enumerate(place.tokens) if token is opening)
+    elif place.tokens[index].text not in ("within", "for", "after"):
+        return False
+    return index > 0 and place.tokens[index - 1].text in _BOUNDED
 
 
 def _reserved(place: _Place) -> Diagnostic | None:

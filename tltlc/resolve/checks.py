@@ -13,6 +13,8 @@ from tltlc.resolve.spec import Signal
 if TYPE_CHECKING:
     from tltlc.resolve.predicate_check import Finding
 
+_UNDEFINED_ENDINGS = ("divides by zero", "takes a root or power that no real number has")
+
 _CONTINUITY = ("discontinuous", "continuity_unproved")
 _NEVER_NEGATIVE = ("length", "time", "speed")
 
@@ -59,8 +61,14 @@ def _diagnostic(instance: Instance, finding: Finding, negative: bool = False) ->
     code, severity, title, advice = _CASES[finding.kind]
     if negative:
         code, severity, title, advice = "TLT0401", "warning", *_NEGATIVE
-    label = Label(instance.source, instance.span, finding.message)
-    return Diagnostic(code, title.format(name=instance.name), (label,), advice, severity)
+    if not negative and finding.message.endswith(_UNDEFINED_ENDINGS):
+        title, advice = _UNDEFINED
+    labels: tuple[Label, ...] = (Label(instance.source, instance.span, finding.message),)
+    if instance.use and instance.use.source is not instance.source:
+        # A library's predicate is right as it stands: the numbers given to it here are not.
+        labels = (replace(instance.use, message=finding.message), replace(labels[0], message="declared here"))
+        advice = f"choose other numbers here, or {advice}"
+    return Diagnostic(code, title.format(name=instance.name), labels, advice, severity)
 
 
 _CASES: dict[str, tuple[str, Severity, str, str]] = {
@@ -89,6 +97,10 @@ _CASES: dict[str, tuple[str, Severity, str, str]] = {
         "let both sides of the border have the same value there",
     ),
 }
+_UNDEFINED = (
+    "the predicate `{name}` has no value everywhere",
+    "hold what it divides by, or takes the root of, inside with `max(…, 0.1)`",
+)
 _NEGATIVE = (
     "the predicate `{name}` leaves its declared range where a signal is negative",
     "declare its range, e.g. `in [0 m, inf]`",

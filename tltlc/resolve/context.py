@@ -48,6 +48,8 @@ class Instance:
     high: float
     source: SourceFile
     span: Span
+    use: Label | None = None
+    """Where numbers are given for it, which decide what is found."""
 
 
 class Context:

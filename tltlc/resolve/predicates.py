@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import cast
 
+from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
@@ -36,6 +37,7 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
     assert isinstance(declaration, PredicateDecl)
     values: dict[str, Value] = {}
     shown: list[str] = []
+    place = None
     for parameter, argument in match(use, binding, declaration.parameters, env.scope):
         inside = env.within(binding.scope, dict(values))
         default = argument_value(parameter, parameter.default, inside, binding, depth) if parameter.default else None
@@ -46,8 +48,12 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
             shown.append(_text(value))
         elif _text(value) != _text(default):
             shown.append(f"{parameter.name}={_text(value)}")
+        else:
+            continue
+        if isinstance(value, Quantity):
+            place = Label(env.scope.source, use.span)
     name = f"{declaration.name}({', '.join(shown)})" if shown else declaration.name
-    return PredicateUse(_instantiate(name, declaration, binding.scope, values, env, depth), declaration.doc)
+    return PredicateUse(_instantiate(name, declaration, binding.scope, values, env, depth, place), declaration.doc)
 
 
 def check_unused(binding: Binding, env: Env) -> None:
@@ -139,7 +145,13 @@ def _text(value: Value) -> str:
 
 
 def _instantiate(
-    name: str, declaration: PredicateDecl, scope: Scope, values: Mapping[str, Value], env: Env, depth: int
+    name: str,
+    declaration: PredicateDecl,
+    scope: Scope,
+    values: Mapping[str, Value],
+    env: Env,
+    depth: int,
+    place: Label | None = None,
 ) -> Quantity:
     context = env.context
     memo = (id(declaration), tuple(values.values()))
@@ -151,7 +163,7 @@ def _instantiate(
     low, high = declared_range(declaration, scope, env)
     body = _body(declaration, scope, values, env, depth)
     if not any(isinstance(value, Unknown) for value in values.values()):
-        _note_instance(declaration, scope, values, (low, high), env, depth)
+        _note_instance(declaration, scope, values, (low, high), env, depth, place)
     result = Quantity(body.expression, units.PLAIN, low, high, name, depth=body.depth)
     context.values[memo] = result
     return result
@@ -195,6 +207,7 @@ def _note_instance(
     declared: tuple[float, float],
     env: Env,
     depth: int,
+    place: Label | None,
 ) -> None:
     """Keeps the predicate to be checked, once for all entities: they are replaced by the parameters' names."""
     general: dict[str, Value] = {}
@@ -207,4 +220,4 @@ def _note_instance(
     if key not in env.context.instances:
         body = _body(declaration, scope, general, env, depth)
         span = declaration.interval.span if declaration.interval else declaration.name_span
-        env.context.instances[key] = Instance(declaration.name, body.expression, *declared, scope.source, span)
+        env.context.instances[key] = Instance(declaration.name, body.expression, *declared, scope.source, span, place)
