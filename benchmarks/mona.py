@@ -31,7 +31,8 @@ def solve(formula: Formula, timeout_s: float) -> tuple[Run, int | None]:
         file = Path(folder) / "formula.mona"
         file.write_text(program(formula), encoding="ascii")
         made = run([*COMMAND, str(file)], timeout_s)
-    return made, size(made.output)
+    # One that was stopped may have printed a part of its automaton.
+    return made, None if made.status else size(made.output)
 
 
 def size(output: str) -> int | None:

@@ -58,3 +58,11 @@ def test_sizes_are_those_of_the_corpus(family: str) -> None:
         made, states = mona.solve(entry.formula, timeout_s=30)
         assert (entry.name, states) == (entry.name, entry.states)
         assert made.cpu_ms > 0
+
+
+@pytest.mark.skipif(not mona.available(), reason="MONA is not installed")
+def test_a_run_that_is_stopped_has_no_size() -> None:
+    many = " & ".join(f"(F a{number} | G b{number})" for number in range(9))
+    made, states = mona.solve(read_formula(many), timeout_s=0.3)
+    assert made.timed_out
+    assert states is None
