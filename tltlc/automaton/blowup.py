@@ -37,7 +37,7 @@ def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     if not worst:
         labels: tuple[Label, ...] = (Label(spec.source, spec.name_span),)
     elif len(worst) == 1 or sizes[worst[0]] >= _PART_BUDGET:
-        labels = (Label(worst[0].source, worst[0].span, "it is this part"),)
+        labels = (_cause(worst[0]),)
     else:
         labels = tuple(
             Label(part.source, part.span, f"{sizes[part]} states alone; the parts multiply") for part in worst[:3]
@@ -50,6 +50,14 @@ def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
         title = f"the automaton of `{spec.name}` needs too much memory"
     advice = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
     return TltlError([Diagnostic("TLT0501", title, labels, advice)])
+
+
+def _cause(part: Part) -> Label:
+    """The part's longest bound, where it has one: a bound of n samples may have to be remembered n times over."""
+    bound = max(part.bounds, key=lambda bound: bound.samples, default=None)
+    if bound is None:
+        return Label(part.source, part.span, "it is this part")
+    return Label(bound.source, bound.span, "it is this bound")
 
 
 def _size(part: Part, spec: Spec) -> int:

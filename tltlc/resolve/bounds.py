@@ -7,6 +7,7 @@ from tltlc.logic.formula import Formula, and_, next_, or_, weak_next
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import LARGEST_EXPANSION, too_large
 from tltlc.resolve.problem import problem
+from tltlc.resolve.spec import Bound
 from tltlc.resolve.values import Env
 
 
@@ -34,6 +35,7 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
     what = f"the bound of `{source.slice(expr.op_span)}`"
     if 2 * high + (high - low + 1) * env.context.tree_size(operand) > 2 * LARGEST_EXPANSION:
         raise too_large(what, source, bound.span)
+    env.context.bounds.append(Bound(high, source, bound.span))
     result = operand
     join, step = (and_, weak_next) if expr.op == "G" else (or_, weak_next if expr.op == "N" else next_)
     for _ in range(high - low):

@@ -9,7 +9,7 @@ from tltlc.expression import Expression
 from tltlc.logic.formula import Formula, atom
 from tltlc.record import record
 from tltlc.resolve.problem import Log, ResolutionError, problem
-from tltlc.resolve.spec import Atom, Param, Signal, ValueType
+from tltlc.resolve.spec import Atom, Bound, Param, Signal, ValueType
 from tltlc.source import SourceFile, Span
 
 LARGEST_EXPANSION = 100_000
@@ -58,12 +58,14 @@ class Context:
     ``signals`` are those in use, by full name.  ``instances`` and ``values`` (of predicates, and
     expansions of lets) are keyed by identity of the declaration and values of its parameters.
     ``expanding`` holds the lets and predicates being expanded, outermost first: identity of the
-    declaration and its name; ``broken`` the declarations whose error has been reported.
+    declaration and its name; ``broken`` the declarations whose error has been reported.  ``bounds``
+    are those expanded so far.
     """
 
     __slots__ = (
         "_sizes",
         "atoms",
+        "bounds",
         "broken",
         "clock_failed",
         "clock_s",
@@ -85,6 +87,7 @@ class Context:
         self.clock_failed = False
         self.signals: dict[str, Signal] = {}
         self.atoms: dict[str, Atom] = {}
+        self.bounds: list[Bound] = []
         self.instances: dict[tuple[int, Any], Instance] = {}
         self.expanding: dict[int, str] = {}
         self.broken: set[int] = set()

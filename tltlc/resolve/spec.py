@@ -49,12 +49,25 @@ class Atom:
 
 
 @record
+class Bound:
+    """A bound of a temporal operator: its greatest number of samples, and where it is written."""
+
+    samples: int
+    source: SourceFile
+    span: Span
+
+
+@record
 class Part:
-    """One conjunct of a spec's formula and the clause that it came from, so that errors can name it."""
+    """One conjunct of a spec's formula and the clause that it came from, so that errors can name it.
+
+    ``bounds`` are those that were expanded in the clause.
+    """
 
     formula: Formula
     source: SourceFile
     span: Span
+    bounds: tuple[Bound, ...] = ()
 
 
 @record

@@ -11,6 +11,7 @@ from tltlc.expression import Param as ParamNode
 from tltlc.expression import Signal as SignalNode
 from tltlc.grammar.tree import Binary, Clause, Expr, Name, Number, SpecDecl
 from tltlc.logic.formula import Formula, always, and_, eventually, not_, then
+from tltlc.record import replace
 from tltlc.resolve.constants import samples
 from tltlc.resolve.formulas import conjuncts, formula
 from tltlc.resolve.problem import ResolutionError, problem
@@ -36,7 +37,10 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
     for clause in declaration.clauses:
         try:
             if clause.kind in _READERS:
-                parts.extend(_READERS[clause.kind](clause, env))
+                before = len(env.context.bounds)
+                found = _READERS[clause.kind](clause, env)
+                bounds = tuple(env.context.bounds[before:])
+                parts.extend(replace(part, bounds=bounds) for part in found)
             elif clause.kind == "tag":
                 tags.extend(tag.name for tag in cast("tuple[Name, ...]", clause.value) if tag.name not in tags)
             else:
