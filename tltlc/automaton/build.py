@@ -127,7 +127,7 @@ def _allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> 
     allowed = ACCEPT
     for group in exclusive:
         none, at_most_one = ACCEPT, ACCEPT
-        for atom in sorted(group, reverse=True):
+        for atom in sorted(set(group), reverse=True):
             at_most_one = diagrams.node(atom, at_most_one, none)
             none = diagrams.node(atom, none, REJECT)
         allowed = diagrams.conjoin(allowed, at_most_one)

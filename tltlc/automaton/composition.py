@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from heapq import heapify, heappop, heappush
 
-from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, REJECT, TRUE, OutOfSteps
+from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, LEAF, REJECT, TRUE, Diagrams, OutOfSteps
 from tltlc.automaton.machine import Machine, OutOfStates, machine
 from tltlc.automaton.successors import Successors
 from tltlc.logic.formula import Formula
@@ -54,10 +54,8 @@ def _embedded(successors: Successors, made: Machine) -> int:
     diagrams = successors.diagrams
     obligations: dict[int, int] = {}
     for state, transition in made.transitions.items():
-        if transition in (diagrams.leaf(state, 0), diagrams.leaf(state, 1)):
-            obligations[state] = TRUE if transition == diagrams.leaf(state, 1) else FALSE
-        else:
-            obligations[state] = successors.new_state(state)
+        settled = _settled(diagrams, state, transition)
+        obligations[state] = successors.new_state(state) if settled is None else settled
     memo = {IMPOSSIBLE: REJECT}
     for state, transition in made.transitions.items():
         if obligations[state] not in (FALSE, TRUE):
@@ -70,3 +68,14 @@ def _embedded(successors: Successors, made: Machine) -> int:
                 ),
             )
     return obligations[made.initial]
+
+
+def _settled(diagrams: Diagrams, state: int, transition: int) -> int | None:
+    """TRUE or FALSE for a state that every possible letter leaves as it is, None for the others."""
+    # The letter without any atom is always possible: where it leads elsewhere, the rest need not be looked at.
+    leaf = transition
+    while diagrams.atom[leaf] != LEAF:
+        leaf = diagrams.low[leaf]
+    if diagrams.low[leaf] != state or any(other not in (leaf, IMPOSSIBLE) for other in diagrams.leaves(transition)):
+        return None
+    return TRUE if diagrams.high[leaf] else FALSE

@@ -19,7 +19,7 @@ PRIME_LIMIT = 10_000
 
 
 class TooManyPrimes(Exception):
-    """Raised when a guard has more than :data:`PRIME_LIMIT` prime implicants."""
+    """Raised when a guard has more than :data:`PRIME_LIMIT` prime implicants, or products in its short form."""
 
 
 class Guards:
@@ -72,17 +72,23 @@ class Guards:
     def formula(self, guard: int, names: Sequence[str]) -> Formula:
         """A short formula of the guard: an irredundant sum of products, or product of sums where that is shorter.
 
-        Letters that ``exclusive`` rules out are free, they go where the formula gets shorter.
+        Letters that ``exclusive`` rules out are free, they go where the formula gets shorter.  Raises
+        :class:`TooManyPrimes`.
         """
         products, _ = self._irredundant(guard, self._upper(guard))
         # A single product is as short as it gets.
-        sums: tuple[Cube, ...] = ()
-        if len(products) > 1:
-            sums, _ = self._irredundant(self._negation(self._upper(guard)), self._negation(guard))
+        sums = self._negated_sums(guard) if len(products) > 1 else ()
         if sums and sum(map(len, sums)) < sum(map(len, products)):
             negated = [tuple(literal ^ 1 for literal in cube) for cube in sums]
             return build.and_(*(build.or_(*_literals(cube, names)) for cube in sorted(negated)))
         return build.or_(*(build.and_(*_literals(cube, names)) for cube in sorted(products)))
+
+    def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
+        """The sums of a product of sums, each as the cube that it forbids; none where they are very many."""
+        try:
+            return self._irredundant(self._negation(self._upper(guard)), self._negation(guard))[0]
+        except TooManyPrimes:
+            return ()
 
     # --- Boolean functions --------------------------------------------------------------------
 
@@ -155,6 +161,8 @@ class Guards:
                 *((2 * atom, *cube) for cube in without),
                 *free,
             )
+            if len(cubes) > PRIME_LIMIT:
+                raise TooManyPrimes
             found = cubes, disjoin(diagrams.node(atom, covered0, covered1), covered)
             self._covers[lower, upper] = found
         return found

@@ -1,16 +1,16 @@
 """What remains to be done in a state, as a formula as short as can be proved.
 
-The named rewrites shorten a state's obligation, written back as a formula; then every operand of an
-``and`` or ``or`` is tried: it goes where the automaton itself proves that the language stays the
-same without it.
+From a state's obligation the temporal subformulas go that the automaton proves to be idle there.  What is left
+is written back as a formula, the named rewrites shorten it, and then every operand of an ``and`` or
+``or`` is tried: it goes where the automaton proves that the language stays the same without it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tltlc.automaton.diagrams import ACCEPT, OutOfSteps
-from tltlc.automaton.machine import Machine, equivalent
+from tltlc.automaton.diagrams import ACCEPT, FALSE, TRUE, OutOfSteps
+from tltlc.automaton.machine import Machine, stands_for
 from tltlc.automaton.successors import Successors
 from tltlc.automaton.written import Writer
 from tltlc.logic import formula as build
@@ -38,7 +38,7 @@ class Labels:
     are.  A count and not a clock, so that equal input gives equal output.
     """
 
-    __slots__ = ("_allowed", "_machine", "_members", "_sizes", "_successors", "_work", "_writer")
+    __slots__ = ("_allowed", "_known", "_machine", "_members", "_sizes", "_successors", "_work", "_writer")
 
     def __init__(
         self, successors: Successors, machine: Machine, source: Formula, allowed: int = ACCEPT, work: int = 3_000
@@ -49,6 +49,7 @@ class Labels:
         self._work = work
         self._writer = Writer(successors, source)
         self._sizes: dict[Formula, int] = {}
+        self._known = dict(machine.representative)
         self._members: dict[int, list[int]] = {}
         for obligation, state in machine.representative.items():
             self._members.setdefault(state, []).append(obligation)
@@ -58,7 +59,8 @@ class Labels:
         members = self._members[state]
         if len(members) > 1:
             members = sorted(members, key=lambda obligation: len(self._writer.support(obligation)))
-        written = sorted((self._writer.formula(obligation) for obligation in members[:_MEMBERS]), key=self.size)
+        obligations = dict.fromkeys((self._needed(members[0], state), *members[:_MEMBERS]))
+        written = sorted(map(self._writer.formula, obligations), key=self.size)
         return min((self._shortened(formula, state) for formula in written[:_CANDIDATES]), key=self.size)
 
     def size(self, formula: Formula) -> int:
@@ -66,6 +68,23 @@ class Labels:
         for node in formula.bottom_up(known=self._sizes):
             self._sizes[node] = 1 + sum(self._sizes[argument] for argument in node.args)
         return self._sizes[formula]
+
+    def _needed(self, obligation: int, state: int) -> int:
+        """The obligation without the variables that make no difference to its language, the largest tried first."""
+        if obligation in (FALSE, TRUE):
+            return obligation
+        support = self._writer.support(obligation)
+        for variable in sorted(support, key=self._size_of_variable, reverse=True) if len(support) > 1 else ():
+            for value in (False, True):
+                smaller = self._writer.restricted(obligation, variable, value)
+                if smaller != obligation and self._proved(smaller, state):
+                    obligation = smaller
+                    break
+        return obligation
+
+    def _size_of_variable(self, variable: int) -> int:
+        formula = self._successors.formulas[variable]
+        return 0 if formula is None else self.size(formula)
 
     def simplified(self, formula: Formula) -> Formula:
         """The formula after the named rewrites, unless it is too long for anybody to read."""
@@ -86,12 +105,18 @@ class Labels:
                     break
         return formula
 
-    def _proved(self, formula: Formula, state: int) -> bool:
+    def _proved(self, label: Formula | int, state: int) -> bool:
+        """Whether a formula or obligation is shown to have the language of a state, within the work that is left."""
+        if self._work <= 0:
+            return False
         self._work -= 1
+        successors = self._successors
         try:
-            with self._successors.diagrams.at_most(_PROOF_STEPS):
-                obligation = self._successors.obligation(formula)
-                return equivalent(self._successors, self._machine, obligation, state, _PROOF_PAIRS, self._allowed)
+            with successors.diagrams.at_most(_PROOF_STEPS):
+                obligation = label if isinstance(label, int) else successors.obligation(label)
+                return stands_for(
+                    successors, self._machine, self._known, obligation, state, _PROOF_PAIRS, self._allowed
+                )
         except OutOfSteps:
             self._work -= _COST_OF_GIVING_UP
             return False

@@ -193,51 +193,49 @@ def _quotient(successors: Successors, transitions: dict[int, int], blocks: list[
     )
 
 
-def equivalent(
-    successors: Successors, machine: Machine, left: int, right: int, pair_limit: int, allowed: int = ACCEPT
+def stands_for(
+    successors: Successors,
+    machine: Machine,
+    known: dict[int, int],
+    obligation: int,
+    state: int,
+    pair_limit: int,
+    allowed: int = ACCEPT,
 ) -> bool:
-    """Whether two obligations have equal languages.
+    """Whether an obligation has the language of a state of a minimal machine.
 
-    The union-find form of Hopcroft and Karp's test (1971), started from what ``machine`` knows to be
-    equal.  Raises :class:`OutOfSteps` where that takes more than ``pair_limit`` pairs of states.
+    Reads both in step: since no two states of a minimal machine are equal, each obligation on the way must
+    stand for one state.  ``known`` says for which ones that is settled; what a successful comparison finds
+    is added to it.  Raises :class:`OutOfSteps` after ``pair_limit`` obligations.
     """
     diagrams = successors.diagrams
     atom, low, high = diagrams.atom, diagrams.low, diagrams.high
-    representative = machine.representative
-    parent: dict[int, int] = {}
-
-    def find(state: int) -> int:
-        state = representative.get(state, state)
-        while state in parent:
-            state = parent[state]
-        return state
-
-    def transition_of(state: int) -> int:
-        known = machine.transitions.get(state)
-        if known is not None:
-            return known
-        transition = successors.of_obligation(state)
-        return transition if allowed == ACCEPT else diagrams.constrain(transition, allowed)
-
-    pending = [(left, right)]
-    while pending:
-        x, y = map(find, pending.pop())
-        if x == y:
-            continue
-        if len(parent) >= pair_limit:
+    if obligation in known:
+        return known[obligation] == state
+    assumed = {obligation: state}
+    queue = [obligation]
+    for left in queue:
+        if len(queue) > pair_limit:
             raise OutOfSteps
-        parent[y] = x
-        stack = [(transition_of(x), transition_of(y))]
+        transition = successors.of_obligation(left)
+        if allowed != ACCEPT:
+            transition = diagrams.constrain(transition, allowed)
+        stack = [(transition, machine.transitions[assumed[left]])]
         visited = set(stack)
         while stack:
             m, n = stack.pop()
-            if m == n:
-                continue
             am, an = atom[m], atom[n]
             if am == an == LEAF:
-                if high[m] != high[n] or m == IMPOSSIBLE or n == IMPOSSIBLE:
+                if m == n == IMPOSSIBLE:
+                    continue
+                if IMPOSSIBLE in (m, n) or high[m] != high[n]:
                     return False
-                pending.append((low[m], low[n]))
+                found = known.get(low[m], assumed.get(low[m]))
+                if found is None:
+                    assumed[low[m]] = low[n]
+                    queue.append(low[m])
+                elif found != low[n]:
+                    return False
                 continue
             lows = (low[m] if am <= an else m, low[n] if an <= am else n)
             highs = (high[m] if am <= an else m, high[n] if an <= am else n)
@@ -245,4 +243,5 @@ def equivalent(
                 if pair not in visited:
                     visited.add(pair)
                     stack.append(pair)
+    known.update(assumed)
     return True

@@ -51,6 +51,25 @@ class Writer:
                     stack.append(child)
         return sorted(variables)
 
+    def restricted(self, obligation: int, variable: int, value: bool) -> int:
+        """The obligation where a variable is known to hold or not."""
+        diagrams = self._successors.diagrams
+        memo: dict[int, int] = {}
+
+        def restrict(node: int) -> int:
+            tested = diagrams.variable[node]
+            if tested > variable:
+                return node
+            if tested == variable:
+                return diagrams.present[node] if value else diagrams.absent[node]
+            result = memo.get(node)
+            if result is None:
+                absent, present = restrict(diagrams.absent[node]), restrict(diagrams.present[node])
+                result = memo[node] = diagrams.obligation(tested, absent, present)
+            return result
+
+        return restrict(obligation)
+
     def _placed(self, obligation: int) -> _Placed:
         """The place of the formula's first part in the source, and the formula of the obligation."""
         known = self._written.get(obligation)
@@ -87,30 +106,11 @@ class Writer:
         support = self.support(obligation)
         for variable in support if len(support) <= _MOST_FACTORED else support[:1]:
             for polarity in (True, False):
-                if self._restricted(obligation, variable, polarity != wanted) == absorbing:
+                if self.restricted(obligation, variable, polarity != wanted) == absorbing:
                     factors.append((variable, polarity))
-                    obligation = self._restricted(obligation, variable, polarity == wanted)
+                    obligation = self.restricted(obligation, variable, polarity == wanted)
                     break
         return factors, obligation
-
-    def _restricted(self, obligation: int, variable: int, value: bool) -> int:
-        """The obligation where a variable is known to hold or not."""
-        diagrams = self._successors.diagrams
-        memo: dict[int, int] = {}
-
-        def restrict(node: int) -> int:
-            tested = diagrams.variable[node]
-            if tested > variable:
-                return node
-            if tested == variable:
-                return diagrams.present[node] if value else diagrams.absent[node]
-            result = memo.get(node)
-            if result is None:
-                absent, present = restrict(diagrams.absent[node]), restrict(diagrams.present[node])
-                result = memo[node] = diagrams.obligation(tested, absent, present)
-            return result
-
-        return restrict(obligation)
 
     def _terms(self, obligation: int) -> list[_Term] | None:
         """A sum of products of the obligation, or None where it has too many terms."""
