@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 
 import pytest
 
@@ -50,7 +51,7 @@ def test_a_spec_without_parts_is_named_itself() -> None:
 
 
 @pytest.mark.parametrize("wrap", [next_, weak_next, eventually])
-def test_deep_formulas_need_no_deep_stack(wrap: type[next_]) -> None:
+def test_deep_formulas_need_no_deep_stack(wrap: Callable[[Formula], Formula]) -> None:
     formula = atom("a")
     for _ in range(1_000):
         formula = wrap(formula)

@@ -177,10 +177,12 @@ def _primes_by_brute_force(fspa: Fspa, taken: set[tuple[bool, ...]]) -> set[tupl
 # --- labels ---------------------------------------------------------------------------------------
 
 
-@given(SMALL)
+@given(SMALL, st.sampled_from([(), (("a", "b"),)]))
 @settings(max_examples=150)
-def test_a_label_says_what_the_rest_of_the_trace_must_meet(formula: Formula) -> None:
-    fspa = compiled(formula)
+def test_a_label_says_what_the_rest_of_the_trace_must_meet(
+    formula: Formula, groups: tuple[tuple[str, ...], ...]
+) -> None:
+    fspa = compiled(formula, *groups)
     for state in fspa.states:
         label = read_formula(state.label.ascii)
         for rest in traces(fspa, 3):
@@ -224,6 +226,21 @@ def test_labels_keep_the_operators_of_the_source() -> None:
 
 def test_labels_are_shortened_where_the_automaton_proves_it() -> None:
     assert labels(compiled("F(a & F(b & F c))")) == ["F(a & F(b & F c))", "true", "F(b & F c)", "F c"]
+
+
+@pytest.mark.parametrize("steps", [3, 10, 30])
+def test_labels_of_a_long_sequence_say_the_rest_of_it(steps: int) -> None:
+    """Each state is reached with every earlier goal still open, too; the last goals alone say it all."""
+    sequence = [f"F a{steps}"]
+    for number in range(steps - 1, 0, -1):
+        sequence.append(f"F(a{number} & X {sequence[-1]})")
+    fspa = compiled(f"{sequence[-1]} & G p")
+    assert set(labels(fspa)) == {*(f"{rest} & G p" for rest in sequence), "G p", "false"}
+
+
+def test_a_group_that_names_an_atom_twice_says_nothing_more() -> None:
+    assert compiled("F a & F b", ("a", "b", "a", "b")).edges == compiled("F a & F b", ("a", "b")).edges
+    assert compiled("F a", ("a", "a")).edges == compiled("F a").edges
 
 
 def test_exclusive_atoms_make_skipping_impossible() -> None:

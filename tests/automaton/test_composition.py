@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -26,7 +28,7 @@ def shape(fspa: Fspa) -> tuple[object, ...]:
 @given(PARTS, st.sampled_from([and_, or_]), GROUPS)
 @settings(max_examples=150)
 def test_the_parts_give_the_same_automaton(
-    parts: list[Formula], join: type[and_], groups: tuple[tuple[str, ...], ...]
+    parts: list[Formula], join: Callable[..., Formula], groups: tuple[tuple[str, ...], ...]
 ) -> None:
     spec = spec_from_formula(join(*parts), exclusive=groups)
     whole = build(spec)
@@ -53,6 +55,17 @@ def _isomorphic(one: Fspa, other: Fspa) -> bool:
         (a.accepting, a.verdict, a.distance) == (b.accepting, b.verdict, b.distance)
         for a, b in ((one.states[i], other.states[j]) for i, j in number.items())
     )
+
+
+def test_settled_states_of_the_parts_settle_the_product(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the letters are restricted: what is met takes no further part."""
+    monkeypatch.setattr(composition, "WHOLE_STEPS", 0)
+    fspa = build(spec_from_formula(read_formula("F a & F b & F c"), exclusive=[("a", "b", "c")]))
+    assert {state.label.ascii for state in fspa.states} == {
+        "F a & F b & F c",
+        *("F b & F c", "F a & F c", "F a & F b"),
+        *("F a", "F b", "F c", "true"),
+    }
 
 
 def test_labels_of_a_product_are_those_of_its_parts(monkeypatch: pytest.MonkeyPatch) -> None:

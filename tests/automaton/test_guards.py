@@ -12,10 +12,12 @@ from hypothesis import strategies as st
 from tests.logic.strategies import state_formulas
 from tltlc.automaton import guards
 from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.diagrams import ACCEPT, REJECT, Diagrams
 from tltlc.automaton.fspa import Guard
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula, and_, atom, iff, not_, or_
+from tltlc.logic.printer import ascii_text
 
 ATOMS = ("a", "b", "c")
 VALUES = st.tuples(*[st.floats(-1, 1).filter(lambda x: x != 0)] * len(ATOMS))
@@ -80,3 +82,24 @@ def test_a_guard_with_too_many_primes_names_the_part(monkeypatch: pytest.MonkeyP
     with pytest.raises(TltlError) as raised:
         build(spec_from_formula(parity))
     assert raised.value.diagnostics[0].code == "TLT0502"
+
+
+def test_a_guard_with_too_many_products_ends_soon() -> None:
+    """The parity of 25 atoms is a diagram of 49 nodes and a sum of 2^24 products."""
+    parity = atom("a0")
+    for number in range(1, 25):
+        parity = iff(parity, atom(f"a{number}"))
+    with pytest.raises(TltlError) as raised:
+        build(spec_from_formula(parity))
+    assert raised.value.diagnostics[0].code == "TLT0502"
+
+
+def test_a_short_form_stays_a_sum_where_the_product_would_be_very_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    diagrams = Diagrams()
+    guard = REJECT
+    for pair in range(3):
+        both = diagrams.node(2 * pair, REJECT, diagrams.node(2 * pair + 1, REJECT, ACCEPT))
+        guard = diagrams.disjoin(guard, both)
+    monkeypatch.setattr(guards, "PRIME_LIMIT", 7)
+    text = ascii_text(guards.Guards(diagrams).formula(guard, "abcdef"))
+    assert text == "a & b | c & d | e & f"

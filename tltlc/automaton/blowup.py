@@ -67,5 +67,5 @@ def _size(part: Part, spec: Spec) -> int:
     successors.number_variables(normal)
     try:
         return len(machine(successors, successors.obligation(normal), _PART_BUDGET).transitions)
-    except (OutOfStates, OutOfSteps):
+    except (OutOfStates, OutOfSteps, RecursionError):
         return _PART_BUDGET
