@@ -29,7 +29,8 @@ class AtLeast:
 class Family:
     """Medians over the formulas of a family; times in milliseconds.
 
-    ``to_spot`` is our median over Spot's, on the formulas where both are known.  ``ltlf2dfa_over_*`` is the median of
+    ``to_spot`` is our median over Spot's, on the formulas where both are known, with Spot's times scaled to this
+    machine by MONA's; ``to_spot_recorded`` with Spot's times as recorded.  ``ltlf2dfa_over_*`` is the median of
     the ratios formula by formula.  ``ltlf2dfa_solved`` counts of ``ltlf2dfa_tried`` formulas.
     """
 
@@ -40,6 +41,7 @@ class Family:
     mona_ms: float
     spot_ms: float
     to_spot: float
+    to_spot_recorded: float
     ltlf2dfa_over_minimal: AtLeast | None
     ltlf2dfa_over_build: AtLeast | None
     ltlf2dfa_solved: int
@@ -90,12 +92,19 @@ def _family(
         build_ms=_median_of(own, "build_ms"),
         mona_ms=_median_of(own, "mona_ms"),
         spot_ms=spot_ms,
+        to_spot_recorded=_over_recorded_spot([reference for reference in references if reference.name in both], records),
         to_spot=median([records[member]["minimal_ms"] for member in both]) / spot_ms if both else float("nan"),
         ltlf2dfa_over_minimal=_speed_up(own, "minimal_ms", timeout_s),
         ltlf2dfa_over_build=_speed_up(own, "build_ms", timeout_s),
         ltlf2dfa_solved=sum("ltlf2dfa_ms" in record for record in own),
         ltlf2dfa_tried=sum("ltlf2dfa_ms" in record or "ltlf2dfa_failed" in record for record in tried),
     )
+
+
+def _over_recorded_spot(references: Sequence[Reference], records: Mapping[str, Record]) -> float:
+    recorded = [reference.spot_ms for reference in references if reference.spot_ms is not None]
+    ours = [records[reference.name]["minimal_ms"] for reference in references]
+    return median(ours) / median(recorded) if recorded else float("nan")
 
 
 def _median_of(records: Iterable[Record], field: str) -> float:
