@@ -20,22 +20,6 @@ MONITOR_FACTOR = 0.5
 MISSED = "**missed**"
 
 
-_CAUSES = """
-## What was missed, and why
-
-- *Three times Spot.* The diagrams are pure Python: a node costs 0.7 µs, and the automata of `seq`, `conj`, `resp`, `branch`, `lit_nim` have few
-  but shared nodes, so that no better algorithm is left to win by, only a faster table. What would reach it: the 280 lines of
-  `tltlc/automaton/diagrams.py` compiled (mypyc, or a C extension behind the same interface). Normal form alone takes a quarter of the time of
-  `seq`. The estimate leans on MONA's whole process, a few milliseconds of which are its start: the column with Spot's
-  times as recorded shows how far that carries. `lit_syft_random` pays for trying the formula as a whole before its parts.
-- *LTLf2DFA, complete build.* LTLf2DFA gives an automaton with guards as they come out of MONA; a complete build adds all prime
-  implicants, distances, verdicts, and labels shortened by proof in three notations. The comparison of like with like is *minimal*; there only
-  `lit_syft_random` is under 20: formulas over 20 atoms with automata of a few states, which MONA solves in its start-up time.
-- *600 states in 5 s.* The minimal automaton of `lit_syft1_005` is there in half a second; its guards over 19 atoms have tens of thousands of
-  literals when written as prime implicants. What would reach it: guards kept as diagrams in the artefact, a new version of the format.
-"""
-
-
 def render(store: Store) -> str:
     """The whole report in Markdown."""
     compiled = store.section(compile_table.SECTION)
@@ -50,7 +34,6 @@ def render(store: Store) -> str:
             if any(verdict == MISSED for *_, verdict in goals)
             else []
         ),
-        _CAUSES,
         _families(rows, timeout_s),
         _sizes(compiled),
         _large(compiled),
@@ -162,6 +145,7 @@ def _families(rows: Sequence[summary.Family], timeout_s: float) -> str:
             _ms(row.mona_ms),
             _ms(row.spot_ms),
             _ratio(row.to_spot),
+            _ratio(row.to_spot_recorded),
             row.ltlf2dfa_over_minimal or "–",
             row.ltlf2dfa_over_build or "–",
             f"{row.ltlf2dfa_solved} of {row.ltlf2dfa_tried}",

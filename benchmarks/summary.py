@@ -92,7 +92,9 @@ def _family(
         build_ms=_median_of(own, "build_ms"),
         mona_ms=_median_of(own, "mona_ms"),
         spot_ms=spot_ms,
-        to_spot_recorded=_over_recorded_spot([reference for reference in references if reference.name in both], records),
+        to_spot_recorded=_over_recorded_spot(
+            [reference for reference in references if reference.name in both], records
+        ),
         to_spot=median([records[member]["minimal_ms"] for member in both]) / spot_ms if both else float("nan"),
         ltlf2dfa_over_minimal=_speed_up(own, "minimal_ms", timeout_s),
         ltlf2dfa_over_build=_speed_up(own, "build_ms", timeout_s),

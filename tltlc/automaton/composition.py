@@ -14,8 +14,8 @@ from tltlc.automaton.machine import Machine, OutOfStates, machine
 from tltlc.automaton.successors import Successors
 from tltlc.logic.formula import Formula
 
-WHOLE_STEPS = 40_000
-"""Steps that exploration as a whole may take before the parts are tried: a few hundredths of a second."""
+WHOLE_STEPS = 5_000
+"""Steps that exploration as a whole may take before the parts are tried: a few thousandths of a second."""
 
 
 def minimal_machine(successors: Successors, formula: Formula, state_budget: int, allowed: int = ACCEPT) -> Machine:
