@@ -94,6 +94,22 @@ def test_the_initial_state_rejects_the_empty_trace_unless_that_costs_a_state(tex
     assert compiled(text).states[0].accepting is empty
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "F(a & X F(b & X F a)) | F(b & X F a) & G(a | N G b)",
+        "F(a & F b & X F(a & b)) & !F(b & X F a)",
+        "G(a | N G(b | N G a)) & (F b | G a)",
+        "G(a | G b | N G(a | b)) <-> F(b & X F a)",
+        "(a U (b U F a)) & (G a | (b R G(a | b))) | F(a M (b & F a))",
+    ],
+)
+def test_accepts_what_nested_formulas_that_imply_each_other_hold_of(text: str) -> None:
+    fspa = compiled(text)
+    for trace in traces(fspa, 5):
+        assert fspa.states[run(fspa, trace)].accepting == oracle.holds(read_formula(text), named(fspa, trace)), trace
+
+
 # --- distances, verdicts, order -------------------------------------------------------------------
 
 
@@ -228,7 +244,7 @@ def test_labels_are_shortened_where_the_automaton_proves_it() -> None:
     assert labels(compiled("F(a & F(b & F c))")) == ["F(a & F(b & F c))", "true", "F(b & F c)", "F c"]
 
 
-@pytest.mark.parametrize("steps", [3, 10, 30])
+@pytest.mark.parametrize("steps", [3, 10, 30, 60])
 def test_labels_of_a_long_sequence_say_the_rest_of_it(steps: int) -> None:
     """Each state is reached with every earlier goal still open, too; the last goals alone say it all."""
     sequence = [f"F a{steps}"]
@@ -236,6 +252,13 @@ def test_labels_of_a_long_sequence_say_the_rest_of_it(steps: int) -> None:
         sequence.append(f"F(a{number} & X {sequence[-1]})")
     fspa = compiled(f"{sequence[-1]} & G p")
     assert set(labels(fspa)) == {*(f"{rest} & G p" for rest in sequence), "G p", "false"}
+
+
+def test_labels_of_a_hundred_equal_goals() -> None:
+    sequence = ["F a"]
+    for _ in range(99):
+        sequence.append(f"F(a & X {sequence[-1]})")
+    assert set(labels(compiled(sequence[-1]))) == {*sequence, "true"}
 
 
 def test_a_group_that_names_an_atom_twice_says_nothing_more() -> None:

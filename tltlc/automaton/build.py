@@ -226,7 +226,7 @@ def _labels(
     diagrams = successors.diagrams
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
     restored = {negation_normal_form(part): part for part in source.walk() if part.op in ("implies", "iff")}
-    formulas = {state: _restored(labels.label(state), restored) for state in reversed(minimal.transitions)}
+    formulas = {state: _restored(labels.label(state), restored) for state in minimal.transitions}
     own = labels.simplified(source)
     if labels.size(own) <= labels.size(formulas[minimal.initial]):
         formulas[minimal.initial] = own

@@ -73,14 +73,12 @@ class Successors:
             return TRUE if op == "true" else FALSE
         if op == "not":
             return diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
-        itself = diagrams.obligation(self._variable(formula), FALSE, TRUE)
-        # `q` implies `p U q`, and `G p` implies `p`: said here where it costs no new variable, so that
-        # `p U q | q` and `p U q` are one obligation. Nests of n untils then reach n obligations, not 2^n.
-        last = formula.args[-1] if formula.args else formula
-        if last.is_temporal and op in "FUWGRM":
-            combine = diagrams.either if op in "FUW" else diagrams.both
-            return combine(itself, self.obligation(last))
-        return itself
+        result = diagrams.obligation(self._variable(formula), FALSE, TRUE)
+        for weaker in _implied_by(formula):
+            result = diagrams.both(result, self.obligation(weaker))
+        for stronger in _that_imply(formula):
+            result = diagrams.either(result, self.obligation(stronger))
+        return result
 
     def _variable(self, formula: Formula) -> int:
         number = self._variables.get(formula)
@@ -173,3 +171,30 @@ class Successors:
         if op in "RM":
             return conjoin(right, disjoin(left, again))
         raise ValueError(f"not in negation normal form: {op}")
+
+
+# What temporal formulas imply of each other, said of their obligations where it costs no new variable: `p U q | q` and
+# `p U q` are then one obligation, and so are `F(p & X F q) | F q` and `F q`.  Nests of n untils, and sequences of n
+# goals, reach n obligations and not 2^n.
+
+
+def _implied_by(formula: Formula) -> list[Formula]:
+    """Temporal subformulas that hold wherever the formula does."""
+    op, args = formula.op, formula.args
+    if op in ("G", "R", "M") and args[-1].is_temporal:
+        return [args[-1]]
+    if op == "F" and args[0].op == "and":
+        later = (part.args[0] if part.op == "X" else part for part in args[0].args)
+        return [part for part in later if part.op == "F"]
+    return []
+
+
+def _that_imply(formula: Formula) -> list[Formula]:
+    """Temporal subformulas wherever which the formula holds."""
+    op, args = formula.op, formula.args
+    if op in ("F", "U", "W") and args[-1].is_temporal:
+        return [args[-1]]
+    if op == "G" and args[0].op == "or":
+        later = (part.args[0] if part.op == "N" else part for part in args[0].args)
+        return [part for part in later if part.op == "G"]
+    return []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from tltlc.automaton.diagrams import FALSE, TRUE
 from tltlc.automaton.successors import Successors
@@ -82,18 +82,21 @@ class Writer:
             return 0, build.FALSE
         if obligation == TRUE:
             return 0, build.TRUE
+        first = self._successors.diagrams.variable[obligation]
+        formula = self._successors.formulas[first]
+        if formula is not None and self._successors.obligation(formula) == obligation:
+            return self._literal(first, True)
         for absorbing, join in ((FALSE, build.and_), (TRUE, build.or_)):
             factors, rest = self._factors(obligation, absorbing)
             if factors:
-                operands = [self._literal(*factor) for factor in factors]
+                operands = [self._literal(*factor) for factor in self._independent(factors, absorbing)]
                 if rest not in (FALSE, TRUE):
                     operands.append(self._placed(rest))
                 return _joined(join, operands)
         terms = self._terms(obligation)
         if terms is not None:
-            return _joined(
-                build.or_, [_joined(build.and_, [self._literal(*literal) for literal in term]) for term in terms]
-            )
+            products = [[self._literal(*literal) for literal in self._independent(term, FALSE)] for term in terms]
+            return _joined(build.or_, [_joined(build.and_, product) for product in products])
         diagrams = self._successors.diagrams
         test = self._literal(diagrams.variable[obligation], True)
         present = _joined(build.and_, [test, self._placed(diagrams.present[obligation])])
@@ -111,6 +114,24 @@ class Writer:
                     obligation = self.restricted(obligation, variable, polarity == wanted)
                     break
         return factors, obligation
+
+    def _independent(self, literals: Iterable[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
+        """The literals of an ``and`` (``absorbing`` is FALSE) or ``or`` but those that the obligation of another says.
+
+        ``F(a & X F b)`` has the obligation of its own variable and that of ``F b``: it need not be said beside it.
+        """
+        successors = self._successors
+        said: set[int] = set()
+        for variable, polarity in literals:
+            formula = successors.formulas[variable]
+            if polarity and formula is not None and formula.is_temporal:
+                whole = successors.obligation(formula)
+                said.update(
+                    other
+                    for other in self.support(whole)
+                    if other != variable and self.restricted(whole, other, absorbing == TRUE) == absorbing
+                )
+        return [(variable, polarity) for variable, polarity in literals if not (polarity and variable in said)]
 
     def _terms(self, obligation: int) -> list[_Term] | None:
         """A sum of products of the obligation, or None where it has too many terms."""
