@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from itertools import islice
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -153,6 +157,24 @@ def test_states_are_numbered_breadth_first_and_edges_sorted(formula: Formula) ->
 @settings(max_examples=50)
 def test_equal_input_gives_equal_output(formula: Formula) -> None:
     assert compiled(formula) == compiled(formula)
+
+
+def test_output_does_not_depend_on_the_order_of_hashes() -> None:
+    program = """
+from tests.reference_formulas import corpus
+from tltlc.automaton.build import build, spec_from_formula
+small = [entry.formula for entry in corpus() if entry.states is not None and entry.states <= 12]
+print([build(spec_from_formula(formula)) for formula in small])
+"""
+    root = Path(__file__).parents[2]
+    outputs = set()
+    for seed in ("0", "1", "2"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        done = subprocess.run(
+            [sys.executable, "-c", program], env=environment, cwd=root, capture_output=True, check=True
+        )
+        outputs.add(done.stdout)
+    assert len(outputs) == 1
 
 
 # --- guards ---------------------------------------------------------------------------------------

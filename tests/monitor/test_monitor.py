@@ -205,6 +205,14 @@ def test_exclusive_atoms_that_hold_at_once_are_named() -> None:
     )
 
 
+@pytest.mark.parametrize("sample", [(math.nan,), (math.inf,), (1.5,), (), (1.0, 1.0)])
+def test_values_of_atoms_that_are_none_are_refused(sample: tuple[float, ...]) -> None:
+    monitor = Monitor(with_atom(Signal("x")))
+    with pytest.raises(ValueError, match="1 values in"):
+        monitor.step_atoms(sample)
+    assert monitor.steps == 0
+
+
 # --- params ---------------------------------------------------------------------------------------
 
 

@@ -18,14 +18,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.automaton import letters
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
+from tests.logic.strategies import formulas
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.expression import Const, Expression, Op, Signal
 from tltlc.logic import formula as f
+from tltlc.logic import oracle
 from tltlc.monitor import Monitor, MonitorError
 from tltlc.record import replace
 from tltlc.resolve import spec
@@ -74,6 +77,40 @@ def test_the_same_steps_on_random_automata(data: st.DataObject, fspa: Fspa) -> N
     for values in data.draw(atom_traces(fspa, max_size=12)):
         sample = dict(zip(names, values, strict=True))
         assert outcome(generated.step, sample) == outcome(monitor.step, sample)
+
+
+@settings(max_examples=150)
+@given(st.data(), formulas(), st.sampled_from([(), (("a", "b"),), (("a", "b"), ("b", "c", "d"))]))
+def test_oracle_automaton_monitor_and_generated_monitor_agree(
+    data: st.DataObject, formula: f.Formula, exclusive: tuple[tuple[str, ...], ...]
+) -> None:
+    """On traces full of exact zeros, exclusive atoms or not; and an episode's rewards add up."""
+    limit = data.draw(st.integers(1, 6))
+    judge: spec.Judge = data.draw(st.sampled_from(["goal", "limit"]))
+    fspa = replace(build(spec_from_formula(formula, exclusive=exclusive)), limit_steps=limit, judge=judge)
+    generated, monitor = module_of(fspa).Monitor(), Monitor(fspa)
+    names = [atom.name for atom in fspa.atoms]
+    state, prefix, total, progress = 0, [], 0.0, 0.0
+    for values in data.draw(atom_traces(fspa)):
+        state = letters.step(fspa, state, tuple(value > 0.0 for value in values))
+        prefix.append({name for name, value in zip(names, values, strict=True) if value > 0.0})
+        ended = monitor.done
+        step = monitor.step_atoms(values)
+        assert repr(tuple(generated.step(dict(zip(names, values, strict=True))))) == repr(tuple(step))
+        assert (step.state, step.accepting) == (state, oracle.holds(formula, prefix))
+        total += step.reward
+        if ended:
+            assert step.reward == 0.0
+        elif step.verdict == "violated":
+            # Steps and terminal penalty come to the whole limit.
+            assert step.done
+            assert total == pytest.approx(step.progress - 1)
+        else:
+            assert total == pytest.approx(step.progress - len(prefix) / limit)
+            goal = step.accepting if judge == "goal" else step.verdict == "satisfied"
+            assert step.done == (goal or len(prefix) == limit)
+        assert progress <= step.progress <= 1.0
+        progress = step.progress
 
 
 @given(st.data(), expressions(), st.tuples(numbers, numbers))

@@ -71,14 +71,20 @@ class Monitor:
             MonitorError: TLT0611 missing and TLT0612 unusable signals, TLT0613 an atom without a value,
                 TLT0614 exclusive atoms that hold at once.  The state stays.
         """
-        return self.step_atoms(self._samples.atom_values(signals, self.steps + 1))
+        return self._take(self._samples.atom_values(signals, self.steps + 1))
 
     def step_atoms(self, values: Sequence[float]) -> Step:
         """Take one sample that is given as the values of the atoms, in order, each in [-1, 1].
 
         Raises:
             MonitorError: TLT0614 exclusive atoms that hold at once.  The state stays.
+            ValueError: a value is not in [-1, 1], or there is not one for each atom.  The state stays.
         """
+        if len(values) != len(self._names) or not all(-1.0 <= value <= 1.0 for value in values):
+            raise ValueError(f"{len(self._names)} values in [-1, 1] are needed, not {tuple(values)}")
+        return self._take(values)
+
+    def _take(self, values: Sequence[float]) -> Step:
         check_exclusive(self.fspa, values, self.steps + 1)
         source = self.state
         taken = next(edge for edge in self._tables.edges[source] if holds(edge.guard, values))
