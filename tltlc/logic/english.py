@@ -8,13 +8,14 @@ from typing import Final
 from tltlc.logic import formula as build
 from tltlc.logic.bounded import Bounded, bounded, with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula
-from tltlc.logic.implication import DUAL
+from tltlc.logic.implication import complement
 from tltlc.logic.notation import ASCII, Notation, write
+from tltlc.logic.rewrite import simplify
 
 _PHRASE: Final = Notation(
     {"not": "not "},
     {"and": " and ", "or": " or ", "implies": " implies ", "iff": " exactly when "},
-    {"true": "true", "false": "false"},
+    {},
     space_before_bracket=True,
     brackets_between_infix=True,
 )
@@ -33,14 +34,22 @@ def english_text(formula: Formula) -> str:
 
     ``F(near(s1) & X F near(exit)) & G alive`` reads "Reach near(s1), then near(exit), and keep alive throughout."
     "Reach" means now or later, "then" strictly later, "throughout" from now to the end.  Sentences
-    that are equal belong to formulas that are equal on all traces.
+    that are equal belong to formulas that are equal on all traces.  A formula with a constant that does
+    not speak of the trace's end (``true U a``) is simplified first.
     """
+    formula = _without_constants(formula)
     if formula is TRUE:
         return "Nothing remains to be done."
     if formula is FALSE:
         return "The spec is violated."
     text, _ = _clause(formula, "now", _DEEPEST)
     return f"{text[0].upper()}{text[1:]}."
+
+
+def _without_constants(formula: Formula) -> Formula:
+    """An equal formula with constants only in ``X true`` and ``N false``, or alone."""
+    idle = any((TRUE in node.args or FALSE in node.args) and not _is_about_end(node) for node in formula.walk())
+    return simplify(formula) if idle else formula
 
 
 def _clause(node: Formula, when: str, depth: int) -> _Clause:
@@ -143,7 +152,10 @@ def _goal(body: Formula, depth: int) -> str:
         states = [part for part in body.args if _is_state(part)]
         others = [part for part in body.args if not _is_state(part)]
         if states:
-            return f"{_bracketed(build.and_(*states))} and from that step on {_inner(build.and_(*others), depth)}"
+            goal, rest = _bracketed(build.and_(*states)), build.and_(*others)
+            if _is_about_end(rest):
+                return f"{goal} at a {_step(rest, depth)}"
+            return f"{goal} and from that step on {_inner(rest, depth)}"
     return f"a {_step(body, depth)}"
 
 
@@ -201,8 +213,8 @@ def _next(node: Formula, depth: int) -> _Clause:
         body, count = body.args[0], count + 1
     if op == "X" and body is TRUE:
         return f"go on for {count} more step{'s' * (count > 1)}", _PLAIN
-    if op == "N" and body is FALSE and count == 1:
-        return "be at the last step", _PLAIN
+    if op == "N" and body is FALSE:
+        return "be at the last step" if count == 1 else f"be at one of the last {count} steps", _PLAIN
     moment = "at the next step" if count == 1 else f"after {count} steps"
     if op == "N":
         moment += ", if there is one" if count == 1 else ", if there are that many"
@@ -226,6 +238,8 @@ def _bounded(found: Bounded, depth: int) -> _Clause:
 
 def _step(node: Formula, depth: int) -> str:
     """A noun for a moment at which ``node`` holds."""
+    if _is_about_end(node):
+        return f"step that is {'not ' if node.op == 'X' else ''}the last"
     return f"step with {_bracketed(node)}" if _is_state(node) else f"step from which on to {_inner(node, depth)}"
 
 
@@ -258,27 +272,19 @@ def _without_negation(node: Formula) -> Formula:
 
 def _negated(node: Formula) -> Formula:
     """The negation, pushed through the outermost operator."""
-    args = node.args
-    match node.op:
-        case "not":
-            return args[0]
-        case "and":
-            return build.or_(*(build.not_(part) for part in args))
-        case "or":
-            return build.and_(*(build.not_(part) for part in args))
-        case "implies":
-            return build.and_(args[0], build.not_(args[1]))
-        case "iff":
-            return build.iff(args[0], build.not_(args[1]))
-        case op if op in DUAL:
-            return build.temporal(DUAL[op], tuple(build.not_(part) for part in args))
-        case _:
-            return build.not_(node)
+    if node.op == "iff":
+        return build.iff(node.args[0], complement(node.args[1]))
+    return complement(node, depth=1)
 
 
 def _is_state(node: Formula) -> bool:
     """Whether the formula has no temporal operator."""
     return not any(part.is_temporal for part in node.walk())
+
+
+def _is_about_end(node: Formula) -> bool:
+    """Whether the formula is ``X true`` or ``N false``."""
+    return (node.op, *node.args) in (("X", TRUE), ("N", FALSE))
 
 
 def _is_literal(node: Formula) -> bool:
