@@ -107,6 +107,14 @@ def test_long_labels_are_wrapped_before_operators_and_cut() -> None:
     assert wrapped("", 5) == [""]
 
 
+def test_comparisons_arguments_and_bounds_stay_on_one_line() -> None:
+    assert wrapped("at & !(force > 40) & (speed < 2.5)", 9) == ["at", "& !(force > 40)", "& (speed < 2.5)"]
+    assert wrapped("near(a) & placed(cube, tray)", 15) == ["near(a)", "& placed(cube, tray)"]
+    assert wrapped("a & F[0,4] b", 8) == ["a", "& F[0,4] b"]
+    assert wrapped("Reach near(a, close=3), then b.", 24) == ["Reach near(a, close=3),", "then b."]
+    assert wrapped("a - b + c > 0", 4) == ["a - b +", "c > 0"], "no longer than two widths"
+
+
 def test_names_of_atoms_are_kept_whatever_operators_stand_in_them() -> None:
     fspa = cover_and_hide()
     atoms = tuple(replace(a, name=n) for a, n in zip(fspa.atoms, ("x!", "a & b", "true_love", "b"), strict=True))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.backends import Notation
@@ -20,6 +21,11 @@ _unseen = re.compile(
 )
 
 BREAK_BEFORE = ("∧", "∨", "⇒", "⇔", "𝒰", "&", "|", "->", "<->", "and", "or", "implies", "iff", "U", "W", "R", "M")
+
+
+_TIES = frozenset({"<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/", "^"})
+# The end of a line that goes on inside a bound, `F[0,3] p`, or between the arguments of an atom, `near(a, b)`.
+_tied_end = re.compile(r"\]$|\w\([^()]*,$")
 
 
 def label(text: Text, notation: Notation) -> str:
@@ -54,16 +60,12 @@ def visible(text: str) -> str:
 def wrapped(text: str, width: int, most_lines: int = 8) -> list[str]:
     """The text on lines of about ``width`` characters, broken at blanks and before infix operators.
 
-    No word is split.  What goes beyond ``most_lines`` is cut and marked by an ellipsis.
+    No word is split, and no comparison nor list of arguments of up to two widths.  What goes beyond ``most_lines`` is
+    cut and marked by an ellipsis.
     """
-    words: list[str] = []
-    for word in visible(" ".join(text.split())).split(" "):
-        if words and words[-1] in BREAK_BEFORE:
-            words[-1] += " " + word
-        else:
-            words.append(word)
-    lines = [words[0]]
-    for word in words[1:]:
+    pieces = _pieces(visible(" ".join(text.split())).split(" "), 2 * width)
+    lines = [pieces[0]]
+    for word in pieces[1:]:
         if len(lines[-1]) + 1 + len(word) <= width:
             lines[-1] += " " + word
         else:
@@ -71,3 +73,15 @@ def wrapped(text: str, width: int, most_lines: int = 8) -> list[str]:
     if len(lines) > most_lines:
         lines = [*lines[: most_lines - 1], lines[most_lines - 1] + " …"]
     return lines
+
+
+def _pieces(words: list[str], longest: int) -> list[str]:
+    """The words, those that belong on one line put together unless they get longer than ``longest``."""
+    pieces = [words[0]]
+    for before, word in pairwise(words):
+        tied = word in _TIES or before in _TIES or _tied_end.search(pieces[-1]) is not None
+        if before in BREAK_BEFORE or (tied and len(pieces[-1]) + 1 + len(word) <= longest):
+            pieces[-1] += " " + word
+        else:
+            pieces.append(word)
+    return pieces
