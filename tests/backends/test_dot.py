@@ -38,6 +38,12 @@ def test_the_graph_of_cover_and_hide() -> None:
     assert emitted(cover_and_hide()) == golden
 
 
+def test_loops_of_final_states_are_on_the_right_where_no_edge_arrives() -> None:
+    drawn = parsed(emitted(cover_and_hide()))
+    on_the_right = [edge[0] for edge in drawn.edges() if edge[0] == edge[1] and edge.attr["headport"] == "e"]
+    assert on_the_right == [str(state.id) for state in cover_and_hide().states if state.verdict == "violated"]
+
+
 def test_the_picture_shows_what_the_figure_of_the_paper_shows() -> None:
     fspa, drawn = cover_and_hide(), parsed(emitted(cover_and_hide()))
     assert len(drawn.nodes()) == 1 + len(fspa.states)
@@ -112,6 +118,7 @@ def test_comparisons_arguments_and_bounds_stay_on_one_line() -> None:
     assert wrapped("near(a) & placed(cube, tray)", 15) == ["near(a)", "& placed(cube, tray)"]
     assert wrapped("a & F[0,4] b", 8) == ["a", "& F[0,4] b"]
     assert wrapped("Reach near(a, close=3), then b.", 24) == ["Reach near(a, close=3),", "then b."]
+    assert wrapped("not aaaa or not bbbb", 9) == ["not aaaa", "or not bbbb"]
     assert wrapped("a - b + c > 0", 4) == ["a - b +", "c > 0"], "no longer than two widths"
 
 

@@ -105,7 +105,10 @@ def _draw_edge(drawn: Digraph, fspa: Fspa, edge: Edge, text: str, full: bool) ->
 
 def _manner(source: State, target: State) -> dict[str, str]:
     """How an edge is drawn: progress is dark and kept straight, ways into a trap are pale red and give way."""
-    if source.distance is None or source.id == target.id:
+    if source.id == target.id:
+        # Nothing leaves a state that is final: its loop is out of the way on the right, where no edge arrives.
+        return {"headport": "e", "tailport": "e"} if source.verdict in ("satisfied", "violated") else {}
+    if source.distance is None:
         return {}
     if target.distance is None:
         return {"color": "#f87171", "weight": "0"}

@@ -23,7 +23,7 @@ _unseen = re.compile(
 BREAK_BEFORE = ("∧", "∨", "⇒", "⇔", "𝒰", "&", "|", "->", "<->", "and", "or", "implies", "iff", "U", "W", "R", "M")
 
 
-_TIES = frozenset({"<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/", "^"})
+_TIES = frozenset({"not", "<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/", "^"})
 # The end of a line that goes on inside a bound, `F[0,3] p`, or between the arguments of an atom, `near(a, b)`.
 _tied_end = re.compile(r"\]$|\w\([^()]*,$")
 
