@@ -347,6 +347,8 @@ def test_script(tmp_path: Path) -> None:
         (as_csv([]), ["trace.csv"], 1, "error: the trace holds no sample\n"),
         ("", ["trace.csv"], 1, "error: the trace has no column for "),
         ("health\n1\n", ["trace.csv"], 1, "error: the trace has no column for `distance(s1)`, "),
+        ("health,health\n1,1\n", ["trace.csv"], 1, "error: the trace has no column for `distance(s1)`, "),
+        ("health," + as_csv([FAR]), ["trace.csv"], 1, "error: two columns are called `health`\n"),
         (as_csv([FAR]) + "1\n", ["trace.csv"], 1, "error: line 3: 1 values under 5 columns\n"),
         (as_csv([{**FAR, "health": "x"}]), ["trace.csv"], 1, "error: line 2: `x` is no number\n"),  # type: ignore[dict-item]
         (as_csv([{**FAR, "health": math.nan}]), ["trace.csv"], 1, "error: step 1: the signal `health` is nan"),

@@ -114,10 +114,28 @@ HEADER = 'open,"near(a, b)"\n'
         (HEADER.encode() + b"1,\xff\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "it is not UTF-8")),
         ('{"open": 1}\n{"open" 1}', ("TLT0622", "line 2 of the trace cannot be read", "2:9", "this is not JSON")),
         ('{"open": 1}\n[1]', ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this is no object")),
+        (
+            '{"open": "yes"}',
+            ("TLT0622", "line 1 of the trace cannot be read", "1:1", "this value of `open` is no number"),
+        ),
     ],
 )
 def test_traces_that_cannot_be_read(text: str | bytes, expected: tuple[str, str, str, str]) -> None:
     assert refused(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("near(a, b);open\n1;1\n", "separate the columns by commas"),
+        ("closed\topen\n1\t1\n", "separate the columns by commas"),
+        ('[{"open": 1}]\n', 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'),
+    ],
+)
+def test_other_forms_of_a_trace(text: str, advice: str) -> None:
+    with pytest.raises(TltlError) as caught:
+        read(text)
+    assert caught.value.diagnostics[0].help == advice
 
 
 @given(st.binary(max_size=60))

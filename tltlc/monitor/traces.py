@@ -17,6 +17,7 @@ Sample = dict[str, float]
 
 _BOOLS: Final = {"true": 1.0, "false": 0.0}
 _OBJECTS: Final = 'write one object a line, e.g. `{"health": 1.0, "seen": false}`'
+_VALUES: Final = "write a number, `true` or `false`"
 _BYTE_ORDER_MARK: Final = "\ufeff"
 
 
@@ -36,7 +37,9 @@ def read_trace(lines: Iterable[bytes], name: str, signals: Sequence[Signal]) -> 
         if first.strip():
             all_lines = chain([first], texts)
             samples = (
-                _json_lines(all_lines, texts) if first.lstrip().startswith("{") else _csv(all_lines, texts, signals)
+                _json_lines(all_lines, texts, signals)
+                if first.lstrip().startswith("{")
+                else _csv(all_lines, texts, signals)
             )
             break
     else:
@@ -117,12 +120,19 @@ def _columns(header: Sequence[str], at: _Lines, signals: Sequence[Signal]) -> li
     if missing:
         title = f"the trace has no column for {listed(missing)}"
         found = f"its columns are {listed(header[:10])}" + (", …" if len(header) > 10 else "")
-        way_out = _suggestion(missing[0], header) or found
+        way_out = _other_form(at.text) or _suggestion(missing[0], header) or found
         raise TltlError([Diagnostic("TLT0621", title, (at.label(""),), way_out)])
     for signal in signals:
         if header.count(signal.name) > 1:
             raise at.error(f"two columns are called `{signal.name}`")
     return [(signal.name, header.index(signal.name)) for signal in signals]
+
+
+def _other_form(line: str) -> str | None:
+    """What to do where the line looks like the start of something other than commas between names."""
+    if line.lstrip().startswith("["):
+        return _OBJECTS
+    return "separate the columns by commas" if ";" in line or "\t" in line else None
 
 
 def _suggestion(name: str, known: Sequence[str]) -> str | None:
@@ -145,7 +155,7 @@ def _cell(cell: str, name: str, column: int, at: _Lines) -> float:
         return float(text)
     except ValueError:
         remark = f"this value of `{name}` is no number" if text else f"`{name}` has no value"
-        raise at.error(remark, _cell_span(at.text, column), help="write a number, `true` or `false`") from None
+        raise at.error(remark, _cell_span(at.text, column), help=_VALUES) from None
 
 
 def _cell_span(line: str, column: int) -> tuple[int, int] | None:
@@ -160,7 +170,8 @@ def _cell_span(line: str, column: int) -> tuple[int, int] | None:
 # --- JSON lines -----------------------------------------------------------------------------------
 
 
-def _json_lines(lines: Iterator[str], at: _Lines) -> Iterator[Sample]:
+def _json_lines(lines: Iterator[str], at: _Lines, signals: Sequence[Signal]) -> Iterator[Sample]:
+    names = [signal.name for signal in signals]
     for line in lines:
         if not line.strip():
             continue
@@ -172,6 +183,9 @@ def _json_lines(lines: Iterator[str], at: _Lines) -> Iterator[Sample]:
             raise at.error("this nests too deep, or holds a number that is too long") from None
         if not isinstance(found, dict):
             raise at.error("this is no object", help=_OBJECTS)
+        for name in names:
+            if not isinstance(found.get(name, 0), (int, float)):
+                raise at.error(f"this value of `{name}` is no number", help=_VALUES)
         yield {name: _json_number(value) for name, value in found.items() if isinstance(value, (int, float))}
 
 
