@@ -20,12 +20,20 @@ class Span:
 
 
 class SourceFile:
-    """A text and the name under which messages speak of it (a path, or ``<stdin>``)."""
+    """A text and the name under which messages speak of it (a path, or ``<stdin>``).
+
+    A lone carriage return is kept as a newline: all later stages then see the lines that an editor shows,
+    and offsets stay the same.
+    """
 
     __slots__ = ("_line_starts", "name", "text")
 
     def __init__(self, name: str, text: str) -> None:
         self.name = name
+        if "\r" in text:
+            import re
+
+            text = re.sub("\r(?!\n)", "\n", text)
         self.text = text
         starts = [0]
         position = text.find("\n")

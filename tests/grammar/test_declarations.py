@@ -123,3 +123,11 @@ def test_byte_order_mark_and_strange_spaces() -> None:
     assert len(read("\ufeffentity\u00a0a,\tb\r\n\fentity c")) == 2
     assert read("") == ()
     assert read("// nothing") == ()
+
+
+def test_a_comment_ends_with_its_line_whatever_ends_that() -> None:
+    for end in ("\n", "\r\n", "\r"):
+        module, errors = parse(SourceFile("a.tltl", f"// one{end}signal a: bool{end}/// two{end}spec s = F a{end}"))
+        assert errors == ()
+        assert [type(declaration).__name__ for declaration in module.declarations] == ["SignalDecl", "SpecDecl"]
+        assert [comment.text for comment in module.comments] == ["// one", "/// two"]
