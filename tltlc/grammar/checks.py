@@ -7,9 +7,9 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import tree
-from tltlc.grammar.nesting import children, expressions
 from tltlc.grammar.then_check import check_then
 from tltlc.grammar.tree import Declaration, Expr
+from tltlc.grammar.walk import expressions, parts
 from tltlc.grammar.words import JUDGE, SEMANTICS, VERDICTS, closest
 from tltlc.source import SourceFile, Span
 
@@ -51,12 +51,9 @@ def check_formula(source: SourceFile, formula: Expr, *, in_reach: bool = False) 
 
 def _expression_errors(source: SourceFile, formula: Expr, in_reach: bool) -> Iterator[Diagnostic]:
     yield from check_then(source, formula, in_reach=in_reach)
-    waiting = [formula]
-    while waiting:
-        part = waiting.pop()
+    for part in parts(formula):
         if isinstance(part, tree.Unary) and part.bound:
             yield from _check_bound(source, part, part.bound)
-        waiting += reversed([*children(part)])
 
 
 def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.Bound) -> Iterator[Diagnostic]:

@@ -257,6 +257,8 @@ def _reserved(place: _Place) -> Diagnostic | None:
     if place.wants_operand and not keyword:
         return None
     help_ = f"choose another name, for example `{token.text.lower()}_`"
+    if place.before and place.before.type == "IMPORT":
+        help_ = f'name the file: `import "{token.text}.tltl"`'
     return place.error("TLT0106", f"`{token.text}` is a reserved word, not a name", help_)
 
 

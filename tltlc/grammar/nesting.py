@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import tree
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.tree import Declaration, Expr
+from tltlc.grammar.walk import children, expressions
 from tltlc.record import replace
 from tltlc.source import SourceFile, Span
 
@@ -84,58 +85,6 @@ def drop_deep_clauses(
         else:
             kept.append(clause)
     return tuple(kept), found
-
-
-def expressions(declaration: Declaration) -> Iterator[Expr]:
-    """The expressions that stand in a declaration, in order; those of a spec clause by clause."""
-    match declaration:
-        case tree.SignalDecl():
-            yield from _interval(declaration.interval)
-        case tree.ParamDecl():
-            yield from _interval(declaration.interval)
-            yield declaration.value
-        case tree.PredicateDecl():
-            yield from (item.default for item in declaration.parameters if item.default)
-            yield from _interval(declaration.interval)
-            yield declaration.body
-        case tree.LetDecl():
-            yield from (item.default for item in declaration.parameters if item.default)
-            yield declaration.body
-        case tree.ExclusiveDecl():
-            yield from declaration.atoms
-        case tree.SpecDecl():
-            yield from (item.value for item in declaration.clauses if not isinstance(item.value, tuple))
-        case tree.TestDecl():
-            for item in declaration.items:
-                if isinstance(item, tree.TestStep):
-                    yield from item.atoms
-
-
-def _interval(interval: tree.Interval | None) -> Iterator[Expr]:
-    if interval:
-        yield interval.low
-        yield interval.high
-
-
-def children(expression: Expr) -> Iterator[Expr]:
-    """The operands of an expression, in order."""
-    match expression:
-        case tree.Unary():
-            yield expression.operand
-        case tree.Binary():
-            yield expression.left
-            yield expression.right
-        case tree.Group():
-            yield expression.inner
-        case tree.Call():
-            yield from (argument.value for argument in expression.arguments)
-        case tree.Quantified():
-            yield expression.body
-        case tree.When():
-            for case in expression.cases:
-                yield case.condition
-                yield case.value
-            yield expression.otherwise
 
 
 def _error(source: SourceFile, title: str, span: Span) -> Diagnostic:

@@ -11,8 +11,8 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import tree
-from tltlc.grammar.nesting import children
 from tltlc.grammar.tree import Expr
+from tltlc.grammar.walk import children
 from tltlc.source import SourceFile, Span
 
 _TEMPORAL: Final = "FGXN"

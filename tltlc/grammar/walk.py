@@ -1,0 +1,69 @@
+"""Walks through the syntax tree: the expressions of a declaration, and the parts of an expression."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.grammar import tree
+from tltlc.grammar.tree import Declaration, Expr
+
+
+def expressions(declaration: Declaration) -> Iterator[Expr]:
+    """The expressions that stand in a declaration, in order; those of a spec clause by clause."""
+    match declaration:
+        case tree.SignalDecl():
+            yield from _interval(declaration.interval)
+        case tree.ParamDecl():
+            yield from _interval(declaration.interval)
+            yield declaration.value
+        case tree.PredicateDecl():
+            yield from (item.default for item in declaration.parameters if item.default)
+            yield from _interval(declaration.interval)
+            yield declaration.body
+        case tree.LetDecl():
+            yield from (item.default for item in declaration.parameters if item.default)
+            yield declaration.body
+        case tree.ExclusiveDecl():
+            yield from declaration.atoms
+        case tree.SpecDecl():
+            yield from (item.value for item in declaration.clauses if not isinstance(item.value, tuple))
+        case tree.TestDecl():
+            for item in declaration.items:
+                if isinstance(item, tree.TestStep):
+                    yield from item.atoms
+
+
+def parts(expression: Expr) -> Iterator[Expr]:
+    """The expression and everything in it, outer before inner and left before right; takes no recursion."""
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting += reversed([*children(part)])
+
+
+def children(expression: Expr) -> Iterator[Expr]:
+    """The operands of an expression, in order."""
+    match expression:
+        case tree.Unary():
+            yield expression.operand
+        case tree.Binary():
+            yield expression.left
+            yield expression.right
+        case tree.Group():
+            yield expression.inner
+        case tree.Call():
+            yield from (argument.value for argument in expression.arguments)
+        case tree.Quantified():
+            yield expression.body
+        case tree.When():
+            for case in expression.cases:
+                yield case.condition
+                yield case.value
+            yield expression.otherwise
+
+
+def _interval(interval: tree.Interval | None) -> Iterator[Expr]:
+    if interval:
+        yield interval.low
+        yield interval.high
