@@ -47,8 +47,11 @@ def record(cls: type[R]) -> type[R]:
     values_of = _values_getter(names)
 
     def initialise(self: Any, *given: Any, **named: Any) -> None:
-        if named or len(given) != len(fill):
+        left = len(fill) - len(given)
+        if named or not 0 <= left <= len(defaults):
             given = _arguments(made.__qualname__, names, defaults, given, named)
+        elif left:
+            given += defaults[-left:]
         for put, value in zip(fill, given, strict=True):
             put(self, value)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.resolve.helpers import codes, formula, good, only, resolved
+from tltlc.resolve.kinds import entity
+from tltlc.resolve.quantities import signal
 
 AT = "entity e1, e2, e3 signal at(x: entity): bool signal a: bool signal b: bool "
 
@@ -151,3 +153,54 @@ def test_deep_arithmetic_is_an_error_not_a_crash() -> None:
     assert set(found) == {"TLT0317"}
     # One error for each hundred in the chain or so, not one for each predicate.
     assert len(found) < 50
+
+
+def test_what_does_not_depend_on_a_quantifier_is_resolved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tltlc.resolve import formulas
+
+    made: list[object] = []
+    monkeypatch.setattr(formulas, "signal", lambda *given: made.append(given) or signal(*given))
+    names = ", ".join(f"g{i}" for i in range(10))
+    text = f"entity {names} signal at(x: entity): bool spec s = "
+    quantifiers = " ".join(f"all {v} in ({names}):" for v in "xyz")
+    spec = only(f"{text}{quantifiers} F (at(x) | at(y))")
+    assert spec.formula.op == "and"
+    assert len(spec.formula.args) == 1000
+    assert len(made) == 20
+
+
+def test_a_quantifier_ends_as_soon_as_it_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tltlc.resolve import formulas
+
+    made: list[object] = []
+    monkeypatch.setattr(formulas, "entity", lambda *given: made.append(given) or entity(*given))
+    names = ", ".join(f"g{i}" for i in range(300))
+    text = f"entity {names} signal at(x: entity): bool spec s = all x in ({names}): all y in ({names}): "
+    _, (found,) = resolved(f"{text} F (at(x) & at(y))")
+    assert (found.code, found.title) == ("TLT0315", "`all x` expands to more than 100,000 parts")
+    assert len(made) < 30_000
+
+
+def test_a_problem_in_a_definition_shows_each_use_on_the_way() -> None:
+    lets = " ".join(f"let f{i}(x) = f{i - 1}(x)" for i in range(1, 9))
+    text = f"signal d: length in [0 m, 9 m] let f0(x) = d < x {lets} spec s = F f8(3)"
+    _, (found,) = resolved(text)
+    assert found.code == "TLT0305"
+    assert [label.source.slice(label.span) for label in found.labels] == ["x", "f0(x)", "f1(x)", "f2(x)"]
+    assert {label.message for label in found.labels[1:]} == {"used here"}
+
+
+@pytest.mark.parametrize("parameter", ["", "(x: entity)"])
+def test_a_problem_that_no_argument_causes_shows_the_definition_alone(parameter: str) -> None:
+    _, (found,) = resolved(f"{AT} signal d in [0, 1] let f{parameter} = d < 3 m spec s = F f{parameter and '(e1)'}")
+    assert (found.code, len(found.labels)) == ("TLT0305", 1)
+
+
+def test_a_problem_deep_inside_lets_passes_through_all_of_them() -> None:
+    lets = " ".join(f"let f{i}(x) = X f{i - 1}(x)" for i in range(1, 3000))
+    assert codes(f"signal d in [0, 1] let f0(x) = d < x {lets} spec s = f2999(3 m)") == ["TLT0305"]
+
+
+def test_an_unused_let_hands_its_parameters_on_whatever_they_are() -> None:
+    lets = "let low(x) = d < x let never_low(x) = G !low(x) let both(x) = low(x) & F low(1 - x)"
+    assert formula(f"signal d in [0, 1] {lets} spec s = F low(0.5)") == "F(d < 0.5)"

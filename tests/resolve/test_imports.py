@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.resolve.helpers import good, only, resolved, write
+from tltlc.resolve.imports import library_with
 from tltlc.resolve.spec import Spec
 
 
@@ -130,3 +131,9 @@ def test_a_prefix_is_proposed_that_can_be_written(tmp_path: Path) -> None:
         (error,) = resolved(f"import{target} {clash}", str(tmp_path / "main.tltl"))[1]
         assert proposed in (error.help or "")
         assert _in(tmp_path, f"{proposed} {clash} spec s = goal & lib.goal") == []
+
+
+def test_the_standard_library_is_suggested_by_what_its_files_declare() -> None:
+    assert library_with("near") == "spatial"
+    assert library_with("nea") is None
+    assert library_with("no_such_name") is None

@@ -10,7 +10,7 @@ from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity, same_dimension
-from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, number_text
+from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _NEGATED = {"<=": ">", ">=": "<"}
@@ -55,15 +55,13 @@ def _check(x: Quantity, op: str, c: float, negated: bool, expr: Binary, env: Env
     always = x.low > c if op == ">" else x.high < c
     never = x.high <= c if op == ">" else x.low >= c
     if always or never:
-        range_ = f"[{number_text(x.low)}, {number_text(x.high)}]"
-        raise problem(
-            "TLT0310",
-            f"this comparison {'always' if always != negated else 'never'} holds",
-            source,
-            expr.span,
-            f"`{x.text}` lies in {range_}",
-            advice="compare with a value inside that range, or write `true` or `false`",
-        )
+        holds = always != negated
+        message = f"`{x.text}` lies in {range_text(x.low, x.high, x.dimension)}"
+        advice = "compare with a value inside that range, or write `true` or `false`"
+        if x.is_constant:
+            message, advice = "both sides are constant", f"compare a signal, or write `{'true' if holds else 'false'}`"
+        title = f"this comparison {'always' if holds else 'never'} holds"
+        raise problem("TLT0310", title, source, expr.span, message, advice=advice)
     needed = [x.high == inf, x.low == -inf]
     if any(needed):
         raise _unbounded(x, needed, expr, env)

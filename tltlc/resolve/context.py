@@ -6,6 +6,8 @@ from typing import Any
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression import Expression
+from tltlc.grammar.tree import Call, Expr, Name
+from tltlc.grammar.walk import parts
 from tltlc.logic.formula import Formula, atom
 from tltlc.record import record
 from tltlc.resolve.problem import Log, ResolutionError, problem
@@ -63,6 +65,7 @@ class Context:
     """
 
     __slots__ = (
+        "_names",
         "_sizes",
         "atoms",
         "bounds",
@@ -93,6 +96,7 @@ class Context:
         self.broken: set[int] = set()
         self.expansions = 0
         self.values: dict[Any, Any] = {}
+        self._names: dict[int, tuple[str, ...]] = {}
         self._sizes: dict[Formula, int] = {}
 
     def signal(self, info: SignalInfo, entities: tuple[str, ...]) -> Signal:
@@ -128,6 +132,14 @@ class Context:
             span,
             advice="a definition may only use others that do not lead back to it",
         )
+
+    def names_in(self, expr: Expr) -> tuple[str, ...]:
+        """The names in an expression."""
+        names = self._names.get(id(expr))
+        if names is None:
+            found = dict.fromkeys(part.name for part in parts(expr) if isinstance(part, (Name, Call)))
+            names = self._names[id(expr)] = tuple(found)
+        return names
 
     def tree_size(self, formula: Formula) -> int:
         """The number of nodes of the formula written out as a tree."""

@@ -16,7 +16,7 @@ from tltlc.resolve.predicates import unknown_type
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.scope import Scope
 from tltlc.resolve.spec import Param, ValueType
-from tltlc.resolve.values import Env, number_text
+from tltlc.resolve.values import Env, range_text
 
 
 def declare(scopes: Iterable[Scope], options: ResolveOptions, context: Context) -> None:
@@ -89,13 +89,14 @@ def _param(declaration: ParamDecl, env: Env, places: dict[str, Label], ranged: s
     type_ = _type(declaration, scope)
     low, high = _range(declaration, type_, env)
     value = number(declaration.value, units.TYPES[type_], env, f"`{declaration.name}`")
-    if not (-inf if low is None else low) <= value <= (inf if high is None else high):
+    lowest, highest = -inf if low is None else low, inf if high is None else high
+    if not lowest <= value <= highest:
         raise problem(
             "TLT0307",
             f"the value of `{declaration.name}` lies outside its range",
             scope.source,
             declaration.value.span,
-            f"the range is {_range_text(low, high)}",
+            f"the range is {range_text(lowest, highest, units.TYPES[type_])}",
             advice="choose a value inside it, or widen it",
         )
     new = Param(declaration.name, type_, value, low, high, declaration.doc)
@@ -165,7 +166,3 @@ def _override(options: ResolveOptions, context: Context) -> None:
         context.params.update(params)
         for diagnostic in found:
             context.log.add(diagnostic)
-
-
-def _range_text(low: float | None, high: float | None) -> str:
-    return f"[{number_text(-inf if low is None else low)}, {number_text(inf if high is None else high)}]"

@@ -9,20 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from typing import Any
 
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.expression import Const, Op
 from tltlc.grammar.tree import Binary, Call, Constant, Expr, Group, LetDecl, Name, Quantified, SignalDecl, Unary
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
-from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.bounds import bounded
 from tltlc.resolve.comparisons import comparison
-from tltlc.resolve.context import MOST_EXPANSIONS, too_large
+from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, too_large
 from tltlc.resolve.kinds import entity, kind_of, lookup, not_a_formula
 from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.quantities import signal
 from tltlc.resolve.scope import Binding
-from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, apply, constant
+from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value
 from tltlc.source import Span
 
 Steps = Generator[Any, Any, Any]
@@ -44,16 +45,13 @@ _BINARY: dict[str, Callable[[Formula, Formula], Formula]] = {
     "M": logic.strong_release,
     "then": logic.then,
 }
+_COMPARISONS = ("<", "<=", ">", ">=")
 _NARY: dict[str, Callable[..., Formula]] = {"and": logic.and_, "or": logic.or_}
 
 
 def formula(expr: Expr, env: Env) -> Formula:
     """The formula that an expression stands for; raises ResolutionError where it is none."""
-    try:
-        return _run(_formula(expr, env))
-    except ResolutionError:
-        env.context.expanding.clear()
-        raise
+    return _run(_formula(expr, env))
 
 
 def conjuncts(expr: Expr) -> list[Expr]:
@@ -80,29 +78,30 @@ def check_unused(binding: Binding, env: Env) -> None:
     for parameter in declaration.parameters:
         values[parameter.name] = Entity(parameter.name) if parameter.type == "entity" else Unknown(parameter.name)
     inside = Env(env.context, binding.scope, values, symbolic=bool(declaration.parameters))
-    try:
-        _run(_expand(declaration, binding, inside, declaration.name_span, env))
-    except ResolutionError:
-        env.context.expanding.clear()
-        raise
+    _run(_expand(declaration, binding, inside, declaration.name_span, env))
 
 
 def _run(steps: Steps) -> Formula:
-    """The result of a generator that yields the generators whose results it waits for."""
+    """The result of a generator that yields the generators whose results it waits for; problems pass through all."""
     stack = [steps]
     value: Formula | None = None
-    while True:
+    failure: ResolutionError | None = None
+    while stack:
         try:
-            child = stack[-1].send(value)
+            child = stack[-1].throw(failure) if failure else stack[-1].send(value)
         except StopIteration as finished:
             stack.pop()
-            value = finished.value
-            if not stack:
-                assert value is not None
-                return value
+            value, failure = finished.value, None
+        except ResolutionError as error:
+            stack.pop()
+            failure = error
         else:
             stack.append(child)
-            value = None
+            value, failure = None, None
+    if failure:
+        raise failure
+    assert value is not None
+    return value
 
 
 def _formula(expr: Expr, env: Env) -> Steps:
@@ -110,16 +109,16 @@ def _formula(expr: Expr, env: Env) -> Steps:
         expr = expr.inner
     if isinstance(expr, Constant):
         return logic.TRUE if expr.value else logic.FALSE
-    if isinstance(expr, (Name, Call)):
+    if isinstance(expr, Name):
         return (yield _named(expr, env))
+    if isinstance(expr, Call) or (isinstance(expr, Binary) and expr.op in _COMPARISONS):
+        return (yield _shared(expr, env))
     if isinstance(expr, Unary) and expr.op in _UNARY:
         operand = yield _formula(expr.operand, env)
         return bounded(expr, operand, env) if expr.bound else _UNARY[expr.op](operand)
     if isinstance(expr, Quantified):
         return (yield _quantified(expr, env))
     if isinstance(expr, Binary):
-        if expr.op in ("<", "<=", ">", ">="):
-            return comparison(expr, env)
         if expr.op in _NARY:
             operands: list[Formula] = []
             for written in _chain(expr):
@@ -131,6 +130,15 @@ def _formula(expr: Expr, env: Env) -> Steps:
             right = yield _formula(expr.right, env)
             return _BINARY[expr.op](left, right)
     raise not_a_formula(expr, env)
+
+
+def _shared(expr: Call | Binary, env: Env) -> Steps:
+    """A call or comparison, once for each choice of the local names in it."""
+    values, names = env.context.values, env.context.names_in(expr)
+    memo = (id(expr), env.symbolic, tuple([env.local.get(name) for name in names]))
+    if memo not in values:
+        values[memo] = comparison(expr, env) if isinstance(expr, Binary) else (yield _named(expr, env))
+    return values[memo]
 
 
 def _chain(expr: Binary) -> list[Expr]:
@@ -172,12 +180,10 @@ def _bool_atom(value: Quantity, doc: str, expr: Name | Call, env: Env) -> Formul
     """A bool as an atom: robustness 1 where it is true, -1 where it is false."""
     if value.is_constant:
         return logic.TRUE if value.low else logic.FALSE
-    doubled = apply("*", (constant(2.0, units.PLAIN), value), units.PLAIN)
-    scaled = apply("-", (doubled, constant(1.0, units.PLAIN)), units.PLAIN) if doubled else None
-    assert scaled is not None, "not a constant"
     if env.symbolic:
         return logic.atom(value.text)
-    return env.context.atom(value.text, scaled.expression, doc, env.scope.source, expr.span)
+    scaled = Op("-", (Op("*", (Const(2.0), value.expression)), Const(1.0)))
+    return env.context.atom(value.text, scaled, doc, env.scope.source, expr.span)
 
 
 def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:
@@ -188,11 +194,19 @@ def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:
         where = env if argument is not None else env.within(binding.scope, dict(values))
         given = argument if argument is not None else parameter.default
         assert given is not None
-        if parameter.type == "formula" or (parameter.type is None and kind_of(given, where) == "formula"):
+        local = where.local.get(given.name) if isinstance(given, Name) else None
+        if isinstance(local, Unknown):
+            values[parameter.name] = local
+        elif parameter.type == "formula" or (parameter.type is None and kind_of(given, where) == "formula"):
             values[parameter.name] = yield _formula(given, where)
         else:
             values[parameter.name] = argument_value(parameter, given, where, binding, 0)
-    return (yield _expand(declaration, binding, env.within(binding.scope, values), expr.span, env))
+    try:
+        return (yield _expand(declaration, binding, env.within(binding.scope, values), expr.span, env))
+    except ResolutionError as failure:
+        if not all(isinstance(value, Entity) for value in values.values()):
+            failure.used_at(Label(env.scope.source, expr.span), binding.scope.source, declaration.body.span)
+        raise
 
 
 def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, user: Env) -> Steps:
@@ -207,8 +221,10 @@ def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, use
     if memo not in context.values:
         _count(f"the let `{declaration.name}`", span, user)
         context.expanding[key] = declaration.name
-        body = yield _formula(declaration.body, inside)
-        del context.expanding[key]
+        try:
+            body = yield _formula(declaration.body, inside)
+        finally:
+            del context.expanding[key]
         try:
             context.values[memo] = context.checked_size(body, f"the let `{declaration.name}`", source, span)
         except ResolutionError:
@@ -220,12 +236,16 @@ def _expand(declaration: LetDecl, binding: Binding, inside: Env, span: Span, use
 
 def _quantified(expr: Quantified, env: Env) -> Steps:
     what = f"`{'all' if expr.all else 'any'} {expr.variable}`"
-    parts = []
+    parts: list[Formula] = []
+    size = 0
     for name in expr.entities:
         _count(what, expr.span, env)
-        parts.append((yield _formula(expr.body, env.also(expr.variable, entity(name, env)))))
-    joined = logic.and_(*parts) if expr.all else logic.or_(*parts)
-    return env.context.checked_size(joined, what, env.scope.source, expr.span)
+        part = yield _formula(expr.body, env.also(expr.variable, entity(name, env)))
+        parts.append(part)
+        size += env.context.tree_size(part)
+        if size > LARGEST_EXPANSION:
+            raise too_large(what, env.scope.source, expr.span)
+    return logic.and_(*parts) if expr.all else logic.or_(*parts)
 
 
 def _count(what: str, span: Span, env: Env) -> None:

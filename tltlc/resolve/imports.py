@@ -67,6 +67,17 @@ def standard_library() -> Path:
     return installed if installed.is_dir() else package.parent / "stdlib_predicates"
 
 
+def library_with(name: str) -> str | None:
+    """The standard library that declares a name, to suggest its import; reads the files, so only for messages."""
+    import re
+
+    pattern = re.compile(rf"^(?:predicate|signal|param|let)\s+{re.escape(name)}(?![A-Za-z0-9_.])", re.MULTILINE)
+    for path in _files(standard_library()):
+        if not path.stem.endswith("_tests") and pattern.search(read_source(path, _shown(path)).text):
+            return path.stem
+    return None
+
+
 class _Visit:
     """A module whose imports are being followed."""
 

@@ -6,8 +6,11 @@ from typing import Literal
 
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, SignalDecl
+from tltlc.grammar.walk import parts
+from tltlc.resolve import units
+from tltlc.resolve.imports import library_with
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.scope import FUNCTIONS, Binding, Kind, library_with, suggestion
+from tltlc.resolve.scope import FUNCTIONS, Binding, Kind, suggestion
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
 _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
@@ -103,10 +106,31 @@ def not_a_formula(expr: Expr, env: Env) -> ResolutionError:
     """The problem of a number or an entity where a formula must stand."""
     advice = None
     if kind_of(expr, env) == "number":
-        text = env.scope.source.slice(expr.span)
-        short = len(text) <= 40 and not isinstance(expr, tree.When)
-        advice = f"compare it, e.g. `{text} > 0.5`" if short else "compare it with a number"
+        advice = _how_to_compare(expr, env)
     elif kind_of(expr, env) == "entity":
         advice = f"say what holds of it, e.g. `near({env.scope.source.slice(expr.span)})`"
     found = described_kind(expr, env)
     return problem("TLT0301", f"expected a formula, found {found}", env.scope.source, expr.span, advice=advice)
+
+
+def _how_to_compare(expr: Expr, env: Env) -> str:
+    """How a number becomes a condition."""
+    text = env.scope.source.slice(expr.span)
+    is_short = len(text) <= 40 and not isinstance(expr, tree.When)
+    if _is_literal(expr):
+        return "compare a signal with it" + (f", as in `SIGNAL > {text}`" if is_short else "")
+    return f"compare it, e.g. `{text} > {_threshold(expr, env)}`" if is_short else "compare it with a number"
+
+
+def _is_literal(expr: Expr) -> bool:
+    """Whether an expression is written with numbers alone."""
+    return not any(isinstance(part, (Name, Call, tree.When)) for part in parts(expr))
+
+
+def _threshold(expr: Expr, env: Env) -> str:
+    """A number that a signal or param may be compared with, in the unit of its type."""
+    binding = env.scope.names.get(expr.name) if isinstance(expr, (Name, Call)) else None
+    declaration = binding.declaration if binding else None
+    type_ = declaration.type if isinstance(declaration, (SignalDecl, tree.ParamDecl)) else None
+    unit = units.si_unit(units.TYPES[type_]) if type_ in units.TYPES else None
+    return f"0.5 {unit}" if unit else "0.5"

@@ -10,7 +10,7 @@ from tltlc.record import replace
 from tltlc.resolve import units
 from tltlc.resolve.constants import override
 from tltlc.resolve.spec import Param
-from tltlc.resolve.values import number_text
+from tltlc.resolve.values import number_text, range_text
 
 
 def overridden(params: Mapping[str, Param], values: Mapping[str, str]) -> tuple[dict[str, Param], list[Diagnostic]]:
@@ -49,6 +49,6 @@ def _override(old: Param, text: str) -> Param | Diagnostic:
         return Diagnostic("TLT0308", f"`{text}` is no value for the param `{old.name}`", (), advice)
     low, high = -inf if old.low is None else old.low, inf if old.high is None else old.high
     if not low <= found[0] <= high:
-        advice = f"its range is [{number_text(low)}, {number_text(high)}]"
+        advice = f"its range is {range_text(low, high, dimension)}"
         return Diagnostic("TLT0307", f"`{text}` lies outside the range of the param `{old.name}`", (), advice)
     return replace(old, value=found[0])

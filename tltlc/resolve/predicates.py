@@ -53,7 +53,13 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
         if isinstance(value, Quantity):
             place = Label(env.scope.source, use.span)
     name = f"{declaration.name}({', '.join(shown)})" if shown else declaration.name
-    return PredicateUse(_instantiate(name, declaration, binding.scope, values, env, depth, place), declaration.doc)
+    try:
+        value = _instantiate(name, declaration, binding.scope, values, env, depth, place)
+    except ResolutionError as failure:
+        if place:
+            failure.used_at(place, binding.scope.source, declaration.body.span)
+        raise
+    return PredicateUse(value, declaration.doc)
 
 
 def check_unused(binding: Binding, env: Env) -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.record import replace
 from tltlc.source import SourceFile, Span
 
 
@@ -12,6 +15,22 @@ class ResolutionError(Exception):
     def __init__(self, diagnostic: Diagnostic | None) -> None:
         self.diagnostic = diagnostic
         super().__init__(diagnostic.title if diagnostic else "reported before")
+
+    def used_at(self, use: Label, source: SourceFile, body: Span) -> None:
+        """Adds the place that uses a definition to a problem in its body that the arguments may have caused."""
+        found = self.diagnostic
+        if found is None or found.code not in _OF_ARGUMENTS or len(found.labels) >= _MOST_PLACES:
+            return
+        last = found.labels[-1]
+        if last.source is source and body.start <= last.span.start <= last.span.end <= body.end:
+            self.diagnostic = replace(found, labels=(*found.labels, replace(use, message="used here")))
+
+
+_OF_ARGUMENTS: Final = {"TLT0301", "TLT0302", "TLT0305", "TLT0307", "TLT0309", "TLT0310", "TLT0311"}
+"""The codes of problems that a definition may have with some arguments and not with others."""
+
+_MOST_PLACES: Final = 4
+"""How many places a problem shows, its own included, where definitions use each other."""
 
 
 def problem(

@@ -50,13 +50,18 @@ def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str
     while isinstance(at, Group):
         at = at.inner
     unit = units.si_unit(expected)
+    advice = None
     if isinstance(at, Number):
         digits = env.scope.source.text[at.span.start : at.span.end]
         if at.unit and digits.endswith(at.unit):
             digits = digits[: -len(at.unit)].rstrip()
         why += f"; write `{digits} {unit}`" if unit else f"; write `{digits}`" if expected == units.PLAIN else ""
+    elif unit:
+        advice = f"give {units.described(expected)} there, e.g. `3 {unit}`"
+    elif expected == units.PLAIN and "divide" not in why:
+        advice = f"divide it by {units.described(found)} to get a number"
     title = f"expected {units.described(expected)}, found {units.described(found)}"
-    return problem("TLT0305", title, env.scope.source, at.span, why)
+    return problem("TLT0305", title, env.scope.source, at.span, why, advice=advice)
 
 
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
@@ -180,10 +185,14 @@ def signal(expr: Name | Call, binding: Binding, env: Env) -> Quantity:
     assert isinstance(declaration, SignalDecl)
     pairs = match(expr, binding, declaration.parameters, env.scope)
     entities = tuple(entity(argument, env).name for _, argument in pairs if argument is not None)
-    info = env.context.signal_infos.get(declaration.name)
-    if info is None:
-        raise ResolutionError(None)
-    return of_signal(env.context.signal(info, entities))
+    memo = (id(declaration), entities)
+    if memo not in env.context.values:
+        info = env.context.signal_infos.get(declaration.name)
+        if info is None:
+            raise ResolutionError(None)
+        env.context.values[memo] = of_signal(env.context.signal(info, entities))
+    found: Quantity = env.context.values[memo]
+    return found
 
 
 def of_signal(found: Signal) -> Quantity:

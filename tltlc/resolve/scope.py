@@ -8,7 +8,7 @@ from typing import Literal, Union
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.record import record, replace
-from tltlc.resolve.imports import Loaded, standard_library
+from tltlc.resolve.imports import Loaded
 from tltlc.resolve.problem import Log, problem
 from tltlc.source import SourceFile, Span
 
@@ -79,17 +79,6 @@ def suggestion(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[s
     binding = scope.names.get(close[0])
     via = f" (from {binding.via})" if binding and binding.via else ""
     return f"did you mean `{close[0]}`{via}?"
-
-
-def library_with(name: str) -> str | None:
-    """The standard library that declares a name, to suggest its import; reads the files, so only for messages."""
-    import re
-
-    pattern = re.compile(rf"^(?:predicate|signal|param|let)\s+{re.escape(name)}(?![A-Za-z0-9_.])", re.MULTILINE)
-    for path in sorted(standard_library().glob("*.tltl")):
-        if not path.stem.endswith("_tests") and pattern.search(path.read_text(encoding="utf-8")):
-            return path.stem
-    return None
 
 
 def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, log: Log) -> None:

@@ -12,7 +12,7 @@ from tltlc.record import EMPTY, record, replace
 from tltlc.resolve.context import Context
 from tltlc.resolve.ranges import range_of
 from tltlc.resolve.scope import Scope
-from tltlc.resolve.units import Dimension
+from tltlc.resolve.units import Dimension, si_unit
 
 LOOSEST, SUM, PRODUCT, SIGN, POWER, CLOSED = range(6)
 """How tightly the text of a quantity binds."""
@@ -90,6 +90,13 @@ def number_text(value: float) -> str:
     """The shortest text that reads back as the same number, whole ones without a point."""
     whole = not isinf(value) and abs(value) < 1e15 and value == int(value)
     return str(int(value)) if whole else repr(value)
+
+
+def range_text(low: float, high: float, dimension: Dimension | None) -> str:
+    """A range as messages show it, in SI units: ``[2 m, inf]``."""
+    unit = si_unit(dimension) if dimension else None
+    ends = (number_text(end) + (f" {unit}" if unit and not isinf(end) else "") for end in (low, high))
+    return f"[{', '.join(ends)}]"
 
 
 def constant(value: float, dimension: Dimension | None) -> Quantity:
