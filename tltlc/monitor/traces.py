@@ -36,11 +36,8 @@ def read_trace(lines: Iterable[bytes], name: str, signals: Sequence[Signal]) -> 
     for first in texts:
         if first.strip():
             all_lines = chain([first], texts)
-            samples = (
-                _json_lines(all_lines, texts, signals)
-                if first.lstrip().startswith("{")
-                else _csv(all_lines, texts, signals)
-            )
+            read = _json_lines if first.lstrip().startswith("{") else _csv
+            samples = read(all_lines, texts, signals)
             break
     else:
         raise _empty(name)
@@ -184,7 +181,8 @@ def _json_lines(lines: Iterator[str], at: _Lines, signals: Sequence[Signal]) -> 
         if not isinstance(found, dict):
             raise at.error("this is no object", help=_OBJECTS)
         for name in names:
-            if not isinstance(found.get(name, 0), (int, float)):
+            # A null is a missing value, and the monitor's business.
+            if found.get(name) is not None and not isinstance(found[name], (int, float)):
                 raise at.error(f"this value of `{name}` is no number", help=_VALUES)
         yield {name: _json_number(value) for name, value in found.items() if isinstance(value, (int, float))}
 
