@@ -112,6 +112,27 @@ def test_tests_pass_and_fail(tltlc, inside: Path) -> None:  # type: ignore[no-un
     assert "TLT0640" in json.dumps(json.loads(tltlc("test", "hide.tltl", "--format", "json").err))
 
 
+def test_a_file_without_tests_is_named(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("tested.tltl").write_text(Path("hide.tltl").read_text() + 'test "t" for hide { step seen expect violated }')
+    Path("none").mkdir()
+    Path("none/lib.tltl").write_text("signal a: bool")
+    found = tltlc("test", "hide.tltl", "tested.tltl", "none")
+    assert (found.status, found.out.splitlines()[-1]) == (0, "1 passed, 0 failed")
+    assert [line.partition(";")[0] for line in found.err.splitlines()] == [
+        "hide.tltl: no test block",
+        "none: no test block",
+    ]
+    assert tltlc("test", ".").err == "", "some file of the folder has one"
+
+
+def test_an_artefact_has_no_tests(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    assert tltlc("compile", "hide.tltl", "-t", "json").status == 0
+    found = tltlc("test", "hide.fspa.json", "hide.tltl")
+    assert found.status == 2
+    assert found.err.startswith("error[TLT0722]: `hide.fspa.json` is an artefact")
+    assert found.out == "0 passed, 0 failed, 1 file with errors\n"
+
+
 def test_tests_of_folders(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("a/.hidden").mkdir(parents=True)
     assert tltlc("test", "a").status == 2

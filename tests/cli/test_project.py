@@ -43,6 +43,22 @@ def test_what_it_says_is_done(tltlc, inside: Path) -> None:  # type: ignore[no-u
     assert "fit" in tltlc("list", "predicates").out
 
 
+def test_all_that_is_wrong_is_found(inside: Path) -> None:
+    text = 'librarys = []\ntargets = 3\nlibraries = ["no", "nor"]\n[style]\nnotaton = ""\nnotation = ["x"]\n'
+    Path("tltl.toml").write_text(text)
+    with pytest.raises(TltlError) as failure:
+        read_project(inside / "tltl.toml")
+    found = [(d.code, d.title.partition("`")[2].partition("`")[0]) for d in failure.value.diagnostics]
+    assert found == [
+        ("TLT0702", "librarys"),
+        ("TLT0702", "notaton"),
+        ("TLT0703", "targets"),
+        ("TLT0703", "notation"),
+        ("TLT0703", "libraries"),
+        ("TLT0703", "libraries"),
+    ]
+
+
 def test_a_wrong_target_is_found(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("tltl.toml").write_text('targets = ["jsno"]')
     assert "did you mean `json`?" in tltlc("compile", "hide.tltl").err

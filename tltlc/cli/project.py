@@ -54,27 +54,31 @@ def project_for(path: str) -> Project:
 def read_project(path: Path) -> Project:
     """The contents of a project file.
 
-    Errors: TLT0701 no TOML, TLT0702 an unknown key, TLT0703 a value of the wrong kind.
+    Errors: TLT0701 no TOML; else everything that is wrong: TLT0702 an unknown key, TLT0703 a value of the wrong kind.
     """
     from tltlc.files import read_source
 
     source = read_source(path, _shown(path))
     table = _parse(source)
-    _known(table, _KEYS, source)
     style = table.get("style", {})
+    wrong = _unknown(table, _KEYS, source)
     if not isinstance(style, dict):
-        raise _wrong(source, "style", "a table, e.g. `[style]`", style)
-    _known(style, _STYLE_KEYS, source)
-    libraries = _strings(table, "libraries", '["predicates"]', source)
-    targets = _strings(table, "targets", '["json", "dot"]', source)
+        wrong.append(_wrong(source, "style", "a table, e.g. `[style]`", style))
+        style = {}
+    wrong += _unknown(style, _STYLE_KEYS, source)
+    for key, example in (("libraries", '["predicates"]'), ("targets", '["json", "dot"]')):
+        if not _is_list_of_texts(table.get(key, [])):
+            wrong.append(_wrong(source, key, f"a list of texts, e.g. `{key} = {example}`", table.pop(key)))
     notation = style.get("notation", "unicode")
     if notation not in NOTATIONS:
-        raise _wrong(source, "notation", 'one of "unicode", "ascii", "english"', notation)
-    folders = tuple(path.parent / library for library in libraries)
-    for library, folder in zip(libraries, folders, strict=True):
+        wrong.append(_wrong(source, "notation", 'one of "unicode", "ascii", "english"', notation))
+    folders = {library: path.parent / library for library in table.get("libraries", [])}
+    for library, folder in folders.items():
         if not os.path.isdir(folder):  # noqa: PTH112
-            raise _wrong(source, "libraries", "folders beside this file", library)
-    return Project(folders, targets, notation)
+            wrong.append(_wrong(source, "libraries", "folders beside this file", library))
+    if wrong:
+        raise TltlError(wrong)
+    return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation)
 
 
 def _parse(source: SourceFile) -> dict[str, Any]:
@@ -109,28 +113,26 @@ def _syntax_error(source: SourceFile, message: str) -> Diagnostic:
     return Diagnostic("TLT0701", f"`{source.name}` is not TOML", (label,), help_)
 
 
-def _known(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> None:
+def _unknown(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:
+    """An error for each key that a table cannot have."""
     from difflib import get_close_matches
 
+    found = []
     for key in table:
         if key not in keys:
             close = get_close_matches(key, keys, n=1)
             way_out = f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(f'`{k}`' for k in keys)}"
-            raise TltlError([Diagnostic("TLT0702", f"unknown key `{key}`", _place(source, key), way_out)])
+            found.append(Diagnostic("TLT0702", f"unknown key `{key}`", _place(source, key), way_out))
+    return found
 
 
-def _strings(table: dict[str, Any], key: str, example: str, source: SourceFile) -> tuple[str, ...]:
-    value = table.get(key, [])
-    if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-        raise _wrong(source, key, f"a list of texts, e.g. `{key} = {example}`", value)
-    return tuple(value)
+def _is_list_of_texts(value: object) -> bool:
+    return isinstance(value, list) and all(isinstance(item, str) for item in value)
 
 
-def _wrong(source: SourceFile, key: str, expected: str, found: object) -> TltlError:
+def _wrong(source: SourceFile, key: str, expected: str, found: object) -> Diagnostic:
     shown = f'"{found}"' if isinstance(found, str) else _KINDS.get(type(found).__name__, "another kind of value")
-    return TltlError(
-        [Diagnostic("TLT0703", f"wrong value for `{key}`: {shown}", _place(source, key), f"expected {expected}")]
-    )
+    return Diagnostic("TLT0703", f"wrong value for `{key}`: {shown}", _place(source, key), f"expected {expected}")
 
 
 _KINDS: Final = {

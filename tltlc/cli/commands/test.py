@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ import click
 
 from tltlc.cli.settings import Settings, source_options
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.grammar.words import DECLARATIONS
 
 if TYPE_CHECKING:
     from tltlc.monitor.tests import TestResult
@@ -35,32 +36,35 @@ def command(paths: tuple[str, ...], settings: Settings, format: str) -> int:  # 
 
     passed = failed = unread = 0
     with Report(format, results=True) as report:
-        for path in _files(paths):
-            try:
-                results = _run(path, settings, report.add)
-            except TltlError as error:
-                report.add(error.diagnostics)
-                unread += 1
-                continue
-            for result in results:
-                print(f"{'passed' if result.passed else 'FAILED'}  {_place(result)}  {result.test.title}", flush=True)
-                passed, failed = passed + result.passed, failed + (not result.passed)
-                report.add([result.failure] if result.failure else [])
+        for argument in paths:
+            before = passed + failed + unread
+            for path in _files(argument):
+                try:
+                    results = _run(path, settings, report.add)
+                except TltlError as error:
+                    report.add(error.diagnostics)
+                    unread += 1
+                    continue
+                for result in results:
+                    verdict = "passed" if result.passed else "FAILED"
+                    print(f"{verdict}  {_place(result)}  {result.test.title}", flush=True)
+                    passed, failed = passed + result.passed, failed + (not result.passed)
+                    report.add([result.failure] if result.failure else [])
+            if passed + failed + unread == before:
+                report.say(f"{argument}: no test block; the form is {DECLARATIONS['test']}")
         print(f"{passed} passed, {failed} failed{_unread(unread)}")
     return report.status
 
 
-def _files(paths: tuple[str, ...]) -> Iterator[str]:
-    """The arguments, folders replaced by the sources in them; error TLT0722 where there are none."""
-    for path in paths:
-        folder = Path(path)
-        if not os.path.isdir(folder):  # noqa: PTH112 (pathlib raises where a name is too long)
-            yield path
-            continue
-        inside = [file for file in sorted(folder.rglob("*.tltl")) if not _is_hidden(file.relative_to(folder))]
-        if not inside:
-            raise TltlError([Diagnostic("TLT0722", f"there is no .tltl file in `{path}`", help="name another folder")])
-        yield from map(str, inside)
+def _files(argument: str) -> list[str]:
+    """The argument itself, or the sources in a folder; error TLT0722 where there are none."""
+    folder = Path(argument)
+    if not os.path.isdir(folder):  # noqa: PTH112 (pathlib raises where a name is too long)
+        return [argument]
+    inside = [file for file in sorted(folder.rglob("*.tltl")) if not _is_hidden(file.relative_to(folder))]
+    if not inside:
+        raise TltlError([Diagnostic("TLT0722", f"there is no .tltl file in `{argument}`", help="name another folder")])
+    return [str(file) for file in inside]
 
 
 def _is_hidden(path: Path) -> bool:
@@ -73,7 +77,10 @@ def _run(path: str, settings: Settings, add: Callable[[Iterable[Diagnostic]], No
 
     opened = open_input(path, settings)
     add(opened.diagnostics)
-    return run_tests(opened.program, opened.automata) if opened.program else ()
+    if opened.program is None:
+        title = f"`{opened.name}` is an artefact, and artefacts hold no test blocks"
+        raise TltlError([Diagnostic("TLT0722", title, help="name the .tltl file that it was compiled from")])
+    return run_tests(opened.program, opened.automata)
 
 
 def _unread(files: int) -> str:
