@@ -72,6 +72,7 @@ def run(
             wall = time.perf_counter() - started
         finally:
             timer.cancel()
+            timer.join()  # no thread is left when the next fork comes
         child.returncode = os.waitstatus_to_exitcode(status)
         output.seek(0)
         return Run(
@@ -105,6 +106,7 @@ def forked(work: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
     """The result of ``work`` in a fork of this process, with ``cpu_ms`` and ``peak_mb``; None where it raised.
 
     Modules are loaded, but what a first call would leave in tables and caches is gone with the fork.
+    Call it in a process without other threads: a fork copies their locks, and not the threads.
     """
     reader, writer = os.pipe()
     child = os.fork()

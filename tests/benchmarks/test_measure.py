@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 import statistics
+import subprocess
 import sys
+import textwrap
 import time
+from pathlib import Path
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.measure import cpu_times_ms, forked, median, peak_memory_mb, quartiles, run
+from benchmarks.measure import cpu_times_ms, median, peak_memory_mb, quartiles, run
 
+ROOT = Path(__file__).parents[2]
 NUMBERS = st.lists(st.floats(-1e6, 1e6), min_size=1)
 
 
@@ -57,19 +61,36 @@ def test_repetition_stops_when_enough_time_is_spent() -> None:
 
 
 def test_a_fork_leaves_no_trace() -> None:
-    seen: list[int] = []
+    assert (
+        alone(
+            """
+        seen = []
 
-    def work() -> dict[str, int]:
-        seen.append(1)
-        return {"answer": len(seen)}
+        def work():
+            seen.append(1)
+            return {"answer": len(seen)}
 
-    made = forked(work), forked(work)
-    assert [result and result["answer"] for result in made] == [1, 1]
-    assert seen == []
+        print(forked(work)["answer"], forked(work)["answer"], seen)
+        """
+        )
+        == "1 1 []\n"
+    )
 
 
 def test_a_fork_that_fails_gives_nothing() -> None:
-    assert forked(lambda: {"answer": 1 // 0}) is None
+    assert alone("print(forked(lambda: {'answer': 1 // 0}))") == "None\n"
+
+
+def test_no_thread_is_left_for_a_fork_to_lose() -> None:
+    """From Python 3.12 on a fork beside threads warns, and here warnings are errors."""
+    assert alone("run([sys.executable, '-c', ''], 30); print(forked(lambda: {})['cpu_ms'] >= 0)") == "True\n"
+
+
+def alone(program: str) -> str:
+    """What a program prints in a process of its own, as the benchmarks fork: those that run tests have threads."""
+    text = "import sys\nfrom benchmarks.measure import forked, run\n" + textwrap.dedent(program)
+    command = [sys.executable, "-W", "error", "-c", text]
+    return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True, timeout=60).stdout
 
 
 def test_peak_memory_is_that_of_this_process() -> None:
