@@ -39,6 +39,18 @@ def test_the_values_of_arguments_count() -> None:
     assert codes(declared + "spec s = F p(2)") == ["TLT0306"]
 
 
+def test_numbers_passed_on_are_checked_where_they_are_known() -> None:
+    declared = "signal x in [0, 4] predicate p(most: number) in [0, 1] = x / most "
+    assert codes(declared + "let q(m: number) = F p(m) spec s = F p(8)") == []
+    assert codes(declared + "predicate r(m: number) in [0, 1] = p(2 * m) spec s = F p(8)") == []
+    assert codes(declared + "let q(m: number) = F p(m) spec s = q(8) & q(4)") == []
+    assert codes(declared + "let q(m: number) = F p(m) spec s = q(8) & q(2)") == ["TLT0306"]
+    assert codes(declared + "predicate r(m: number) in [0, 1] = p(2 * m) spec s = F r(4)") == []
+    assert codes(declared + "predicate r(m: number) in [0, 1] = p(2 * m) spec s = F r(1)") == ["TLT0306", "TLT0306"]
+    assert codes(declared + "let q(m: number) = F p(2) & m > 1 spec s = F p(8)") == ["TLT0306"]
+    assert codes(declared + "param b in [1, 8] = 4 let q(m: number) = F p(b) & m > 1 spec s = F p(b)") == ["TLT0306"]
+
+
 def test_the_whole_range_of_a_param_counts() -> None:
     assert codes("signal x in [0, 4] param m in [4, 8] = 5 predicate p in [0, 1] = x / m spec s = F p") == []
     assert codes("signal x in [0, 4] param m in [2, 8] = 5 predicate p in [0, 1] = x / m spec s = F p") == ["TLT0306"]

@@ -9,7 +9,7 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
-from tltlc.record import record
+from tltlc.record import record, replace
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval
@@ -38,6 +38,7 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
     values: dict[str, Value] = {}
     shown: list[str] = []
     place = None
+    settled = True
     for parameter, argument in match(use, binding, declaration.parameters, env.scope):
         inside = env.within(binding.scope, dict(values))
         default = argument_value(parameter, parameter.default, inside, binding, depth) if parameter.default else None
@@ -52,9 +53,11 @@ def predicate(use: Name | Call, binding: Binding, env: Env, depth: int = 0) -> P
             continue
         if isinstance(value, Quantity):
             place = Label(env.scope.source, use.span)
+            # A number that is passed on is known only where the definition around is used: the range is checked there.
+            settled = settled and (value.is_constant or not env.symbolic)
     name = f"{declaration.name}({', '.join(shown)})" if shown else declaration.name
     try:
-        value = _instantiate(name, declaration, binding.scope, values, env, depth, place)
+        value = _instantiate(name, declaration, binding.scope, values, env, depth, place, settled)
     except ResolutionError as failure:
         if place:
             failure.used_at(place, binding.scope.source, declaration.body.span)
@@ -82,7 +85,7 @@ def check_unused(binding: Binding, env: Env) -> None:
             needs_numbers = needs_numbers or parameter.type != "entity"
     if needs_numbers:
         declared_range(declaration, binding.scope, env)
-        _body(declaration, binding.scope, values, env, 0)
+        _body(declaration, binding.scope, values, replace(env, symbolic=True), 0)
     else:
         _instantiate(declaration.name, declaration, binding.scope, values, env, 0)
 
@@ -158,6 +161,7 @@ def _instantiate(
     env: Env,
     depth: int,
     place: Label | None = None,
+    settled: bool = True,
 ) -> Quantity:
     context = env.context
     memo = (id(declaration), tuple(values.values()))
@@ -166,12 +170,14 @@ def _instantiate(
         return found
     if id(declaration) in context.broken:
         raise ResolutionError(None)
+    settled = settled and not any(isinstance(value, Unknown) for value in values.values())
     low, high = declared_range(declaration, scope, env)
+    env = replace(env, symbolic=not settled)
     body = _body(declaration, scope, values, env, depth)
-    if not any(isinstance(value, Unknown) for value in values.values()):
-        _note_instance(declaration, scope, values, (low, high), env, depth, place)
     result = Quantity(body.expression, units.PLAIN, low, high, name, depth=body.depth)
-    context.values[memo] = result
+    if settled:
+        _note_instance(declaration, scope, values, (low, high), env, depth, place)
+        context.values[memo] = result
     return result
 
 

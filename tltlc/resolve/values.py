@@ -67,7 +67,7 @@ Value = Union[Entity, Quantity, Formula, Unknown]
 class Env:
     """Where an expression stands: the scope of its text and the values of the parameters around it.
 
-    ``symbolic`` marks the check of a ``let`` whose parameters have no values yet; ``constant`` allows
+    ``symbolic`` marks the check of a definition whose parameters have no values yet; ``constant`` allows
     numbers only.
     """
 
