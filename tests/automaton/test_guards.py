@@ -101,5 +101,5 @@ def test_a_short_form_stays_a_sum_where_the_product_would_be_very_long(monkeypat
         both = diagrams.node(2 * pair, REJECT, diagrams.node(2 * pair + 1, REJECT, ACCEPT))
         guard = diagrams.disjoin(guard, both)
     monkeypatch.setattr(guards, "PRIME_LIMIT", 7)
-    text = ascii_text(guards.Guards(diagrams).formula(guard, "abcdef"))
+    text = guards.Guards(diagrams, "abcdef").text(guard)
     assert text == "a & b | c & d | e & f"

@@ -94,7 +94,7 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
         atoms=spec.atoms,
         exclusive=spec.exclusive,
         states=states,
-        edges=_edges(order, minimal, Guards(diagrams, allowed), diagrams, names),
+        edges=_edges(order, minimal, Guards(diagrams, names, allowed), diagrams),
         spec_size=max(finite, default=0),
     )
 
@@ -202,16 +202,14 @@ def _verdicts(
     return {state: verdict(state) for state in targets}
 
 
-def _edges(
-    order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Diagrams, names: Sequence[str]
-) -> tuple[Edge, ...]:
+def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Diagrams) -> tuple[Edge, ...]:
     number = {leaf: index for index, leaf in enumerate(order)}
     made: dict[int, Guard] = {}
     edges: list[Edge] = []
     for source, leaf in enumerate(order):
         for target, guard in guards.by_leaf(minimal.transitions[diagrams.low[leaf]]).items():
             if guard not in made:
-                made[guard] = Guard(ascii_text(guards.formula(guard, names)), guards.primes(guard))
+                made[guard] = Guard(guards.text(guard), guards.primes(guard))
             edges.append(Edge(source, number[target], made[guard]))
     return tuple(sorted(edges, key=lambda edge: (edge.source, edge.target)))
 

@@ -11,11 +11,14 @@ from collections.abc import Sequence
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, REJECT, Diagrams
 from tltlc.automaton.fspa import Implicant
 from tltlc.logic import formula as build
-from tltlc.logic.formula import Formula
+from tltlc.logic.printer import operand_text
 
 Cube = tuple[int, ...]
 
 PRIME_LIMIT = 10_000
+
+_MOST_REMEMBERED = 200_000
+"""Covers of subfunctions that are kept from one guard to the next, which shares many of them."""
 
 
 class TooManyPrimes(Exception):
@@ -25,11 +28,25 @@ class TooManyPrimes(Exception):
 class Guards:
     """Guards over one table of diagrams, under the letters that ``allowed`` accepts."""
 
-    __slots__ = ("_allowed", "_by_leaf", "_covers", "_diagrams", "_negations", "_primes")
+    __slots__ = (
+        "_allowed",
+        "_by_leaf",
+        "_covers",
+        "_diagrams",
+        "_names",
+        "_negations",
+        "_operands",
+        "_pairs",
+        "_primes",
+    )
 
-    def __init__(self, diagrams: Diagrams, allowed: int = ACCEPT) -> None:
+    def __init__(self, diagrams: Diagrams, names: Sequence[str], allowed: int = ACCEPT) -> None:
         self._diagrams = diagrams
         self._allowed = allowed
+        self._names = names
+        positive = [operand_text(build.atom(name)) for name in names]
+        self._operands = [text for name in positive for text in (f"!{name}", name)]
+        self._pairs = [(atom, polarity) for atom in range(len(names)) for polarity in (False, True)]
         self._by_leaf: dict[int, dict[int, int]] = {}
         self._primes: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
         self._covers: dict[tuple[int, int], tuple[tuple[Cube, ...], int]] = {}
@@ -66,22 +83,40 @@ class Guards:
             cubes = self._all_primes(guard)
         else:
             cubes = tuple(cube for cube in self._all_primes(self._upper(guard)) if self._possible(cube))
-        ordered = sorted(cubes, key=lambda cube: (len(cube), [(literal >> 1, -literal) for literal in cube]))
-        return tuple(tuple((literal >> 1, bool(literal & 1)) for literal in cube) for cube in ordered)
+        if len(cubes) > 1:
+            cubes = tuple(sorted(cubes, key=lambda cube: (len(cube), [literal ^ 1 for literal in cube])))
+        pairs = self._pairs
+        return tuple([tuple([pairs[literal] for literal in cube]) for cube in cubes])
 
-    def formula(self, guard: int, names: Sequence[str]) -> Formula:
+    def text(self, guard: int) -> str:
         """A short formula of the guard: an irredundant sum of products, or product of sums where that is shorter.
 
         Letters that ``exclusive`` rules out are free, they go where the formula gets shorter.  Raises
         :class:`TooManyPrimes`.
         """
+        if len(self._covers) > _MOST_REMEMBERED:
+            self._covers.clear()
         products, _ = self._irredundant(guard, self._upper(guard))
-        # A single product is as short as it gets.
-        sums = self._negated_sums(guard) if len(products) > 1 else ()
-        if sums and sum(map(len, sums)) < sum(map(len, products)):
-            negated = [tuple(literal ^ 1 for literal in cube) for cube in sums]
-            return build.and_(*(build.or_(*_literals(cube, names)) for cube in sorted(negated)))
-        return build.or_(*(build.and_(*_literals(cube, names)) for cube in sorted(products)))
+        if len(products) == 1:
+            return self._product(products[0])
+        sums = self._negated_sums(guard)
+        if not sums or sum(map(len, sums)) >= sum(map(len, products)):
+            return " | ".join([self._joined(" & ", cube) for cube in sorted(products)])
+        disjunctions = sorted([tuple([literal ^ 1 for literal in cube]) for cube in sums])
+        if len(disjunctions) == 1:
+            return self._joined(" | ", disjunctions[0])
+        brackets = "({})".format
+        return " & ".join([(brackets if len(cube) > 1 else str)(self._joined(" | ", cube)) for cube in disjunctions])
+
+    def _product(self, cube: Cube) -> str:
+        """A guard that is one product; a literal that stands alone needs no brackets."""
+        if len(cube) == 1 and cube[0] & 1:
+            return self._names[cube[0] >> 1]
+        return self._joined(" & ", cube) if cube else "true"
+
+    def _joined(self, symbol: str, cube: Cube) -> str:
+        operands = self._operands
+        return symbol.join([operands[literal] for literal in cube])
 
     def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
         """The sums of a product of sums, each as the cube that it forbids; none where they are very many."""
@@ -99,7 +134,9 @@ class Guards:
         return self._diagrams.disjoin(guard, self._negation(self._allowed))
 
     def _negation(self, guard: int) -> int:
-        return self._diagrams.relabel(guard, self._negations.__getitem__, self._negations)
+        negations = self._negations
+        negation = negations.get(guard)
+        return self._diagrams.relabel(guard, negations.__getitem__, negations) if negation is None else negation
 
     def _possible(self, cube: Cube) -> bool:
         """Whether some allowed letter meets the cube."""
@@ -172,10 +209,3 @@ def _cofactors(diagrams: Diagrams, function: int, atom: int) -> tuple[int, int]:
     if diagrams.atom[function] != atom:
         return function, function
     return diagrams.low[function], diagrams.high[function]
-
-
-def _literals(cube: Cube, names: Sequence[str]) -> list[Formula]:
-    return [
-        build.atom(names[literal >> 1]) if literal & 1 else build.not_(build.atom(names[literal >> 1]))
-        for literal in sorted(cube)
-    ]

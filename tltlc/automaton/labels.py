@@ -38,7 +38,18 @@ class Labels:
     are.  A count and not a clock, so that equal input gives equal output.
     """
 
-    __slots__ = ("_allowed", "_known", "_machine", "_members", "_sizes", "_successors", "_work", "_writer")
+    __slots__ = (
+        "_allowed",
+        "_known",
+        "_machine",
+        "_members",
+        "_refuted",
+        "_simplified",
+        "_sizes",
+        "_successors",
+        "_work",
+        "_writer",
+    )
 
     def __init__(
         self, successors: Successors, machine: Machine, source: Formula, allowed: int = ACCEPT, work: int = 3_000
@@ -49,7 +60,9 @@ class Labels:
         self._work = work
         self._writer = Writer(successors, source)
         self._sizes: dict[Formula, int] = {}
+        self._simplified: dict[Formula, Formula] = {}
         self._known = dict(machine.representative)
+        self._refuted: set[tuple[int, int]] = set()
         self._members: dict[int, list[int]] = {}
         for obligation, state in machine.representative.items():
             self._members.setdefault(state, []).append(obligation)
@@ -88,7 +101,7 @@ class Labels:
 
     def simplified(self, formula: Formula) -> Formula:
         """The formula after the named rewrites, unless it is too long for anybody to read."""
-        return formula if self.size(formula) > _LONGEST_SIMPLIFIED else simplify(formula)
+        return formula if self.size(formula) > _LONGEST_SIMPLIFIED else simplify(formula, self._simplified)
 
     def _shortened(self, formula: Formula, state: int) -> Formula:
         formula = self.simplified(formula)
@@ -96,12 +109,12 @@ class Labels:
         progress = self.size(formula) <= _LONGEST_PROVED
         while progress and self._work > 0:
             progress = False
-            for shorter in sorted({simplify(f): None for f in _with_one_operand_less(formula)}, key=self.size):
-                if shorter in tried or self.size(shorter) >= self.size(formula):
+            for shorter in sorted(dict.fromkeys(_with_one_operand_less(formula)), key=self.size):
+                if shorter in tried:
                     continue
                 tried.add(shorter)
                 if self._proved(shorter, state):
-                    formula, progress = shorter, True
+                    formula, progress = simplify(shorter, self._simplified), True
                     break
         return formula
 
@@ -109,17 +122,22 @@ class Labels:
         """Whether a formula or obligation is shown to have the language of a state, within the work that is left."""
         if self._work <= 0:
             return False
-        self._work -= 1
         successors = self._successors
         try:
             with successors.diagrams.at_most(_PROOF_STEPS):
                 obligation = label if isinstance(label, int) else successors.obligation(label)
-                return stands_for(
+                if (obligation, state) in self._refuted:
+                    return False
+                self._work -= 1
+                proved = stands_for(
                     successors, self._machine, self._known, obligation, state, _PROOF_PAIRS, self._allowed
                 )
         except OutOfSteps:
             self._work -= _COST_OF_GIVING_UP
             return False
+        if not proved:
+            self._refuted.add((obligation, state))
+        return proved
 
 
 def _with_one_operand_less(formula: Formula) -> Iterator[Formula]:

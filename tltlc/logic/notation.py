@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from tltlc.logic.bounded import LEAST, Bounded, bounded, with_bounds
 from tltlc.logic.formula import Formula, Op
 
-_OPERAND: Final = 6
+OPERAND: Final = 6
 """What an operator needs at least to stand behind a unary operator without brackets."""
 
 _STRENGTH: Final[Mapping[Op, int]] = {
@@ -17,7 +17,7 @@ _STRENGTH: Final[Mapping[Op, int]] = {
     "or": 3,
     "and": 4,
     **dict.fromkeys(("U", "W", "R", "M"), 5),
-    **dict.fromkeys(("not", "X", "N", "F", "G"), _OPERAND),
+    **dict.fromkeys(("not", "X", "N", "F", "G"), OPERAND),
     **dict.fromkeys(("true", "false", "atom"), 7),
 }
 
@@ -55,10 +55,13 @@ _Item = str | tuple[Formula, int]
 """A text, or what is to be written and the least strength at which it needs no brackets."""
 
 
-def write(formula: Formula, notation: Notation) -> str:
-    """The formula in a notation, with only the brackets that it needs; works on an explicit stack."""
+def write(formula: Formula, notation: Notation, least: int = 0) -> str:
+    """The formula in a notation, with only the brackets that it needs; works on an explicit stack.
+
+    Where it is an operand, ``least`` is the least strength at which it stands there without brackets.
+    """
     pieces: list[str] = []
-    stack: list[_Item] = [(formula, 0)]
+    stack: list[_Item] = [(formula, least)]
     while stack:
         item = stack.pop()
         if isinstance(item, str):
@@ -89,13 +92,13 @@ def _bound(node: Formula) -> Bounded | None:
 
 
 def _push_operand(stack: list[_Item], prefix: str, operand: Formula, notation: Notation) -> None:
-    bracket = _needs_brackets(operand, _OPERAND) and not notation.space_before_bracket
-    stack += [(operand, _OPERAND), prefix.rstrip() if bracket else prefix]
+    bracket = _needs_brackets(operand, OPERAND) and not notation.space_before_bracket
+    stack += [(operand, OPERAND), prefix.rstrip() if bracket else prefix]
 
 
 def _push_infix(stack: list[_Item], node: Formula, notation: Notation) -> None:
     """Push the operands of an infix operator, the last one first, with its symbol between them."""
-    strength, inner = _STRENGTH[node.op], _OPERAND if notation.brackets_between_infix else 0
+    strength, inner = _STRENGTH[node.op], OPERAND if notation.brackets_between_infix else 0
     operands = with_bounds(node) if node.op in ("or", "and") else node.args
     # All infix operators but <-> group to the right, and operands of & and | are never of the same operator.
     last = strength + 1 if node.op == "iff" else strength

@@ -6,9 +6,9 @@ from typing import Final
 
 from tltlc.logic.english import english_text
 from tltlc.logic.formula import Formula
-from tltlc.logic.notation import ASCII, LETTERS, Notation, write
+from tltlc.logic.notation import ASCII, LETTERS, OPERAND, Notation, write
 
-__all__ = ["ascii_text", "english_text", "unicode_text", "words_text"]
+__all__ = ["ascii_text", "english_text", "operand_text", "unicode_text", "words_text"]
 
 
 _UNICODE: Final = Notation(
@@ -41,6 +41,11 @@ _WORDS: Final = Notation(
 def ascii_text(formula: Formula) -> str:
     """The formula in letters and ASCII symbols, ``F(a & X F b) & G !c``, with only the brackets that it needs."""
     return write(formula, ASCII)
+
+
+def operand_text(formula: Formula) -> str:
+    """The formula in the notation of :func:`ascii_text`, as it stands behind ``!`` or beside ``&`` and ``|``."""
+    return write(formula, ASCII, OPERAND)
 
 
 def unicode_text(formula: Formula) -> str:

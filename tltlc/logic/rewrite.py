@@ -145,13 +145,15 @@ _BY_OP: Final[dict[str, tuple[Rewrite, ...]]] = {
 }
 
 
-def simplify(formula: Formula) -> Formula:
+def simplify(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
     """A formula that is equal on every finite trace and no longer (see :func:`size`), operands in the same order.
 
-    Passes from the leaves to the root are repeated until nothing changes, 12 times at most.
+    Passes from the leaves to the root are repeated until nothing changes, 12 times at most.  ``known``
+    remembers what a pass made of each part, for further calls with formulas that share parts.
     """
+    known = {} if known is None else known
     for _ in range(_MOST_PASSES):
-        simpler = _one_pass(formula)
+        simpler = _one_pass(formula, known)
         if simpler is formula:
             break
         formula = simpler
@@ -167,9 +169,8 @@ def size(formula: Formula) -> int:
     return sizes[formula]
 
 
-def _one_pass(formula: Formula) -> Formula:
-    done: dict[Formula, Formula] = {}
-    for node in formula.bottom_up():
+def _one_pass(formula: Formula, done: dict[Formula, Formula]) -> Formula:
+    for node in formula.bottom_up(known=done):
         done[node] = _at_root(rebuild(node, tuple(done[argument] for argument in node.args)))
     return done[formula]
 
