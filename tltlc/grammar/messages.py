@@ -4,31 +4,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import cached_property
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr
-from tltlc.grammar.lexer import BAD, END, Token
+from tltlc.grammar.lexer import BAD, Token
+from tltlc.grammar.place import COMPARISONS, INFIX, KEYWORDS, NOUNS, OPENING, UNTILS, Place, shown
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, DECLARATIONS, TEST_ITEMS, closest
-from tltlc.source import SourceFile, Span
+from tltlc.source import SourceFile
 
-_KEYWORDS: Final = {"declaration": DECLARATIONS, "clause": CLAUSES, "test_item": TEST_ITEMS}
-_NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "line of a test"}
-_OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
-_ARITHMETIC: Final = {"PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "POWER", "LESS", "AT_MOST", "MORE", "AT_LEAST"}
-_COMPARISONS: Final = {"LESS", "AT_MOST", "MORE", "AT_LEAST"}
-_INFIX: Final = {"AND", "OR", "IMPLIES", "IFF", "THEN", "UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
-_UNTILS: Final = {"UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
 _BOUNDED: Final = {"F", "G", "X", "N", "eventually", "always", "next", "weak_next", "<>", "[]", "◇", "□", "○"}
-_OPERAND: Final = {"NAME", "NUMBER", "LPAR"}
-_PLAIN: Final = {"NAME": "a name", "NUMBER": "a number", "STRING": "a text in quotes", "UNIT": "a unit"}
 
 
 def unexpected(source: SourceFile, tokens: Sequence[Token], error: lalr.UnexpectedTokenError, start: str) -> Diagnostic:
     """The error for a token that fits nowhere; ``tokens`` are those of one piece, read as a ``start``."""
-    place = _Place(source, tokens, error, start)
+    place = Place(source, tokens, error, start)
     for rule in _RULES:
         diagnostic = rule(place)
         if diagnostic:
@@ -43,103 +34,7 @@ def never_closed(source: SourceFile, opening: Token) -> Diagnostic:
     return Diagnostic("TLT0105", title, (Label(source, opening.span),), f"write the missing `{closing}`")
 
 
-class _Place:
-    """Where reading ended, and what the rules below ask about it."""
-
-    def __init__(
-        self, source: SourceFile, tokens: Sequence[Token], stop: lalr.UnexpectedTokenError, start: str
-    ) -> None:
-        self.source = source
-        self.tokens = tokens
-        self.stop = stop
-        self.start = start
-
-    @property
-    def found(self) -> Token:
-        return self.tokens[self.stop.index]
-
-    @property
-    def before(self) -> Token | None:
-        return self.tokens[self.stop.index - 1] if self.stop.index else None
-
-    @property
-    def at_end(self) -> bool:
-        return self.found.type == END
-
-    @cached_property
-    def allowed(self) -> set[str]:
-        return lalr.accepted(load(), self.stop.states)
-
-    @property
-    def wants_operand(self) -> bool:
-        return self.allowed >= _OPERAND
-
-    @property
-    def wants_operator(self) -> bool:
-        return "AND" in self.allowed
-
-    @cached_property
-    def open_brackets(self) -> list[Token]:
-        """The brackets that are open here, outermost first."""
-        stack: list[Token] = []
-        for token in self.tokens[: self.stop.index]:
-            if token.type in _OPENING:
-                stack.append(token)
-            elif stack and token.type == _OPENING[stack[-1].type]:
-                stack.pop()
-        return stack
-
-    def form(self) -> str | None:
-        """The form of the piece as a help, by its keyword."""
-        form = _KEYWORDS.get(self.start, {}).get(self.tokens[0].text)
-        return f"the form is {form}" if form else None
-
-    def error(
-        self, code: str, title: str, help_: str | None, message: str = "", span: Span | None = None
-    ) -> Diagnostic:
-        """An error at the token that was found; at the end of a piece, at its last token."""
-        if span is None:
-            span = self.before.span if self.at_end and self.before else self.found.span
-        return Diagnostic(code, title, (Label(self.source, span, message),), help_)
-
-    def expectation(self) -> str:
-        """``expected … after …, found …``."""
-        before = f" after {shown(self.before)}" if self.before else ""
-        found = "" if self.at_end else f", found {shown(self.found)}"
-        return f"expected {self.wanted()}{before}{found}"
-
-    def wanted(self) -> str:
-        """What could stand here, in plain words."""
-        allowed = set(self.allowed)
-        if self.wants_operand:
-            if self.before and self.before.type in _ARITHMETIC:
-                return "a value"
-            return "an expression" if self.tokens[0].type in ("PREDICATE", "PARAM", "SIGNAL") else "a formula"
-        items = []
-        if self.wants_operator:
-            items.append("an operator")
-            allowed -= _INFIX | _ARITHMETIC | {"UNIT", "LPAR"}
-        items += [text for kind, text in _PLAIN.items() if kind in allowed]
-        spellings = sorted({**load().soft, **load().signs}.items(), key=lambda item: item[0].isascii())
-        signs = {terminal: text for text, terminal in spellings}
-        items += [f"`{signs[kind]}`" for kind in sorted(allowed) if kind in signs]
-        words = {terminal: text for text, terminal in load().words.items()}
-        rest = [f"`{words[kind]}`" for kind in sorted(allowed) if kind in words and kind not in _PLAIN]
-        if len(rest) <= 4:
-            items += rest
-        if END in allowed and len(items) < 2:
-            items.append(f"the end of the {_NOUNS.get(self.start, 'formula')}")
-        items = items[:4] or [f"a {_NOUNS.get(self.start, 'formula')}"]
-        return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} or {items[-1]}"
-
-
-def shown(token: Token | None) -> str:
-    """A token as it stands in the text, short enough for a title."""
-    text = token.text if token else ""
-    return f"`{text}`" if len(text) <= 30 else f"`{text[:29]}…`"
-
-
-def _strange(place: _Place) -> Diagnostic | None:
+def _strange(place: Place) -> Diagnostic | None:
     """A sign or word that the language does not know."""
     token = place.found
     if token.type != BAD:
@@ -168,7 +63,7 @@ def _strange(place: _Place) -> Diagnostic | None:
     return place.error("TLT0104", f"`{sign}` means nothing here", helps.get(text, "leave it out"))
 
 
-def _equality(place: _Place) -> Diagnostic | None:
+def _equality(place: Place) -> Diagnostic | None:
     """A single ``=`` where a comparison was meant."""
     expectation = place.tokens[0].text == "expect"
     if place.found.type != "EQUAL" or not (place.wants_operator or expectation):
@@ -177,20 +72,20 @@ def _equality(place: _Place) -> Diagnostic | None:
     return place.error("TLT0110", "`=` does not compare", help_)
 
 
-def _chained(place: _Place) -> Diagnostic | None:
+def _chained(place: Place) -> Diagnostic | None:
     """``a < b < c``."""
-    if place.found.type not in _COMPARISONS or not place.wants_operator:
+    if place.found.type not in COMPARISONS or not place.wants_operator:
         return None
     return place.error("TLT0110", "comparisons cannot be chained", "write `a < b and b < c`")
 
 
-def _unknown_keyword(place: _Place) -> Diagnostic | None:
+def _unknown_keyword(place: Place) -> Diagnostic | None:
     """A piece that begins with no keyword of its kind."""
-    keywords = _KEYWORDS.get(place.start)
+    keywords = KEYWORDS.get(place.start)
     if place.stop.index or not keywords or place.at_end:
         return None
-    token, noun = place.found, _NOUNS[place.start]
-    if token.type in _OPENING.values():
+    token, noun = place.found, NOUNS[place.start]
+    if token.type in OPENING.values():
         return None
     if place.start == "declaration" and token.text in CLAUSES:
         help_ = f"put it into one: `spec NAME {{ {token.text} … }}`"
@@ -205,22 +100,22 @@ def _unknown_keyword(place: _Place) -> Diagnostic | None:
     return place.error("TLT0107", title, None if near else f"one of {listed}", message)
 
 
-def _brackets(place: _Place) -> Diagnostic | None:
+def _brackets(place: Place) -> Diagnostic | None:
     """A bracket without its partner."""
     token = place.found
-    if token.type in _OPENING.values():
+    if token.type in OPENING.values():
         opening = place.open_brackets[-1] if place.open_brackets else None
         if opening is None:
             return place.error("TLT0105", f"this `{token.text}` closes nothing", "leave it out")
-        if _OPENING[opening.type] != token.type and _OPENING[opening.type] in place.allowed:
+        if OPENING[opening.type] != token.type and OPENING[opening.type] in place.allowed:
             return never_closed(place.source, opening)
         return None
-    if place.at_end and place.open_brackets and _OPENING[place.open_brackets[-1].type] in place.allowed:
+    if place.at_end and place.open_brackets and OPENING[place.open_brackets[-1].type] in place.allowed:
         return never_closed(place.source, place.open_brackets[-1])
     return None
 
 
-def _bounds(place: _Place) -> Diagnostic | None:
+def _bounds(place: Place) -> Diagnostic | None:
     """A bound without a unit, with a name for a number, or behind an operator that takes none."""
     before = place.before
     if place.found.type == "NAME" and before and _is_bound(place):
@@ -231,13 +126,13 @@ def _bounds(place: _Place) -> Diagnostic | None:
         return place.error(
             "TLT0111", f"expected a unit after {shown(before)}", f"`{before.text} steps` or `{before.text} s`"
         )
-    if place.found.type == "LSQB" and before and before.type in _UNTILS:
+    if place.found.type == "LSQB" and before and before.type in UNTILS:
         help_ = "bound an `F` beside it: `(a U b) & F[0,20] b`"
         return place.error("TLT0111", f"`{before.text}` takes no bound", help_)
     return None
 
 
-def _is_bound(place: _Place) -> bool:
+def _is_bound(place: Place) -> bool:
     """Whether a number of a bound should stand here, as in ``F[0,`` or ``eventually within``."""
     index = place.stop.index - 1
     if place.open_brackets and place.open_brackets[-1].text == "[":
@@ -248,7 +143,7 @@ def _is_bound(place: _Place) -> bool:
     return index > 0 and place.tokens[index - 1].text in _BOUNDED
 
 
-def _reserved(place: _Place) -> Diagnostic | None:
+def _reserved(place: Place) -> Diagnostic | None:
     """A reserved word where a name should stand."""
     token = place.found
     if "NAME" not in place.allowed or token.text not in load().words:
@@ -262,7 +157,7 @@ def _reserved(place: _Place) -> Diagnostic | None:
     return place.error("TLT0106", f"`{token.text}` is a reserved word, not a name", help_)
 
 
-def _missing_type(place: _Place) -> Diagnostic | None:
+def _missing_type(place: Place) -> Diagnostic | None:
     """``signal a: in [0, 1]``, where `in` was taken for the type."""
     before = place.before
     if place.found.type != "LSQB" or before is None or before.text != "in" or "LSQB" in place.allowed:
@@ -270,14 +165,14 @@ def _missing_type(place: _Place) -> Diagnostic | None:
     return place.error("TLT0101", "expected a type after `:`", place.form(), span=before.span)
 
 
-def _quantified_over(place: _Place) -> Diagnostic | None:
+def _quantified_over(place: Place) -> Diagnostic | None:
     """``all x in a: p``, without brackets around the entities."""
     if place.allowed != {"LPAR"} or place.before is None or place.before.type != "IN":
         return None
     return place.error("TLT0101", place.expectation(), "the form is `all x in (a, b): p` or `any x in (a, b): p`")
 
 
-def _misspelt_operator(place: _Place) -> Diagnostic | None:
+def _misspelt_operator(place: Place) -> Diagnostic | None:
     """A name where an operator should stand."""
     before, token = place.before, place.found
     if token.type != "NAME" or not place.wants_operator or before is None:
@@ -285,7 +180,7 @@ def _misspelt_operator(place: _Place) -> Diagnostic | None:
     if re.fullmatch("[FGXN]{2,}", before.text):
         letters = " ".join(before.text)
         return place.error("TLT0101", f"`{before.text}` is read as one name", f"write `{letters}`", span=before.span)
-    words = tuple(word for word, terminal in load().words.items() if terminal in _INFIX and len(word) > 1)
+    words = tuple(word for word, terminal in load().words.items() if terminal in INFIX and len(word) > 1)
     near = closest(token.text, words)
     if near is None:
         temporal = closest(before.text, tuple(word for word in load().words if len(word) > 3))
