@@ -8,6 +8,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr
+from tltlc.grammar.habits import HABITS, SYNONYMS
 from tltlc.grammar.lexer import BAD, Token
 from tltlc.grammar.place import COMPARISONS, INFIX, KEYWORDS, NOUNS, OPENING, UNTILS, Place, shown
 from tltlc.grammar.tables import load
@@ -93,7 +94,9 @@ def _unknown_keyword(place: Place) -> Diagnostic | None:
     if place.start == "declaration" and token.text in TEST_ITEMS:
         help_ = f"put it into one: {DECLARATIONS['test']}"
         return place.error("TLT0107", f"`{token.text}` stands only inside a test", help_)
-    near = closest(token.text, tuple(keywords)) if token.type == "NAME" else None
+    near = SYNONYMS[place.start].get(token.text.lower())
+    if near is None and token.type == "NAME":
+        near = closest(token.text, tuple(keywords))
     message = f"did you mean `{near}`?" if near else ""
     listed = ", ".join(f"`{word}`" for word in keywords)
     title = f"no {noun} begins with {shown(token)}"
@@ -193,6 +196,7 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
 
 _RULES: Final = (
     _strange,
+    *HABITS,
     _equality,
     _chained,
     _unknown_keyword,

@@ -51,7 +51,9 @@ def samples(value: Number, env: Env) -> int:
     source = env.scope.source
     if value.unit in (None, "step", "steps"):
         if value.value != value.value // 1 and value.value <= MOST_SAMPLES:
-            raise problem("TLT0312", "expected a whole number of steps", source, value.span, advice="write e.g. `20`")
+            whole = f"{value.value // 1 + 1:.0f}" + (f" {value.unit}" if value.unit else "")
+            advice = f"write e.g. `{whole}`"
+            raise problem("TLT0312", "expected a whole number of steps", source, value.span, advice=advice)
         return _counted(value.value, value, env)
     found = units.in_si(value.value, value.unit)
     if found is None or found[1] != units.TYPES["time"]:

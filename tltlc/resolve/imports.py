@@ -119,6 +119,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     """The absolute path of an imported file and the name to show for it."""
     target = declaration.target
     here = _folder(source)
+    folders = (here, *options.library_dirs, standard_library())
     if declaration.is_path:
         shown = here / target
         if not _is_file(shown):
@@ -127,10 +128,11 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
                 f"there is no file `{target}` beside this one",
                 source,
                 declaration.target_span,
-                advice=_similar(target, [path.name for path in _files(shown.parent)]),
+                advice=_similar(target, [path.name for path in _files(shown.parent)])
+                or _unquoted(target, folders)
+                or "a path begins at the folder of this file",
             )
         return Path(_normal(shown.absolute())), _shown(shown)
-    folders = (here, *options.library_dirs, standard_library())
     name = target.replace(".", "/") + ".tltl"
     for folder in folders:
         if _is_file(folder / name):
@@ -145,6 +147,13 @@ def _similar(target: str, known: list[str]) -> str | None:
 
     close = get_close_matches(target, known, n=1)
     return f"did you mean `{close[0]}`?" if close else None
+
+
+def _unquoted(target: str, folders: tuple[Path, ...]) -> str | None:
+    name = target.removesuffix(".tltl")
+    if any(_is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name:
+        return f"a library is imported by its name, without quotes: `import {name}`"
+    return None
 
 
 def _is_file(path: Path) -> bool:
