@@ -37,12 +37,14 @@ class Family:
     name: str
     formulas: int
     minimal_ms: float
+    guarded_ms: float
     build_ms: float
     mona_ms: float
     spot_ms: float
     to_spot: float
     to_spot_recorded: float
     ltlf2dfa_over_minimal: AtLeast | None
+    ltlf2dfa_over_guarded: AtLeast | None
     ltlf2dfa_over_build: AtLeast | None
     ltlf2dfa_solved: int
     ltlf2dfa_tried: int
@@ -89,6 +91,7 @@ def _family(
         name=name,
         formulas=len(members),
         minimal_ms=_median_of(own, "minimal_ms"),
+        guarded_ms=_median_of(own, "guarded_ms"),
         build_ms=_median_of(own, "build_ms"),
         mona_ms=_median_of(own, "mona_ms"),
         spot_ms=spot_ms,
@@ -97,6 +100,7 @@ def _family(
         ),
         to_spot=median([records[member]["minimal_ms"] for member in both]) / spot_ms if both else float("nan"),
         ltlf2dfa_over_minimal=_speed_up(own, "minimal_ms", timeout_s),
+        ltlf2dfa_over_guarded=_speed_up(own, "guarded_ms", timeout_s),
         ltlf2dfa_over_build=_speed_up(own, "build_ms", timeout_s),
         ltlf2dfa_solved=sum("ltlf2dfa_ms" in record for record in own),
         ltlf2dfa_tried=sum("ltlf2dfa_ms" in record or "ltlf2dfa_failed" in record for record in tried),
