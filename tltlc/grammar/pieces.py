@@ -29,6 +29,7 @@ _STARTS: Final = {
     "ALL",
     "ANY",
 }
+_OTHERS: Final = DECLARATIONS.keys() - {"spec", "test"}
 
 
 def declarations(source: SourceFile, tokens: Sequence[Token]) -> Iterator[list[Token]]:
@@ -63,10 +64,10 @@ def lines(source: SourceFile, tokens: Sequence[Token], keywords: dict[str, str])
         yield piece
 
 
-def is_block(piece: Sequence[Token]) -> bool:
-    """Whether a piece is a spec or test in braces: ``spec NAME = …`` is none, braces or not."""
+def block(piece: Sequence[Token]) -> str | None:
+    """``spec`` or ``test`` where a piece is one in braces, misspelt or not: ``spec NAME = …`` is none."""
     head = next((token.type for token in piece if token.type in ("LBRACE", "EQUAL")), None)
-    return piece[0].type in ("SPEC", "TEST") and head == "LBRACE"
+    return closest(piece[0].text, ("spec", "test")) if head == "LBRACE" and piece[0].text not in _OTHERS else None
 
 
 def is_first_on_line(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:

@@ -8,7 +8,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar import checks, lalr, messages, nesting, tree
 from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import END, Token, Tokens
-from tltlc.grammar.pieces import declarations, is_block, is_first_on_line, lines
+from tltlc.grammar.pieces import block, declarations, is_first_on_line, lines
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, TEST_ITEMS
 from tltlc.record import replace
@@ -40,8 +40,9 @@ class _Reader:
     def read_declaration(self, piece: list[Token]) -> None:
         """Read the tokens of one declaration; a broken block still gives its good clauses."""
         before = len(self.diagnostics)
-        if is_block(piece):
-            declaration = self._read_block(piece)
+        kind = block(piece)
+        if kind:
+            declaration = self._read_block(piece, kind)
         else:
             declaration = None if self._refuse_deep(piece) else self._read("declaration", piece)
         if declaration is None:
@@ -54,7 +55,7 @@ class _Reader:
         else:
             self.diagnostics += checks.check_clauses(self._source, kept)
 
-    def _read_block(self, piece: list[Token]) -> tree.Declaration | None:
+    def _read_block(self, piece: list[Token], kind: str) -> tree.Declaration | None:
         """A spec or a test in braces: its head, then each line of its body for itself."""
         brace = next(index for index, token in enumerate(piece) if token.type == "LBRACE")
         closed = piece[-1].type == "RBRACE"
@@ -62,7 +63,7 @@ class _Reader:
         if not closed:
             self.diagnostics.append(messages.never_closed(self._source, piece[brace]))
         head = self._read("declaration", [*piece[: brace + 1], closing])
-        keywords, start = (CLAUSES, "clause") if piece[0].type == "SPEC" else (TEST_ITEMS, "test_item")
+        keywords, start = (CLAUSES, "clause") if kind == "spec" else (TEST_ITEMS, "test_item")
         items: list[Any] = []
         for line in lines(self._source, piece[brace + 1 : len(piece) - closed], keywords):
             items += self._read_line(line, start)
