@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.resolve.helpers import codes, formula, good, only, resolved
+from tltlc.resolve.declared_values import signal
 from tltlc.resolve.kinds import entity
-from tltlc.resolve.quantities import signal
 
 AT = "entity e1, e2, e3 signal at(x: entity): bool signal a: bool signal b: bool "
 

@@ -12,7 +12,7 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
-from tltlc.grammar.walk import children
+from tltlc.grammar.walk import children, operands
 from tltlc.source import SourceFile, Span
 
 _TEMPORAL: Final = "FGXN"
@@ -26,31 +26,21 @@ def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator
     while waiting:
         part, lenient = waiting.pop()
         if isinstance(part, tree.Binary) and part.op == "then":
-            operands = _operands(part)
-            for place in range(len(operands)):
-                yield from _check_operand(source, operands, place, lenient)
-            waiting += [(operand, False) for operand in reversed(operands)]
+            sequence = operands(part, "then")
+            for place in range(len(sequence)):
+                yield from _check_operand(source, sequence, place, lenient)
+            waiting += [(operand, False) for operand in reversed(sequence)]
         else:
             waiting += [(child, False) for child in reversed([*children(part)])]
 
 
-def _operands(sequence: tree.Binary) -> list[Expr]:
-    """The operands of ``a then b then …``, in order."""
-    found = [sequence.left]
-    rest = sequence.right
-    while isinstance(rest, tree.Binary) and rest.op == "then":
-        found.append(rest.left)
-        rest = rest.right
-    return [*found, rest]
-
-
-def _check_operand(source: SourceFile, operands: list[Expr], place: int, lenient: bool) -> Iterator[Diagnostic]:
-    operand = operands[place]
+def _check_operand(source: SourceFile, sequence: list[Expr], place: int, lenient: bool) -> Iterator[Diagnostic]:
+    operand = sequence[place]
     leading = _leading(operand)
     if leading is None and (lenient or _is_plain(operand)):
         return
-    last = place == len(operands) - 1
-    other = operands[place - 1] if last else operands[place + 1]
+    last = place == len(sequence) - 1
+    other = sequence[place - 1] if last else sequence[place + 1]
     if leading is None:
         title, span = "this operand of `then` needs brackets", operand.span
         help_ = _readings(source, operand, other, last)

@@ -42,6 +42,30 @@ def parts(expression: Expr) -> Iterator[Expr]:
         waiting += reversed([*children(part)])
 
 
+def operands(expression: Expr, op: str, *, through_brackets: bool = False) -> list[Expr]:
+    """The operands of a chain such as ``a & b & c`` or ``a then b then c``, in order.
+
+    The expression alone where it is no ``op``.  With ``through_brackets``, those of ``a & (b & c)`` are three.
+    """
+    found: list[Expr] = []
+    waiting = [expression]
+    while waiting:
+        part = waiting.pop()
+        inner = part
+        while through_brackets and isinstance(inner, tree.Group):
+            inner = inner.inner
+        if isinstance(inner, tree.Binary) and inner.op == op:
+            waiting += (inner.right, inner.left)
+        else:
+            found.append(part)
+    return found
+
+
+def conjuncts(expression: Expr) -> list[Expr]:
+    """The operands of the outermost ``and``, brackets or not, in order; the expression alone where it is none."""
+    return operands(expression, "and", through_brackets=True)
+
+
 def children(expression: Expr) -> Iterator[Expr]:
     """The operands of an expression, in order."""
     match expression:

@@ -8,8 +8,9 @@ from tltlc.expression import Const, Expression, Op
 from tltlc.grammar.tree import Binary
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
+from tltlc.resolve.dimensions import same_dimension
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.quantities import quantity, same_dimension
+from tltlc.resolve.quantities import quantity
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}

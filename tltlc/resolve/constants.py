@@ -10,8 +10,9 @@ from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr, Group, Interval, Number
 from tltlc.record import replace
 from tltlc.resolve import units
+from tltlc.resolve.dimensions import mismatch
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.quantities import mismatch, quantity
+from tltlc.resolve.quantities import quantity
 from tltlc.resolve.units import Dimension
 from tltlc.resolve.values import Env
 

@@ -1,33 +1,31 @@
 """Formulas: from syntax to logic, with predicates, comparisons, lets, quantifiers and bounds settled.
 
-The functions that walk the tree are generators run by :func:`_run`, which keeps their stack on the
-heap: neither a long chain of operators nor a deep nest of lets can exhaust Python's own.
+The functions that walk the tree are generators (:mod:`tltlc.resolve.steps`): neither a long chain of
+operators nor a deep nest of lets can exhaust Python's stack.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
-from typing import Any
+from collections.abc import Callable
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression import Const, Op
 from tltlc.grammar.tree import Binary, Call, Constant, Expr, Group, LetDecl, Name, Quantified, SignalDecl, Unary
+from tltlc.grammar.walk import operands
 from tltlc.logic import formula as logic
 from tltlc.logic.formula import Formula
 from tltlc.resolve.arguments import match
 from tltlc.resolve.bounds import bounded
 from tltlc.resolve.comparisons import comparison
 from tltlc.resolve.context import LARGEST_EXPANSION, MOST_EXPANSIONS, too_large
+from tltlc.resolve.declared_values import signal
 from tltlc.resolve.kinds import entity, kind_of, lookup, not_a_formula
 from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
-from tltlc.resolve.quantities import signal
 from tltlc.resolve.scope import Binding
+from tltlc.resolve.steps import Steps, run
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value
 from tltlc.source import Span
-
-Steps = Generator[Any, Any, Any]
-"""Yields the generators it waits for; returns a formula."""
 
 _UNARY: dict[str, Callable[[Formula], Formula]] = {
     "not": logic.not_,
@@ -51,23 +49,7 @@ _NARY: dict[str, Callable[..., Formula]] = {"and": logic.and_, "or": logic.or_}
 
 def formula(expr: Expr, env: Env) -> Formula:
     """The formula that an expression stands for; raises ResolutionError where it is none."""
-    return _run(_formula(expr, env))
-
-
-def conjuncts(expr: Expr) -> list[Expr]:
-    """The operands of the outermost conjunction as written, in order; the expression itself if it is none."""
-    result: list[Expr] = []
-    stack = [expr]
-    while stack:
-        node = stack.pop()
-        inner = node
-        while isinstance(inner, Group):
-            inner = inner.inner
-        if isinstance(inner, Binary) and inner.op == "and":
-            stack += (inner.right, inner.left)
-        else:
-            result.append(node)
-    return result
+    return run(_formula(expr, env))
 
 
 def check_unused(binding: Binding, env: Env) -> None:
@@ -78,30 +60,7 @@ def check_unused(binding: Binding, env: Env) -> None:
     for parameter in declaration.parameters:
         values[parameter.name] = Entity(parameter.name) if parameter.type == "entity" else Unknown(parameter.name)
     inside = Env(env.context, binding.scope, values, symbolic=bool(declaration.parameters))
-    _run(_expand(declaration, binding, inside, declaration.name_span, env))
-
-
-def _run(steps: Steps) -> Formula:
-    """The result of a generator that yields the generators whose results it waits for; problems pass through all."""
-    stack = [steps]
-    value: Formula | None = None
-    failure: ResolutionError | None = None
-    while stack:
-        try:
-            child = stack[-1].throw(failure) if failure else stack[-1].send(value)
-        except StopIteration as finished:
-            stack.pop()
-            value, failure = finished.value, None
-        except ResolutionError as error:
-            stack.pop()
-            failure = error
-        else:
-            stack.append(child)
-            value, failure = None, None
-    if failure:
-        raise failure
-    assert value is not None
-    return value
+    run(_expand(declaration, binding, inside, declaration.name_span, env))
 
 
 def _formula(expr: Expr, env: Env) -> Steps:
@@ -120,11 +79,11 @@ def _formula(expr: Expr, env: Env) -> Steps:
         return (yield _quantified(expr, env))
     if isinstance(expr, Binary):
         if expr.op in _NARY:
-            operands: list[Formula] = []
-            for written in _chain(expr):
+            joined: list[Formula] = []
+            for written in operands(expr, expr.op):
                 operand = yield _formula(written, env)
-                operands.append(operand)
-            return _NARY[expr.op](*operands)
+                joined.append(operand)
+            return _NARY[expr.op](*joined)
         if expr.op in _BINARY:
             left = yield _formula(expr.left, env)
             right = yield _formula(expr.right, env)
@@ -139,17 +98,6 @@ def _shared(expr: Call | Binary, env: Env) -> Steps:
     if memo not in values:
         values[memo] = comparison(expr, env) if isinstance(expr, Binary) else (yield _named(expr, env))
     return values[memo]
-
-
-def _chain(expr: Binary) -> list[Expr]:
-    """The operands of ``a & b & c`` in order, so that a long chain is joined at once."""
-    operands: list[Expr] = []
-    node: Expr = expr
-    while isinstance(node, Binary) and node.op == expr.op:
-        operands.append(node.right)
-        node = node.left
-    operands.append(node)
-    return operands[::-1]
 
 
 def _named(expr: Name | Call, env: Env) -> Steps:

@@ -14,9 +14,11 @@ from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval
 from tltlc.resolve.context import Instance
+from tltlc.resolve.declared_values import of_signal
+from tltlc.resolve.dimensions import mismatch
 from tltlc.resolve.kinds import entity, kind_of
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.quantities import mismatch, of_signal, quantity
+from tltlc.resolve.quantities import quantity
 from tltlc.resolve.scope import Binding, Scope
 from tltlc.resolve.spec import Signal, ValueType
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value, constant

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from math import inf, isinf
+from math import isinf
 from typing import cast
 
 from tltlc.expression import Condition, ConditionOp, Const, When
-from tltlc.expression import Param as ParamNode
-from tltlc.expression import Signal as SignalNode
 from tltlc.grammar import tree
-from tltlc.grammar.tree import Call, Expr, Group, Name, Number, ParamDecl, SignalDecl
+from tltlc.grammar.tree import Call, Expr, Group, Name, Number
 from tltlc.record import replace
-from tltlc.resolve import units
+from tltlc.resolve import functions, units
 from tltlc.resolve.arguments import match
-from tltlc.resolve.kinds import described_kind, entity, lookup
+from tltlc.resolve.declared_values import of_signal, param, signal
+from tltlc.resolve.dimensions import mismatch, same_dimension
+from tltlc.resolve.kinds import described_kind, lookup
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.ranges import hull
-from tltlc.resolve.scope import FUNCTIONS, Binding
+from tltlc.resolve.scope import FUNCTIONS
 from tltlc.resolve.spec import Signal
 from tltlc.resolve.units import Dimension
 from tltlc.resolve.values import LOOSEST, Env, Quantity, Unknown, apply, constant
@@ -36,32 +36,6 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
     if result.depth > DEEPEST_ARITHMETIC:
         raise _too_deep(expr, env)
     return result
-
-
-def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimension | None:
-    """The dimension of two quantities that are added or compared; raises ResolutionError (TLT0305) if they differ."""
-    if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
-        return left.dimension if left.dimension is not None else right.dimension
-    raise mismatch(left.dimension, right.dimension, at, env, f"the left side is {units.described(left.dimension)}")
-
-
-def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
-    """The problem of a quantity of the wrong dimension at ``at``."""
-    while isinstance(at, Group):
-        at = at.inner
-    unit = units.si_unit(expected)
-    advice = None
-    if isinstance(at, Number):
-        digits = env.scope.source.text[at.span.start : at.span.end]
-        if at.unit and digits.endswith(at.unit):
-            digits = digits[: -len(at.unit)].rstrip()
-        why += f"; write `{digits} {unit}`" if unit else f"; write `{digits}`" if expected == units.PLAIN else ""
-    elif unit:
-        advice = f"give {units.described(expected)} there, e.g. `3 {unit}`"
-    elif expected == units.PLAIN and "divide" not in why:
-        advice = f"divide it by {units.described(found)} to get a number"
-    title = f"expected {units.described(expected)}, found {units.described(found)}"
-    return problem("TLT0305", title, env.scope.source, at.span, why, advice=advice)
 
 
 def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
@@ -103,7 +77,9 @@ def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
         return _named(expr, env, depth)
     if isinstance(expr, Call):
         if expr.name in FUNCTIONS and expr.name not in env.local:
-            return _function(expr, env, depth)
+            functions.check_arguments(expr, env)
+            values = tuple(quantity(argument.value, env, depth) for argument in expr.arguments)
+            return _applied(expr.name, values, functions.dimension(expr, values, env), expr, env)
         return _named(expr, env, depth)
     if isinstance(expr, tree.Unary) and expr.op == "-":
         operand = quantity(expr.operand, env, depth)
@@ -167,42 +143,6 @@ def _named(expr: Name | Call, env: Env, depth: int) -> Quantity:
     raise _not_a_number(expr, env)
 
 
-def param(binding: Binding, env: Env) -> Quantity:
-    """The value of a declared param."""
-    declaration = binding.declaration
-    assert isinstance(declaration, ParamDecl)
-    found = env.context.params.get(declaration.name)
-    if found is None:
-        raise ResolutionError(None)
-    low = -inf if found.low is None else found.low
-    high = inf if found.high is None else found.high
-    return Quantity(ParamNode(found.name), units.TYPES[found.type], low, high, found.name)
-
-
-def signal(expr: Name | Call, binding: Binding, env: Env) -> Quantity:
-    """The value of a declared signal, of the entities given."""
-    declaration = binding.declaration
-    assert isinstance(declaration, SignalDecl)
-    pairs = match(expr, binding, declaration.parameters, env.scope)
-    entities = tuple(entity(argument, env).name for _, argument in pairs if argument is not None)
-    memo = (id(declaration), entities)
-    if memo not in env.context.values:
-        info = env.context.signal_infos.get(declaration.name)
-        if info is None:
-            raise ResolutionError(None)
-        env.context.values[memo] = of_signal(env.context.signal(info, entities))
-    found: Quantity = env.context.values[memo]
-    return found
-
-
-def of_signal(found: Signal) -> Quantity:
-    """A signal's value."""
-    low = -inf if found.low is None else found.low
-    high = inf if found.high is None else found.high
-    dimension = units.TYPES[found.type]
-    return Quantity(SignalNode(found.name), dimension, low, high, found.name, is_bool=found.type == "bool")
-
-
 def _infix(expr: tree.Binary, env: Env, depth: int) -> Quantity:
     left = quantity(expr.left, env, depth)
     if _is_per_time(expr, env):
@@ -253,37 +193,6 @@ def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Q
             advice="write a number there, or divide by a quantity of the same kind before",
         )
     return _applied("^", (base, exponent), units.power(base.dimension, exponent.expression.value), expr, env)
-
-
-_ARGUMENTS = {"abs": 1, "sqrt": 1, "exp": 1, "tanh": 1, "clamp": 3}
-
-
-def _function(expr: Call, env: Env, depth: int) -> Quantity:
-    name = expr.name
-    wanted = _ARGUMENTS.get(name)
-    named = next((argument for argument in expr.arguments if argument.name is not None), None)
-    if named is not None:
-        title, advice = f"`{name}` takes its arguments by position", f"leave out `{named.name} =`"
-        raise problem("TLT0210", title, env.scope.source, named.span, advice=advice)
-    if len(expr.arguments) != wanted if wanted else len(expr.arguments) < 2:
-        count = {1: "one argument", 3: "three arguments: the value, its low and its high end"}
-        text = count.get(wanted or 0, "at least two arguments")
-        example = {1: "(x)", 3: "(x, 0, 1)"}.get(wanted or 0, "(x, y)")
-        raise problem("TLT0210", f"`{name}` takes {text}", env.scope.source, expr.span, advice=f"`{name}{example}`")
-    args = tuple(quantity(argument.value, env, depth) for argument in expr.arguments)
-    dimension = args[0].dimension
-    if name in ("exp", "tanh"):
-        if dimension not in (None, units.PLAIN):
-            why = f"`{name}` is of a number; divide by a quantity of the same kind"
-            raise mismatch(units.PLAIN, dimension, expr.arguments[0].value, env, why)
-    elif name == "sqrt":
-        dimension = units.power(dimension, 0.5)
-    else:
-        so_far = args[0]
-        for argument, value in zip(expr.arguments[1:], args[1:], strict=True):
-            dimension = same_dimension(so_far, value, argument.value, env)
-            so_far = value if so_far.dimension is None else so_far
-    return _applied(name, args, units.PLAIN if name in ("exp", "tanh") else dimension, expr, env)
 
 
 def _when(expr: tree.When, env: Env, depth: int) -> Quantity:

@@ -9,11 +9,12 @@ from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression import Expression, nodes
 from tltlc.expression import Param as ParamNode
 from tltlc.expression import Signal as SignalNode
-from tltlc.grammar.tree import Binary, Clause, Expr, Name, Number, SpecDecl
+from tltlc.grammar.tree import Clause, Expr, Name, Number, SpecDecl
+from tltlc.grammar.walk import conjuncts, operands
 from tltlc.logic.formula import Formula, always, and_, eventually, not_, then
 from tltlc.record import replace
 from tltlc.resolve.constants import samples
-from tltlc.resolve.formulas import conjuncts, formula
+from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.spec import Judge, Part, Spec
 from tltlc.resolve.values import Env
@@ -85,15 +86,11 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
 
 
 def _reach(clause: Clause, env: Env) -> list[Part]:
-    operands: list[Expr] = []
-    node = _expression(clause)
-    while isinstance(node, Binary) and node.op == "then":
-        operands.append(node.left)
-        node = node.right
-    result = formula(node, env)
-    if not operands:
+    *before, last = operands(_expression(clause), "then")
+    result = formula(last, env)
+    if not before:
         result = eventually(result)
-    for operand in reversed(operands):
+    for operand in reversed(before):
         result = then(formula(operand, env), result)
     return [_part(result, clause, env)]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Literal, cast
 
 from tltlc.grammar.tree import Expr, TestDecl, TestExpect, TestStep
-from tltlc.resolve.formulas import conjuncts, formula
+from tltlc.grammar.walk import conjuncts
+from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.spec import Expect, Spec, Step, Test
 from tltlc.resolve.values import Env

@@ -1,0 +1,35 @@
+"""Checks of units: what is added, compared or handed over must have one dimension (TLT0305)."""
+
+from __future__ import annotations
+
+from tltlc.grammar.tree import Expr, Group, Number
+from tltlc.resolve import units
+from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.units import Dimension
+from tltlc.resolve.values import Env, Quantity
+
+
+def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimension | None:
+    """The dimension of two quantities that are added or compared; raises ResolutionError (TLT0305) if they differ."""
+    if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
+        return left.dimension if left.dimension is not None else right.dimension
+    raise mismatch(left.dimension, right.dimension, at, env, f"the left side is {units.described(left.dimension)}")
+
+
+def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
+    """The problem of a quantity of the wrong dimension at ``at``."""
+    while isinstance(at, Group):
+        at = at.inner
+    unit = units.si_unit(expected)
+    advice = None
+    if isinstance(at, Number):
+        digits = env.scope.source.text[at.span.start : at.span.end]
+        if at.unit and digits.endswith(at.unit):
+            digits = digits[: -len(at.unit)].rstrip()
+        why += f"; write `{digits} {unit}`" if unit else f"; write `{digits}`" if expected == units.PLAIN else ""
+    elif unit:
+        advice = f"give {units.described(expected)} there, e.g. `3 {unit}`"
+    elif expected == units.PLAIN and "divide" not in why:
+        advice = f"divide it by {units.described(found)} to get a number"
+    title = f"expected {units.described(expected)}, found {units.described(found)}"
+    return problem("TLT0305", title, env.scope.source, at.span, why, advice=advice)

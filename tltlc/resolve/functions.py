@@ -1,0 +1,47 @@
+"""Calls of the language's functions: how many arguments they take, and the dimension of their value."""
+
+from __future__ import annotations
+
+from tltlc.grammar.tree import Call
+from tltlc.resolve import units
+from tltlc.resolve.dimensions import mismatch, same_dimension
+from tltlc.resolve.problem import problem
+from tltlc.resolve.units import Dimension
+from tltlc.resolve.values import Env, Quantity
+
+_FORMS = {
+    1: ("one argument", "(x)"),
+    3: ("three arguments: the value, its low and its high end", "(x, 0, 1)"),
+    None: ("at least two arguments", "(x, y)"),
+}
+_ARGUMENTS = {"abs": 1, "sqrt": 1, "exp": 1, "tanh": 1, "clamp": 3, "min": None, "max": None}
+
+
+def check_arguments(call: Call, env: Env) -> None:
+    """Raises ResolutionError (TLT0210) where a function does not get the arguments that it takes."""
+    name, source, given = call.name, env.scope.source, len(call.arguments)
+    named = next((argument for argument in call.arguments if argument.name is not None), None)
+    if named is not None:
+        title, advice = f"`{name}` takes its arguments by position", f"leave out `{named.name} =`"
+        raise problem("TLT0210", title, source, named.span, advice=advice)
+    wanted = _ARGUMENTS[name]
+    if given < 2 if wanted is None else given != wanted:
+        text, example = _FORMS[wanted]
+        raise problem("TLT0210", f"`{name}` takes {text}", source, call.span, advice=f"`{name}{example}`")
+
+
+def dimension(call: Call, values: tuple[Quantity, ...], env: Env) -> Dimension | None:
+    """The dimension of a function's value; raises ResolutionError (TLT0305) where those of its arguments do not fit."""
+    first, rest = values[0], values[1:]
+    if call.name in ("exp", "tanh"):
+        if first.dimension not in (None, units.PLAIN):
+            why = f"`{call.name}` is of a number; divide by a quantity of the same kind"
+            raise mismatch(units.PLAIN, first.dimension, call.arguments[0].value, env, why)
+        return units.PLAIN
+    if call.name == "sqrt":
+        return units.power(first.dimension, 0.5)
+    found = first.dimension
+    for argument, value in zip(call.arguments[1:], rest, strict=True):
+        found = same_dimension(first, value, argument.value, env)
+        first = value if first.dimension is None else first
+    return found
