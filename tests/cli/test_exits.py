@@ -70,6 +70,11 @@ def test_wrong_usage_is_2(arguments: tuple[str, ...], tltlc, inside: Path) -> No
     assert sorted(inside.iterdir()) == before
 
 
+def test_no_option_is_advised_that_is_not_there(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    assert "-o" not in tltlc("new", "hide.tltl/game").err
+    assert "-o" in tltlc("compile", "hide.tltl", "-o", "hide.tltl/game").err
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

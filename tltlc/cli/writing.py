@@ -6,22 +6,25 @@ import os
 import stat
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
 
+_OPTION: Final = "name another place with -o"
 
-def write_files(folder: Path, files: Mapping[str, str | bytes]) -> tuple[Path, ...]:
+
+def write_files(folder: Path, files: Mapping[str, str | bytes], advice: str = _OPTION) -> tuple[Path, ...]:
     """Write all of the files into the folder, made where it is missing, or none of them; their paths in order.
 
     Every file is first written under a temporary name beside its place, and only when all of them are there are
-    they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005.
+    they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005, with ``advice`` on where else to write.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        raise _error(folder, error) from None
-    return _write({folder / name: content for name, content in files.items()})
+        raise _error(folder, error, advice) from None
+    return _write({folder / name: content for name, content in files.items()}, advice)
 
 
 def write_file(path: Path, content: str | bytes) -> None:
@@ -29,7 +32,7 @@ def write_file(path: Path, content: str | bytes) -> None:
     _write({path: content})
 
 
-def _write(files: Mapping[Path, str | bytes]) -> tuple[Path, ...]:
+def _write(files: Mapping[Path, str | bytes], advice: str = _OPTION) -> tuple[Path, ...]:
     waiting: list[tuple[Path, Path]] = []
     shown = Path()
     try:
@@ -53,7 +56,7 @@ def _write(files: Mapping[Path, str | bytes]) -> tuple[Path, ...]:
             temporary.replace(shown)
             waiting.pop(0)
     except (OSError, ValueError) as error:
-        raise _error(shown, error) from None
+        raise _error(shown, error, advice) from None
     finally:
         for temporary, _ in waiting:
             temporary.unlink(missing_ok=True)
@@ -67,8 +70,8 @@ def _mode(path: Path) -> int | None:
         return None
 
 
-def _error(path: Path, error: OSError | ValueError) -> TltlError:
+def _error(path: Path, error: OSError | ValueError, advice: str) -> TltlError:
     # A file that we are to make is never missing itself.
     why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)
     title = f"cannot write `{path}`: {why}"
-    return TltlError([Diagnostic("TLT0005", title, help="name another place with -o")])
+    return TltlError([Diagnostic("TLT0005", title, help=advice)])

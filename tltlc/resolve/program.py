@@ -83,20 +83,26 @@ def _specs(scope: Scope, groups: tuple[tuple[str, ...], ...], env: Env) -> dict[
             continue
         name = declaration.name
         resolved = spec(declaration, groups, env)
-        if name in found:
-            first = Label(scope.source, places[name].name_span, "first declared here")
-            twice = problem(
-                "TLT0202",
-                f"the spec `{name}` is declared twice",
-                scope.source,
-                declaration.name_span,
-                "declared again here",
-                advice="rename one of the two",
-                other=(first,),
-            )
-            env.context.log.add(twice.diagnostic)
-        else:
-            found[name], places[name] = resolved, declaration
+        # The names of specs are names of files, and some file systems do not tell capitals apart.
+        earlier = places.setdefault(name.lower(), declaration)
+        if earlier is declaration:
+            found[name] = resolved
+            continue
+        title = f"`{earlier.name}` and `{name}` would share their files"
+        remarks = ("differs in capitals only", "the other spec")
+        if earlier.name == name:
+            title = f"the spec `{name}` is declared twice"
+            remarks = ("declared again here", "first declared here")
+        twice = problem(
+            "TLT0202",
+            title,
+            scope.source,
+            declaration.name_span,
+            remarks[0],
+            advice="rename one of the two",
+            other=(Label(scope.source, earlier.name_span, remarks[1]),),
+        )
+        env.context.log.add(twice.diagnostic)
     return found
 
 

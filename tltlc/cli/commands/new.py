@@ -29,7 +29,7 @@ def command(folder: Path) -> int:
         if not _is_free(folder):
             title = f"`{folder}` is there already, and not empty"
             raise TltlError([Diagnostic("TLT0722", title, help="choose another name, or remove it first")])
-        for path in write_files(folder, _FILES):
+        for path in write_files(folder, _FILES, advice="choose another place, e.g. `tltlc new my_game`"):
             report.say(f"wrote {path}")
         report.say(f"Next: tltlc test {shlex.quote(str(folder))}")
     return report.status
