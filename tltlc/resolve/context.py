@@ -57,8 +57,9 @@ class Instance:
 class Context:
     """Tables that fill up while a program is resolved.
 
-    ``signals`` are those in use, by full name.  ``instances`` and ``values`` (of predicates, and
-    expansions of lets) are keyed by identity of the declaration and values of its parameters.
+    ``signals`` are those in use, by full name.  ``instances`` (predicates to be checked) and ``values`` (of
+    signals and predicates, expansions of lets, calls and comparisons) are keyed by identity of the
+    declaration or expression and by the values of its parameters or local names.
     ``expanding`` holds the lets and predicates being expanded, outermost first: identity of the
     declaration and its name; ``broken`` the declarations whose error has been reported.  ``bounds``
     are those expanded so far.

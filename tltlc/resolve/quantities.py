@@ -164,19 +164,13 @@ def _is_per_time(expr: tree.Binary, env: Env) -> bool:
 
     A signal or param of that name takes precedence, except in constants, where it could not stand.
     """
-    return (
-        expr.op == "/"
-        and isinstance(expr.left, Number)
-        and expr.left.unit is not None
-        and isinstance(expr.right, Name)
-        and expr.right.name in units.time_units()
-        and expr.right.name not in env.local
-        and (
-            env.constant
-            or expr.right.name not in env.scope.names
-            or env.scope.names[expr.right.name].kind not in ("param", "signal")
-        )
-    )
+    left, per = expr.left, expr.right
+    if expr.op != "/" or not isinstance(left, Number) or left.unit is None:
+        return False
+    if not isinstance(per, Name) or per.name not in units.time_units() or per.name in env.local:
+        return False
+    declared = env.scope.names.get(per.name)
+    return env.constant or declared is None or declared.kind not in ("param", "signal")
 
 
 def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Quantity:
@@ -196,20 +190,27 @@ def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Q
 
 
 def _when(expr: tree.When, env: Env, depth: int) -> Quantity:
-    cases = [
-        (condition(case.condition, env, depth), quantity(case.value, env, depth), case.value) for case in expr.cases
-    ]
+    tests: list[tuple[Condition, str]] = []
+    values: list[Quantity] = []
+    for case in expr.cases:
+        tests.append(condition(case.condition, env, depth))
+        values.append(quantity(case.value, env, depth))
     otherwise = quantity(expr.otherwise, env, depth)
-    typical = next((value for _, value, _ in cases if value.dimension is not None), otherwise)
-    for _, value, at in cases:
+    values.append(otherwise)
+    typical = next((value for value in values if value.dimension is not None), otherwise)
+    for value, at in zip(values, [*(case.value for case in expr.cases), expr.otherwise], strict=True):
         same_dimension(typical, value, at, env)
-    dimension = same_dimension(typical, otherwise, expr.otherwise, env)
-    values = [value for _, value, _ in cases] + [otherwise]
-    low, high = hull(tuple((value.low, value.high) for value in values))
-    texts = [f"when {text}: {value.text}" for (_, text), value, _ in cases]
-    node = When(tuple((test, value.expression) for (test, _), value, _ in cases), otherwise.expression)
-    text = " ".join([*texts, f"otherwise: {otherwise.text}"])
-    return Quantity(node, dimension, low, high, text, LOOSEST, 1 + max(value.depth for value in values))
+    # The last value has no test: that is `otherwise`.
+    cases = tuple((test, value.expression) for (test, _), value in zip(tests, values, strict=False))
+    texts = [f"when {text}: {value.text}" for (_, text), value in zip(tests, values, strict=False)]
+    return Quantity(
+        When(cases, otherwise.expression),
+        typical.dimension,
+        *hull(tuple((value.low, value.high) for value in values)),
+        " ".join([*texts, f"otherwise: {otherwise.text}"]),
+        LOOSEST,
+        1 + max(value.depth for value in values),
+    )
 
 
 def _applied(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, expr: Expr, env: Env) -> Quantity:
