@@ -24,6 +24,7 @@ RECORDS: dict[str, Record] = {
         "family": "f",
         "states_expected": 2,
         "minimal_ms": 0.1,
+        "guarded_ms": 0.2,
         "build_ms": 1.0,
         "build_mb": 9.0,
         "states": 2,
@@ -85,7 +86,7 @@ def test_a_report_of_part_of_the_results_renders(tmp_path: Path) -> None:
     store.put("compile", first.name, RECORDS["one"] | {"family": first.family, "source": "x"})
     text = render(Store(tmp_path / "results.json"))
     assert "| processor | abacus |" in text
-    assert f"| {first.family} | 1 | 0.10 | 1.00 | 3.00 |" in text
+    assert f"| {first.family} | 1 | 0.10 | 0.20 | 1.00 | 3.00 |" in text
     assert "nan" not in text
 
 

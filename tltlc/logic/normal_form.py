@@ -20,6 +20,8 @@ def negation_normal_form(formula: Formula) -> Formula:
     one ``and`` or ``or`` are dropped.  Each subformula is visited once for each sign and without
     recursion, so that shared subformulas stay shared.
     """
+    if all(map(_is_normal, formula.walk())):
+        return formula
     done: dict[_Signed, Formula] = {}
     root = _strip((formula, True))
     stack = [root]
@@ -38,6 +40,13 @@ def negation_normal_form(formula: Formula) -> Formula:
         stack.pop()
         done[signed] = _combine(signed, op, tuple(done[operand] for operand in operands))
     return done[root]
+
+
+def _is_normal(node: Formula) -> bool:
+    op, args = node.op, node.args
+    if op == "and" or op == "or":
+        return len(set(args)) == len(args)
+    return op not in ("implies", "iff") and (op != "not" or args[0].op == "atom")
 
 
 def _strip(signed: _Signed) -> _Signed:
