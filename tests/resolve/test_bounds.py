@@ -61,3 +61,10 @@ def test_whole_multiples_of_the_period_are_not_rounded_up(period: float, n: int)
 def test_a_bound_that_is_too_long_names_itself_and_takes_no_time() -> None:
     for bound in ("F[0,1000000000]", "G[999999999,1000000000]", "F[0,400] F[0,400]"):
         assert codes(f"signal a: bool spec s = {bound} a") == ["TLT0315"]
+
+
+def test_one_step_is_a_unit_like_many() -> None:
+    text = 'signal a: bool spec s = {} test "t" for s {{ step a expect progress >= 0.5 step a expect satisfied }}'
+    for one, many in (("F[0,1 step] a", "F[0,1 steps] a"), ("F within 1 step a", "F within 1 steps a")):
+        assert only(text.format(one)).formula == only(text.format(many)).formula
+    assert only("signal a: bool spec s { limit 1 step keep a }").limit_steps == 1
