@@ -17,7 +17,6 @@ from tltlc.automaton.fspa import Guard
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula, and_, atom, iff, not_, or_
-from tltlc.logic.printer import ascii_text
 
 ATOMS = ("a", "b", "c")
 VALUES = st.tuples(*[st.floats(-1, 1).filter(lambda x: x != 0)] * len(ATOMS))

@@ -96,7 +96,7 @@ class Guards:
         """
         if len(self._covers) > _MOST_REMEMBERED:
             self._covers.clear()
-        products, _ = self._irredundant(guard, self._upper(guard))
+        products = self._cover(guard, self._upper(guard))
         if len(products) == 1:
             return self._product(products[0])
         sums = self._negated_sums(guard)
@@ -121,11 +121,20 @@ class Guards:
     def _negated_sums(self, guard: int) -> tuple[Cube, ...]:
         """The sums of a product of sums, each as the cube that it forbids; none where they are very many."""
         try:
-            return self._irredundant(self._negation(self._upper(guard)), self._negation(guard))[0]
+            return self._cover(self._negation(self._upper(guard)), self._negation(guard))
         except TooManyPrimes:
             return ()
 
     # --- Boolean functions --------------------------------------------------------------------
+
+    def _cover(self, lower: int, upper: int) -> tuple[Cube, ...]:
+        """An irredundant sum of products between two functions."""
+        if lower == upper:
+            primes = self._all_primes(lower)
+            literals = {literal for cube in primes for literal in cube}
+            if not any(literal ^ 1 in literals for literal in literals):
+                return primes  # where no atom has both polarities, none of the primes can go
+        return self._irredundant(lower, upper)[0]
 
     def _upper(self, guard: int) -> int:
         """``guard or not D``."""
