@@ -50,6 +50,16 @@ _ENGLISH: Final = {
     "unless": "a unless b is written `a weak_until b`",
     "xor": "either a or b is written `not (a iff b)`",
 }
+_UNITS: Final = {
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
+    **dict.fromkeys(("mins", "minute", "minutes"), "min"),
+    **dict.fromkeys(("hour", "hours"), "h"),
+    **dict.fromkeys(("degree", "degrees"), "deg"),
+    **dict.fromkeys(("frame", "frames", "tick", "ticks", "turn", "turns"), "steps"),
+    **dict.fromkeys(("percent", "pct"), "%"),
+    "hz": "Hz",
+}
 _NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _ARROWS: Final = {"=>": "write `a implies b` or `a -> b`", "=<": "write `<=`"}
 
@@ -64,6 +74,15 @@ def _arrow(place: Place) -> Diagnostic | None:
         return None
     span = Span(place.found.span.start, after[0].span.end)
     return place.error("TLT0104", f"`{sign}` means nothing here", _ARROWS[sign], span=span)
+
+
+def _long_unit(place: Place) -> Diagnostic | None:
+    """``20 seconds``."""
+    unit = _UNITS.get(place.found.text.lower())
+    if unit is None or not place.before or place.before.type != "NUMBER":
+        return None
+    title = f"there is no unit {shown(place.found)}"
+    return place.error("TLT0111", title, None, f"write `{place.before.text} {unit}`")
 
 
 def _joined_clauses(place: Place) -> Diagnostic | None:
@@ -105,7 +124,10 @@ def _plain_english(place: Place) -> Diagnostic | None:
     token = place.before if place.before and place.before.text == "if" else place.found
     if token.type != "NAME" or token.text not in _ENGLISH or not place.wants_operator:
         return None
-    return place.error("TLT0101", f"{shown(token)} is no operator", _ENGLISH[token.text], span=token.span)
+    help_ = _ENGLISH[token.text]
+    if token.text == "if" and place.tokens[0].type == "PREDICATE":
+        help_ = "cases are written `when x > 3: 1 otherwise: -1`"
+    return place.error("TLT0101", f"{shown(token)} is no operator", help_, span=token.span)
 
 
 def _touch(left: Token, right: Token) -> bool:
@@ -115,6 +137,7 @@ def _touch(left: Token, right: Token) -> bool:
 
 HABITS: Final[tuple[Callable[[Place], Diagnostic | None], ...]] = (
     _arrow,
+    _long_unit,
     _joined_clauses,
     _quoted_name,
     _hyphen,

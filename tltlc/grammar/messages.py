@@ -16,6 +16,7 @@ from tltlc.grammar.words import CLAUSES, DECLARATIONS, TEST_ITEMS, closest
 from tltlc.source import SourceFile
 
 _BOUNDED: Final = {"F", "G", "X", "N", "eventually", "always", "next", "weak_next", "<>", "[]", "◇", "□", "○"}
+_EQUAL: Final = "write `a >= b and a <= b`; a bool signal is an atom by itself"
 
 
 def unexpected(source: SourceFile, tokens: Sequence[Token], error: lalr.UnexpectedTokenError, start: str) -> Diagnostic:
@@ -42,7 +43,7 @@ def _strange(place: Place) -> Diagnostic | None:
         return None
     text = token.text
     if text in ("==", "!="):
-        help_ = "compare with `<`, `<=`, `>` or `>=`; a bool signal is an atom by itself"
+        help_ = _EQUAL if text == "==" else "write `a < b or a > b`; a bool signal is an atom by itself"
         return place.error("TLT0110", f"`{text}` does not compare here", help_)
     if text.startswith('"'):
         return place.error("TLT0114", "this text in quotes never ends", 'write the missing `"` on the same line')
@@ -69,7 +70,7 @@ def _equality(place: Place) -> Diagnostic | None:
     expectation = place.tokens[0].text == "expect"
     if place.found.type != "EQUAL" or not (place.wants_operator or expectation):
         return None
-    help_ = "compare with `<`, `<=`, `>` or `>=`" + ("" if expectation else "; a bool signal is an atom by itself")
+    help_ = "compare with `<`, `<=`, `>` or `>=`" if expectation else _EQUAL
     return place.error("TLT0110", "`=` does not compare", help_)
 
 
@@ -152,7 +153,7 @@ def _reserved(place: Place) -> Diagnostic | None:
     if "NAME" not in place.allowed or token.text not in load().words:
         return None
     keyword = token.text in DECLARATIONS or token.text in CLAUSES
-    if place.wants_operand and not keyword:
+    if (place.wants_operand and not keyword) or (place.before and place.before.text == "expect"):
         return None
     help_ = f"choose another name, for example `{token.text.lower()}_`"
     if place.before and place.before.type == "IMPORT":

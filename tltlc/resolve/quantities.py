@@ -225,7 +225,7 @@ def _applied(op: str, args: tuple[Quantity, ...], dimension: Dimension | None, e
 def _not_a_number(expr: Expr, env: Env) -> ResolutionError:
     advice = "arithmetic takes numbers: signals, params and predicates"
     if isinstance(expr, tree.Binary) and expr.op in _COMPARISONS:
-        advice = "join two comparisons with `and`, e.g. `0.2 < health and health < 0.8`"
+        advice = "a comparison is a formula: `let rich = coins > 30` names one, and `and` joins two"
     title = f"expected a number, found {described_kind(expr, env)}"
     return problem("TLT0302", title, env.scope.source, expr.span, advice=advice)
 

@@ -86,12 +86,12 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
 
 
 def _reach(clause: Clause, env: Env) -> list[Part]:
-    *before, last = operands(_expression(clause), "then")
-    result = formula(last, env)
+    # Read in the order written, so that the first error is the one reported.
+    *before, result = [formula(operand, env) for operand in operands(_expression(clause), "then")]
     if not before:
         result = eventually(result)
-    for operand in reversed(before):
-        result = then(formula(operand, env), result)
+    for goal in reversed(before):
+        result = then(goal, result)
     return [_part(result, clause, env)]
 
 
