@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 DEFAULT_STATE_BUDGET = 50_000
 
+_MOST_LABELS = 4
+"""Of clauses that contradict each other, as many are pointed at."""
+
 
 @record
 class CompileOptions:
@@ -191,14 +194,29 @@ def _stop_at_errors(diagnostics: tuple[Diagnostic, ...]) -> None:
 
 def _verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
     """Warnings for a spec that is decided before anything has happened."""
-    label = (Label(spec.source, spec.name_span),)
     verdict = fspa.states[0].verdict
     if verdict == "violated":
-        title, code = f"no trace satisfies `{spec.name}`", "TLT0410"
-        way_out = "parts of it contradict each other: weaken one of them"
-    elif verdict == "satisfied":
-        title, code = f"every trace satisfies `{spec.name}`", "TLT0411"
+        return (_unsatisfiable(spec),)
+    if verdict == "satisfied":
+        title, label = f"every trace satisfies `{spec.name}`", Label(spec.source, spec.name_span)
         way_out = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
+        return (Diagnostic("TLT0411", title, (label,), way_out, severity="warning"),)
+    return ()
+
+
+def _unsatisfiable(spec: Spec) -> Diagnostic:
+    """The warning that no trace satisfies a spec, with the parts that are to blame."""
+    from tltlc.automaton.contradiction import contradiction
+
+    parts = contradiction(spec)
+    title = f"no trace satisfies `{spec.name}`"
+    if len(parts) == 1:
+        message, way_out = "this cannot be met", "weaken it"
+        if spec.exclusive:
+            way_out = "weaken it: atoms that are `exclusive` never hold together"
+        if parts[0].formula.op == "G":
+            way_out = "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
     else:
-        return ()
-    return (Diagnostic(code, title, label, way_out, severity="warning"),)
+        message, way_out = "together with the others", "these contradict each other: weaken one of them"
+    labels = tuple(Label(part.source, part.span, message) for part in parts[:_MOST_LABELS])
+    return Diagnostic("TLT0410", title, labels or (Label(spec.source, spec.name_span),), way_out, severity="warning")

@@ -47,7 +47,7 @@ def test_explain(code: str, tltlc) -> None:  # type: ignore[no-untyped-def]
 
 
 def test_explain_suggests(tltlc) -> None:  # type: ignore[no-untyped-def]
-    assert "Did you mean" in tltlc("explain", "TLT0006").err
+    assert "did you mean" in tltlc("explain", "TLT0006").err
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -54,8 +54,8 @@ def test_all_that_is_wrong_is_found(inside: Path) -> None:
         ("TLT0702", "notaton"),
         ("TLT0703", "targets"),
         ("TLT0703", "notation"),
-        ("TLT0703", "libraries"),
-        ("TLT0703", "libraries"),
+        ("TLT0703", "no"),
+        ("TLT0703", "nor"),
     ]
 
 

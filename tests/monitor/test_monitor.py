@@ -227,6 +227,7 @@ def test_params() -> None:
         ({"size": 1.0}, "TLT0308", "there is no param `size` to set"),
         ({"level_size": 1.0}, "TLT0307", "the param `level_size` cannot be 1: its range is [2, 10000]"),
         ({"level_size": math.nan}, "TLT0308", "the param `level_size` cannot be nan"),
+        ({"level_size": "3"}, "TLT0308", "the value given for the param `level_size` is no number"),
     ],
 )
 def test_params_that_do_not_fit(params: dict[str, float], code: str, text: str) -> None:

@@ -75,7 +75,7 @@ def read_project(path: Path) -> Project:
     folders = {library: path.parent / library for library in table.get("libraries", [])}
     for library, folder in folders.items():
         if not os.path.isdir(folder):  # noqa: PTH112
-            wrong.append(_wrong(source, "libraries", "folders beside this file", library))
+            wrong.append(_no_folder(source, library))
     if wrong:
         raise TltlError(wrong)
     return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation)
@@ -133,6 +133,11 @@ def _is_list_of_texts(value: object) -> bool:
 def _wrong(source: SourceFile, key: str, expected: str, found: object) -> Diagnostic:
     shown = f'"{found}"' if isinstance(found, str) else _KINDS.get(type(found).__name__, "another kind of value")
     return Diagnostic("TLT0703", f"wrong value for `{key}`: {shown}", _place(source, key), f"expected {expected}")
+
+
+def _no_folder(source: SourceFile, library: str) -> Diagnostic:
+    title = f"there is no folder `{library}` beside this file"
+    return Diagnostic("TLT0703", title, _place(source, "libraries"), "create it, or name one that is there")
 
 
 _KINDS: Final = {

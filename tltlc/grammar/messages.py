@@ -15,7 +15,8 @@ from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, DECLARATIONS, TEST_ITEMS, closest
 from tltlc.source import SourceFile
 
-_BOUNDED: Final = {"F", "G", "X", "N", "eventually", "always", "next", "weak_next", "<>", "[]", "◇", "□", "○"}
+_NEXTS: Final = {"X", "N", "next", "weak_next", "○"}
+_BOUNDED: Final = {"F", "G", "eventually", "always", "<>", "[]", "◇", "□", *_NEXTS}
 _EQUAL: Final = "write `a >= b and a <= b`; a bool signal is an atom by itself"
 
 
@@ -130,18 +131,33 @@ def _bounds(place: Place) -> Diagnostic | None:
         return place.error(
             "TLT0111", f"expected a unit after {shown(before)}", f"`{before.text} steps` or `{before.text} s`"
         )
+    if place.found.type == "RSQB" and before and "COMMA" in place.allowed and _is_bound(place):
+        return _one_end(place, before.text)
     if place.found.type == "LSQB" and before and before.type in UNTILS:
         help_ = "bound an `F` beside it: `(a U b) & F[0,20] b`"
         return place.error("TLT0111", f"`{before.text}` takes no bound", help_)
     return None
 
 
+def _one_end(place: Place, number: str) -> Diagnostic:
+    """``F[20] p`` and ``next[20] p``."""
+    operator = place.tokens[_opening(place) - 1].text
+    if operator in _NEXTS:
+        return place.error("TLT0111", f"`{operator}` takes no bound in brackets", f"`next after {number} steps p`")
+    return place.error("TLT0111", "a bound has two ends", f"write `{operator}[0,{number}] p` for the time from now on")
+
+
+def _opening(place: Place) -> int:
+    """Where the innermost open bracket stands among the tokens."""
+    opening = place.open_brackets[-1]
+    return next(index for index, token in enumerate(place.tokens) if token is opening)
+
+
 def _is_bound(place: Place) -> bool:
     """Whether a number of a bound should stand here, as in ``F[0,`` or ``eventually within``."""
     index = place.stop.index - 1
     if place.open_brackets and place.open_brackets[-1].text == "[":
-        opening = place.open_brackets[-1]
-        index = next(index for index, token in enumerate(place.tokens) if token is opening)
+        index = _opening(place)
     elif place.tokens[index].text not in ("within", "for", "after"):
         return False
     return index > 0 and place.tokens[index - 1].text in _BOUNDED

@@ -102,6 +102,8 @@ def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[st
     for name, value in given.items():
         if name not in known:
             raise MonitorError([Diagnostic("TLT0308", f"there is no param `{name}` to set")])
+        if isinstance(value, str) or not hasattr(value, "__float__"):
+            raise MonitorError([Diagnostic("TLT0308", f"the value given for the param `{name}` is no number")])
         low, high = known[name].low, known[name].high
         if not isfinite(value):
             raise MonitorError([Diagnostic("TLT0308", f"the param `{name}` cannot be {shown(value)}")])

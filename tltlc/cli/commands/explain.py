@@ -27,7 +27,8 @@ def command(code: str) -> int:
 
         close = get_close_matches(wanted, known, n=1)
         raise click.UsageError(
-            f"there is no error code `{code}`" + (f". Did you mean `{close[0]}`?" if close else ""),
+            f"there is no error code `{code}`: "
+            + (f"did you mean `{close[0]}`?" if close else "`tltlc list codes` shows them"),
             click.get_current_context(),
         )
     text = codes.page(wanted)

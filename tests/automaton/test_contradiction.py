@@ -1,0 +1,45 @@
+"""Which parts of a spec that no trace satisfies contradict each other."""
+
+from __future__ import annotations
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.logic.strategies import formulas
+from tests.reference_formulas import read_formula
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.contradiction import contradiction
+from tltlc.logic.formula import Formula, and_
+from tltlc.record import replace
+from tltlc.resolve.spec import Part, Spec
+
+
+def spec_of(parts: list[Formula], exclusive: tuple[tuple[str, ...], ...] = ()) -> Spec:
+    spec = spec_from_formula(and_(*parts), exclusive=exclusive)
+    return replace(spec, parts=tuple(Part(part, spec.source, spec.name_span) for part in parts))
+
+
+def is_unsatisfiable(parts: list[Formula]) -> bool:
+    return build(spec_from_formula(and_(*parts))).states[0].verdict == "violated"
+
+
+def blamed(*texts: str, exclusive: tuple[tuple[str, ...], ...] = ()) -> list[str]:
+    spec = spec_of([read_formula(text) for text in texts], exclusive)
+    return [str(part.formula) for part in contradiction(spec)]
+
+
+def test_only_what_contradicts_is_blamed() -> None:
+    assert blamed("G a", "F b", "F !a", "G c") == ["G a", "F !a"]
+    assert blamed("F b", "G F(a & X F b)") == ["G F(a & X F b)"]
+    assert blamed("F(a & b)", "F a", exclusive=(("a", "b"),)) == ["F(a & b)"]
+
+
+@given(st.lists(formulas(max_leaves=4), min_size=1, max_size=4))
+@settings(max_examples=150, deadline=None)
+def test_what_is_blamed_is_unsatisfiable_and_no_less_of_it(parts: list[Formula]) -> None:
+    if is_unsatisfiable(parts):
+        core = [part.formula for part in contradiction(spec_of(parts))]
+        assert is_unsatisfiable(core)
+        for index in range(len(core)):
+            rest = core[:index] + core[index + 1 :]
+            assert not rest or not is_unsatisfiable(rest)

@@ -1,0 +1,42 @@
+"""Which parts of a specification contradict each other, where no trace satisfies it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tltlc.automaton.build import minimal_machine
+from tltlc.automaton.diagrams import IMPOSSIBLE, OutOfSteps
+from tltlc.automaton.machine import OutOfStates
+from tltlc.logic.formula import and_
+from tltlc.resolve.spec import Part, Spec
+
+_MOST_PARTS = 40
+_STATES = 1_000
+"""Above these, parts are not told apart: a warning must not take longer than the compilation."""
+
+
+def contradiction(spec: Spec) -> tuple[Part, ...]:
+    """Parts of an unsatisfiable spec that are unsatisfiable together, none of which could be left out.
+
+    Where the work gets too much, parts may be among them that could.
+    """
+    needed = list(spec.parts)
+    for part in spec.parts if len(spec.parts) <= _MOST_PARTS else ():
+        others = [other for other in needed if other is not part]
+        if others and _unsatisfiable(others, spec):
+            needed = others
+    return tuple(needed)
+
+
+def _unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
+    """Whether it is shown that no trace satisfies all of the parts."""
+    whole = and_(*(part.formula for part in parts))
+    names = [atom.name for atom in spec.atoms]
+    try:
+        successors, machine, _ = minimal_machine(whole, names, _STATES, spec.exclusive)
+    except (OutOfStates, OutOfSteps, RecursionError):
+        return False
+    diagrams = successors.diagrams
+    # All that rejects is one state of a minimal machine: a trap that no possible letter leaves or accepts in.
+    leaves = [leaf for leaf in diagrams.leaves(*machine.transitions.values()) if leaf != IMPOSSIBLE]
+    return len(machine.transitions) == 1 and not any(diagrams.high[leaf] for leaf in leaves)
