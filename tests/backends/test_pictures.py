@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 
 from tests.backends.strategies import hostile_automata
 from tests.fixtures import cover_and_hide
-from tltlc import backends
+from tltlc import backends, compile_text
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Options
@@ -57,6 +57,30 @@ def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
     assert not list(picture.iter(f"{SVG}script"))
     allowed = {SVG + name for name in ("svg", "g", "title", "text", "a", "path", "polygon", "ellipse", "polyline")}
     assert {element.tag for element in picture.iter()} <= allowed
+
+
+def within_40_steps() -> Fspa:
+    (fspa,) = compile_text("signal fast: bool spec quick = eventually within 40 steps fast")
+    return fspa
+
+
+def test_runs_are_folded_and_the_picture_says_so() -> None:
+    picture = drawn(within_40_steps(), Options(report=lambda note: pytest.fail(note.title)))
+    assert "Dashed: 39 of the 43 states, folded." in shown(picture)
+    nodes = [group for group in picture.iter(f"{SVG}g") if group.get("class") == "node"]
+    dashed = [node for node in nodes if any(path.get("stroke-dasharray") for path in node.iter(f"{SVG}path"))]
+    assert len(nodes) == 1 + 5
+    assert ["39 more like these" in shown(node) for node in nodes] == [node in dashed for node in nodes]
+    (tip,) = (element.get("{http://www.w3.org/1999/xlink}title") for element in dashed[0].iter(f"{SVG}a"))
+    assert tip == "39 states, 2 to 40, pending, distance 1: ◇[0,39] fast … fast ∨ ○fast"
+
+
+def test_without_a_picture_in_time_the_graph_is_whole() -> None:
+    fspa = within_40_steps()
+    files = backends.emit("svg", fspa, Options(layout_limit_s=0.0001))
+    assert files == backends.emit("dot", fspa)
+    (text,) = files.values()
+    assert "dashed" not in str(text)
 
 
 def test_tangled_graphs_are_sketched_and_that_is_said() -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from tltlc.automaton.fspa import Edge, Fspa, State, Verdict
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.drawing.folding import Drawing, span, whole
 from tltlc.backends.drawing.texts import Guards, label, visible, wrapped
 
 if TYPE_CHECKING:
@@ -50,39 +51,57 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {f"{fspa.name}.dot": graph(fspa, options)}
 
 
-def graph(fspa: Fspa, options: Options, guards: bool = True) -> str:
-    """The DOT text; without ``guards``, edges carry none and states only their number: a sketch for tangled graphs,
-    fit for a layout by forces.
+def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, guards: bool = True) -> str:
+    """The DOT text of a drawing, that of everything if none is given.
+
+    Without ``guards``, edges carry none and states only their number: a sketch for tangled graphs, fit for a layout by
+    forces.
 
     Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting
-    states are green with a double outline, traps red.
+    states are green with a double outline, traps red, and folded ones dashed.
     """
     from graphviz import Digraph
 
+    drawing = drawing or whole(fspa)
     texts = Guards(fspa, options.notation)
-    title = {"label": _title(fspa), "labelloc": "t", "labeljust": "l"}
+    title = {"label": _title(fspa, drawing), "labelloc": "t", "labeljust": "l"}
     drawn = Digraph(visible(fspa.name), graph_attr={**GRAPH, **title, **({} if guards else SKETCH)})
     drawn.attr("node", **NODE)
     drawn.attr("edge", **EDGE)
     drawn.node("start", shape="point", style="filled", width="0.09", color="#475569", tooltip="start")
-    for state in fspa.states:
-        _draw_state(drawn, state, label(state.label, options.notation), guards)
+    for state in drawing.states:
+        run = drawing.folded.get(state.id, (state,))
+        _draw_state(drawn, run, span(*(label(end.label, options.notation) for end in (run[0], run[-1]))), guards)
     drawn.edge("start", "0")
-    for edge in fspa.edges:
+    for edge in drawing.edges:
         _draw_edge(drawn, fspa, edge, texts.text(edge.guard.text), guards)
     return str(drawn.source)
 
 
-def _title(fspa: Fspa) -> str:
-    name = f'<B>{_html(fspa.name)}</B><BR ALIGN="LEFT"/>'
-    doc = "".join(f'{_html(line)}<BR ALIGN="LEFT"/>' for line in wrapped(fspa.doc, 100, 3)) if fspa.doc.strip() else ""
-    return f'<<FONT FACE="{FONT}" POINT-SIZE="13" COLOR="#0f172a">{name}{doc}</FONT>>'
+def _title(fspa: Fspa, drawing: Drawing) -> str:
+    lines = [f"<B>{_html(fspa.name)}</B>"]
+    if fspa.doc.strip():
+        lines += map(_html, wrapped(fspa.doc, 100, 3))
+    if drawing.folded:
+        inside = sum(map(len, drawing.folded.values()))
+        note = f"Dashed: {inside} of the {len(fspa.states)} states, folded."
+        lines.append(f'<FONT COLOR="#64748b">{note}</FONT>')
+    text = "".join(f'{line}<BR ALIGN="LEFT"/>' for line in lines)
+    return f'<<FONT FACE="{FONT}" POINT-SIZE="13" COLOR="#0f172a">{text}</FONT>>'
 
 
-def _draw_state(drawn: Digraph, state: State, text: str, full: bool) -> None:
+def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
+    """A state, or with a dashed outline the inner states of a run, which ``text`` spans."""
+    state, last = run[0], run[-1]
     line, fill = LINES[state.verdict], FILLS[state.verdict]
-    distance = "∞" if state.distance is None else str(state.distance)
-    body = "<BR/>".join(map(_html, wrapped(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
+    distance = span(*("∞" if end.distance is None else str(end.distance) for end in (state, last)))
+    name = f"state {state.id}" if state is last else f"{len(run)} states, {state.id} to {last.id}"
+    lines = list(map(_html, wrapped(text, LABEL_WIDTH))) if full else [f"<B>{state.id}</B>"]
+    manner = {"peripheries": "2"} if state.accepting else {}
+    if state is not last:
+        lines = [f"<I>{len(run)} more like these</I>", *lines] if full else [f"<B>{state.id}…{last.id}</B>"]
+        manner["style"] = f"{NODE['style']},dashed"
+    body = "<BR/>".join(lines)
     mark = f'<FONT COLOR="white" POINT-SIZE="10"><B> {distance} </B></FONT>'
     # A cell gets its share of the width that the label asks for: one column of twelve keeps the mark small.
     html = (
@@ -90,9 +109,8 @@ def _draw_state(drawn: Digraph, state: State, text: str, full: bool) -> None:
         f'<TD BGCOLOR="{line}" STYLE="ROUNDED">{mark}</TD></TR>'
         f'<TR><TD COLSPAN="12" CELLPADDING="6">{body}</TD></TR></TABLE>>'
     )
-    rings = {"peripheries": "2"} if state.accepting else {}
-    tip = _plain(f"state {state.id}, {state.verdict}, distance {distance}: {text}")
-    drawn.node(str(state.id), label=html, color=line, fillcolor=fill, tooltip=tip, **rings)
+    tip = _plain(f"{name}, {state.verdict}, distance {distance}: {text}")
+    drawn.node(str(state.id), label=html, color=line, fillcolor=fill, tooltip=tip, **manner)
 
 
 def _draw_edge(drawn: Digraph, fspa: Fspa, edge: Edge, text: str, full: bool) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options
 from tltlc.backends.dot import graph
+from tltlc.backends.drawing.folding import folded
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 CHILD = Path(__file__).with_name("child.py")
@@ -23,9 +24,9 @@ WHOLE_GRAPH = "`tltlc compile -t dot` writes the whole graph for other tools"
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
     """``NAME.FORMAT``, or the best that could be done in time.
 
-    Tried in this order, each within ``options.layout_limit_s``: everything in layers; only the
-    states' numbers, by forces.  If neither is done in time, ``NAME.dot``.  What was left out is
-    reported (TLT0711).
+    Runs of states that count are folded.  Tried in this order, each within
+    ``options.layout_limit_s``: everything in layers; only the states' numbers, by forces.  If neither
+    is done in time, ``NAME.dot``, with nothing folded.  What was left out is reported (TLT0711).
 
     Raises:
         TltlError: TLT0730 where pygraphviz is not installed, TLT0712 where the layout itself failed.
@@ -34,11 +35,12 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
         title = "a picture needs `pygraphviz`, which is not installed"
         raise TltlError([Diagnostic("TLT0730", title, help="pip install 'pygraphviz'")])
     name = f"{fspa.name}.{picture_format}"
-    full, sketch = graph(fspa, options), graph(fspa, options, guards=False)
-    if len(fspa.edges) <= MOST_EDGES_IN_FULL:
-        picture = _laid_out(full, picture_format, "dot", options.layout_limit_s)
+    drawing = folded(fspa)
+    if len(drawing.edges) <= MOST_EDGES_IN_FULL:
+        picture = _laid_out(graph(fspa, options, drawing), picture_format, "dot", options.layout_limit_s)
         if picture is not None:
             return {name: picture}
+    sketch = graph(fspa, options, drawing, guards=False)
     picture = _laid_out(sketch, picture_format, "sfdp", options.layout_limit_s)
     if picture is not None:
         cut = f"shows its {len(fspa.states)} states by number, without guards"
@@ -47,7 +49,7 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
         return {name: picture}
     title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
     options.report(Diagnostic("TLT0711", title, severity="note"))
-    return {f"{fspa.name}.dot": full}
+    return {f"{fspa.name}.dot": graph(fspa, options)}
 
 
 def _laid_out(dot: str, picture_format: str, engine: str, limit_s: float) -> bytes | None:

@@ -1,0 +1,186 @@
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.backends.strategies import automata, hostile_automata
+from tests.fixtures import cover_and_hide
+from tltlc import compile_text
+from tltlc.automaton.fspa import Edge, Fspa, Guard
+from tltlc.backends import Options
+from tltlc.backends.dot import graph
+from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, folded, span, whole
+from tltlc.record import replace
+
+
+def automaton(formula: str) -> Fspa:
+    (fspa,) = compile_text(f"clock 1 Hz signal a: bool signal b: bool signal c: bool spec s = {formula}")
+    return fspa
+
+
+COUNTING = (
+    "F[0,{n}] a",
+    "G[0,{n}] a",
+    "F[{n},30] a & G b",
+    "G(a -> G[0,{n}] b)",
+    "G(a -> F[0,{n}] (b | c))",
+    "F G[0,{n}] a",
+    "F[0,{n}] a | F[0,3] b",
+    "F[0,{n}] a & F[2,6] b",
+    "F(a & F[0,{n}] b)",
+    "F a & G[0,{n}] (b -> c)",
+)
+
+
+def counting() -> st.SearchStrategy[Fspa]:
+    """Automata of formulas with bounds."""
+    return st.builds(lambda text, n: automaton(text.format(n=n)), st.sampled_from(COUNTING), st.integers(1, 12))
+
+
+@st.composite
+def chains(draw: st.DrawFn) -> Fspa:
+    """States in a row, with few guards and targets, so that runs begin, end and are entered anywhere."""
+    size = draw(st.integers(2, 14))
+    states = tuple(
+        replace(cover_and_hide().states[draw(st.sampled_from([0, 0, 0, 0, 4]))], id=index) for index in range(size)
+    )
+    guards = st.sampled_from([Guard("p", (((0, True),),)), *3 * [Guard("q", (((1, True),),))]])
+    aside = st.sampled_from([0, 0, 0, 0, size - 1, size // 2])
+    edges = {}
+    for index in range(size):
+        edges[index, (index + 1) % size] = draw(guards)
+        edges.setdefault((index, draw(aside)), Guard("r", (((2, True),),)))
+    rows = tuple(Edge(source, target, guard) for (source, target), guard in sorted(edges.items(), key=lambda e: e[0]))
+    return replace(cover_and_hide(), states=states, edges=rows)
+
+
+def edges_of(fspa: Fspa, state: int) -> set[tuple[Guard, int]]:
+    return {(edge.guard, edge.target) for edge in fspa.edges_from(state)}
+
+
+def check(fspa: Fspa) -> Drawing:
+    """What folding promises, by definition."""
+    drawing = folded(fspa)
+    inner = [state.id for run in drawing.folded.values() for state in run]
+    drawn = [state.id for state in drawing.states]
+    assert sorted([*(state for state in drawn if state not in drawing.folded), *inner]) == list(range(len(fspa.states)))
+    assert 0 not in inner
+    kept = [edge for edge in fspa.edges if edge.source not in inner]
+    for first, run in drawing.folded.items():
+        assert len(run) >= LEAST_FOLDED
+        assert run[0].id == first
+        check_run(fspa, drawing, [state.id for state in run])
+    assert [edge for edge in drawing.edges if edge.source not in inner] == kept, "all others are drawn as they are"
+    assert {edge.source for edge in drawing.edges} | {edge.target for edge in drawing.edges} <= set(drawn)
+    return drawing
+
+
+def check_run(fspa: Fspa, drawing: Drawing, run: list[int]) -> None:
+    """The path is entered at its start alone, and nothing but its way on differs between its states."""
+    entering = {state: [edge for edge in fspa.edges if edge.target == state] for state in run}
+    assert all(len(edges) == 1 for edges in entering.values())
+    path = [entering[run[0]][0].source, *run]
+    (guard,) = {entering[state][0].guard for state in run}
+    assert [entering[state][0].source for state in run] == path[:-1]
+    (last,) = (target for given, target in edges_of(fspa, run[-1]) - common(fspa, run) if given == guard)
+    path.append(last)
+    assert len({(fspa.states[state].verdict, fspa.states[state].accepting) for state in path}) == 1
+    (beyond,) = {target for given, target in edges_of(fspa, last) - common(fspa, run) if given == guard}
+    assert beyond != last
+    for state, following in zip(path, [*path[1:], beyond], strict=True):
+        assert edges_of(fspa, state) == common(fspa, run) | {(guard, following)}
+    shown = {(edge.guard, edge.target) for edge in drawing.edges if edge.source == run[0]}
+    assert shown == common(fspa, run) | {(guard, last)}
+
+
+def common(fspa: Fspa, run: list[int]) -> set[tuple[Guard, int]]:
+    return set.intersection(*(edges_of(fspa, state) for state in run))
+
+
+@settings(max_examples=60, deadline=None)
+@given(counting() | automata())
+def test_runs_are_folded_and_nothing_else(fspa: Fspa) -> None:
+    for run in check(fspa).folded.values():
+        distances = [state.distance for state in run]
+        steps = {None if a is None or b is None else a - b for a, b in pairwise(distances)}
+        assert steps == {None} or steps <= {0, 1}
+
+
+@settings(max_examples=300, deadline=None)
+@given(chains() | hostile_automata())
+def test_any_artefact_is_folded_by_the_same_rule(fspa: Fspa) -> None:
+    check(fspa)
+
+
+@settings(max_examples=200, deadline=None)
+@given(chains() | counting())
+def test_no_run_is_left_unfolded(fspa: Fspa) -> None:
+    """Every path of five states that could be folded is."""
+    inner = {state.id for run in folded(fspa).folded.values() for state in run}
+    for edge in fspa.edges:
+        path = [edge.source]
+        others = edges_of(fspa, edge.source) - {(edge.guard, edge.target)}
+        while len(path) < LEAST_FOLDED + 2 and continues(fspa, path, edge.guard, others):
+            path += [target for guard, target in edges_of(fspa, path[-1]) - others if guard == edge.guard]
+        if len(path) == LEAST_FOLDED + 2 and continues(fspa, path, edge.guard, others):
+            assert inner.issuperset(path[1:-1])
+
+
+def continues(fspa: Fspa, path: list[int], guard: Guard, others: set[tuple[Guard, int]]) -> bool:
+    """Whether a path of states that agree may be one longer than without its last state."""
+    ways = [way for way in edges_of(fspa, path[-1]) - others if way[0] == guard]
+    first, last = fspa.states[path[0]], fspa.states[path[-1]]
+    entered = all(
+        state and [edge.source for edge in fspa.edges if edge.target == state] == [before]
+        for before, state in pairwise(path[:-1])
+    )
+    return (
+        len(ways) == 1
+        and edges_of(fspa, path[-1]) == others | set(ways)
+        and (first.verdict, first.accepting) == (last.verdict, last.accepting)
+        and entered
+        and ways[0][1] not in path
+    )
+
+
+@pytest.mark.parametrize(
+    ("formula", "inner", "states"),
+    [
+        ("F[0,3] a", [], 6),
+        ("F[0,4] a", [3], 7),
+        ("F[0,40] a", [39], 43),
+        ("G(a -> G[0,10] b)", [8], 12),
+        ("F a & F b & F c", [], 8),
+        ("G[0,12] a", [10], 15),
+    ],
+)
+def test_how_much_is_folded(formula: str, inner: list[int], states: int) -> None:
+    fspa = automaton(formula)
+    assert len(fspa.states) == states
+    assert [len(run) for run in folded(fspa).folded.values()] == inner
+
+
+def test_an_entrance_from_outside_ends_a_run() -> None:
+    fspa = automaton("F[0,40] a")
+    middle = 20
+    detour = Edge(1, middle, Guard("b", (((0, False),),)))
+    runs = check(replace(fspa, edges=(*fspa.edges, detour))).folded.values()
+    inner = [state.id for run in runs for state in run]
+    assert [len(run) for run in runs] == [18, 20]
+    assert middle not in inner
+
+
+def test_without_runs_the_graph_is_the_whole_one() -> None:
+    fspa = cover_and_hide()
+    assert folded(fspa) == whole(fspa)
+    assert graph(fspa, Options(), folded(fspa)) == graph(fspa, Options())
+
+
+def test_ranges_of_numbers() -> None:
+    assert span("F[0,39] p", "F[0,2] p") == "F[0,39…2] p"
+    assert span("p2", "p2") == "p2"
+    assert span("F[0,2] p", "p | X p") == "F[0,2] p … p | X p"
+    assert span("1", "12") == "1…12"

@@ -1,0 +1,102 @@
+"""What is drawn of an automaton that counts: of a long run of states that differ in the count alone, the ends."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from tltlc.automaton.fspa import Edge, Fspa, Guard, State
+from tltlc.record import EMPTY, record, replace
+
+LEAST_FOLDED = 3
+"""Inner states from which on a run is folded: five states with both ends."""
+
+_number = re.compile(r"(\d+)")
+
+
+@record
+class Drawing:
+    """The states and edges that are drawn, in the automaton's order.
+
+    ``folded`` has the inner states of each run, by the id of the first of them, which is drawn for
+    all; its edge along the run leads to the last state of the run.
+    """
+
+    states: tuple[State, ...]
+    edges: tuple[Edge, ...]
+    folded: Mapping[int, tuple[State, ...]] = EMPTY
+
+
+def whole(fspa: Fspa) -> Drawing:
+    """Every state and every edge."""
+    return Drawing(fspa.states, fspa.edges)
+
+
+def folded(fspa: Fspa) -> Drawing:
+    """The drawing with the inner states of each run folded into one.
+
+    A run is a path on which each state has an edge with the same guard to the next (the last one: to
+    another state), and all agree in verdict, acceptance and their other edges' guards and targets.
+    An inner state is entered only from the one before it, so that distances stay or fall by one.
+    """
+    runs = _inner_states(fspa)
+    hidden = {state for run in runs for state, _ in run[1:]}
+    shortened = {run[0][1]: run[-1][1].target for run in runs}
+    edges = (replace(edge, target=shortened.get(edge, edge.target)) for edge in fspa.edges if edge.source not in hidden)
+    return Drawing(
+        tuple(state for state in fspa.states if state.id not in hidden),
+        tuple(edges),
+        {run[0][0]: tuple(fspa.states[state] for state, _ in run) for run in runs},
+    )
+
+
+def _inner_states(fspa: Fspa) -> list[list[tuple[int, Edge]]]:
+    """The inner states of each run that is long enough, each with its edge along the run."""
+    outgoing: list[list[Edge]] = [[] for _ in fspa.states]
+    entering: list[list[Edge]] = [[] for _ in fspa.states]
+    for edge in fspa.edges:
+        outgoing[edge.source].append(edge)
+        entering[edge.target].append(edge)
+    along: dict[int, Edge] = {}
+    for state in range(1, len(fspa.states)):  # state 0 is entered by the start of the trace, too
+        if len(entering[state]) == 1:
+            onward = _onward(entering[state][0], fspa, outgoing)
+            if onward is not None and _onward(onward, fspa, outgoing) is not None:
+                along[state] = onward
+    runs = []
+    for state, edge in along.items():
+        if entering[state][0].source not in along:
+            run = [(state, edge)]
+            while (following := run[-1][1].target) in along:
+                run.append((following, along[following]))
+            if len(run) >= LEAST_FOLDED:
+                runs.append(run)
+    return runs
+
+
+def _onward(edge: Edge, fspa: Fspa, outgoing: list[list[Edge]]) -> Edge | None:
+    """The edge by which a run that takes this edge goes on, None if its two states do not belong to one run."""
+    source, target = fspa.states[edge.source], fspa.states[edge.target]
+    if (source.verdict, source.accepting) != (target.verdict, target.accepting):
+        return None
+    others = _without(edge, outgoing[source.id])
+    for onward in outgoing[target.id]:
+        if (
+            onward.guard == edge.guard
+            and onward.target != target.id
+            and _without(onward, outgoing[target.id]) == others
+        ):
+            return onward
+    return None
+
+
+def _without(left_out: Edge, edges: list[Edge]) -> list[tuple[Guard, int]]:
+    return [(edge.guard, edge.target) for edge in edges if edge is not left_out]
+
+
+def span(first: str, last: str) -> str:
+    """Two texts as one: with ranges where they differ in numbers alone, ``F[0,39…2] p``, else both."""
+    one, other = _number.split(first), _number.split(last)
+    if one[::2] == other[::2]:
+        return "".join(a if a == b else f"{a}…{b}" for a, b in zip(one, other, strict=True))
+    return f"{first} … {last}"
