@@ -47,7 +47,11 @@ def test_standard_input(process) -> None:  # type: ignore[no-untyped-def]
     broken = process("check", "-", stdin=b"spec hide = G !seen")
     assert broken.status == 1
     assert "<stdin>:1:16" in broken.err
-    assert process("check", "-:hidden", stdin=HIDE.encode()).status == 2
+    assert "did you mean `hide`?" in process("check", "-:hidden", stdin=HIDE.encode()).err
+    assert process("check", "-:hide", stdin=HIDE.encode()).status == 0
+    two = f"{HIDE}spec seek = F seen".encode()
+    assert "e.g. `-:hide`" in process("render", "-", stdin=two).err
+    assert process("render", "-:seek", "-t", "dot", stdin=two).out.startswith("digraph seek")
 
 
 def test_byte_order_mark_and_other_line_ends(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]

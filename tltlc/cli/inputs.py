@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from tltlc.cli.main import STDIN_NAME
 from tltlc.cli.project import Project, project_for
 from tltlc.cli.settings import Settings, check_libraries
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -46,7 +47,8 @@ class Input:
             if names
             else (f"`{self.name}` holds no spec")
         )
-        way_out = f"name one of them, e.g. `{self.name}:{names[0]}`" if names else "declare one: `spec NAME { … }`"
+        path = STDIN if self.name == STDIN_NAME else self.name
+        way_out = f"name one of them, e.g. `{path}:{names[0]}`" if names else "declare one: `spec NAME { … }`"
         raise TltlError([Diagnostic("TLT0721", title, help=way_out)])
 
 
@@ -81,13 +83,13 @@ def split(argument: str) -> tuple[str, str | None]:
         return argument, None
     if len(path) == 1 and path.isalpha() and os.name == "nt":
         return argument, None
-    return path, name
+    return STDIN if path == STDIN_NAME else path, name
 
 
 def read(path: str) -> tuple[SourceFile, bool]:
     """The text of a file or of standard input, and whether it is an artefact: no source begins with a brace."""
     if path == STDIN:
-        return _read_stream(sys.stdin.buffer, "<stdin>")
+        return _read_stream(sys.stdin.buffer, STDIN_NAME)
     try:
         with Path(path).open("rb") as file:
             return _read_stream(file, path)

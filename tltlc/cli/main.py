@@ -29,6 +29,8 @@ BUILT_IN: Final = {
 
 ENTRY_POINTS: Final = "tltlc.commands"
 COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
+STDIN_NAME: Final = "<stdin>"
+"""What standard input is called in messages; :mod:`tltlc.cli.inputs` reads it by that name, too."""
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
@@ -54,11 +56,12 @@ class CommandLine(click.Group):
         sys.exit(status)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """As click does; the help where nothing is asked for, which is wrong usage."""
+        """As click does, but `-:NAME` is no option; the help where nothing is asked for, which is wrong usage."""
         if not args and not ctx.resilient_parsing:
             click.echo(ctx.get_help(), err=True)
             raise exits.StopQuietlyError(exits.USAGE)
-        return super().parse_args(ctx, args)
+        # A spec of standard input: click would take the hyphen for the start of options.
+        return super().parse_args(ctx, [f"{STDIN_NAME}{text[1:]}" if text.startswith("-:") else text for text in args])
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; click would answer these two with a status of its own."""

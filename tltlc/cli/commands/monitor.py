@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, BinaryIO
 import click
 
 from tltlc.cli import exits
-from tltlc.cli.inputs import STDIN, open_input
+from tltlc.cli.inputs import STDIN, open_input, split
+from tltlc.cli.main import STDIN_NAME
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings, source_options
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -46,7 +47,7 @@ def command(spec: str, trace: str, as_json: bool, settings: Settings, format: st
     from tltlc.monitor.run import outcome, run
     from tltlc.monitor.traces import read_trace
 
-    if spec.partition(":")[0] == trace == STDIN:
+    if split(spec)[0] == trace == STDIN:
         raise click.UsageError("SPEC and TRACE cannot both be standard input", click.get_current_context())
     judged: Outcome | None = None
     with Report(format, results=True) as report:
@@ -78,7 +79,7 @@ def _opened(trace: str) -> Iterator[BinaryIO]:
 
 
 def _shown(trace: str) -> str:
-    return "<stdin>" if trace == STDIN else trace
+    return STDIN_NAME if trace == STDIN else trace
 
 
 def _with_notices(rows: Iterator[Row], notices: list[Diagnostic], report: Report) -> Iterator[Row]:
