@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import json
 import unicodedata
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -24,11 +23,6 @@ def emitted(fspa: Fspa) -> str:
     text = backends.emit("json", fspa)[f"{fspa.name}.fspa.json"]
     assert isinstance(text, str)
     return text
-
-
-def test_the_artefact_of_cover_and_hide() -> None:
-    golden = Path(__file__).with_name("cover_and_hide.fspa.json").read_text(encoding="utf-8")
-    assert emitted(cover_and_hide()) == golden
 
 
 def test_what_was_written_is_read() -> None:

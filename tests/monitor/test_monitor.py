@@ -234,6 +234,7 @@ def test_params_that_do_not_fit(params: dict[str, float], code: str, text: str) 
     with pytest.raises(MonitorError) as caught:
         Monitor(cover_and_hide(), params)
     assert [(found.code, found.title) for found in caught.value.diagnostics] == [(code, text)]
+    assert caught.value.diagnostics[0].help
 
 
 @given(st.tuples(values, values, values))

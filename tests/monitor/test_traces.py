@@ -26,6 +26,7 @@ def refused(text: str | bytes) -> tuple[str, str, str, str]:
     with pytest.raises(TltlError) as caught:
         read(text)
     (found,) = caught.value.diagnostics
+    assert found.help
     if not found.labels:
         return found.code, found.title, "", ""
     label = found.labels[0]
@@ -110,6 +111,10 @@ HEADER = 'open,"near(a, b)"\n'
         (
             'open,open,"near(a, b)"\n',
             ("TLT0622", "line 1 of the trace cannot be read", "1:1", "two columns are called `open`"),
+        ),
+        (
+            HEADER + '1,"2\n',
+            ("TLT0622", "line 2 of the trace cannot be read", "2:1", "this is no CSV: unexpected end of data"),
         ),
         (HEADER.encode() + b"1,\xff\n", ("TLT0622", "line 2 of the trace cannot be read", "2:3", "it is not UTF-8")),
         ('{"open": 1}\n{"open" 1}', ("TLT0622", "line 2 of the trace cannot be read", "2:9", "this is not JSON")),

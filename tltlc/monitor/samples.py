@@ -101,16 +101,21 @@ def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[st
     known = {param.name: param for param in params}
     for name, value in given.items():
         if name not in known:
-            raise MonitorError([Diagnostic("TLT0308", f"there is no param `{name}` to set")])
+            there = f"there are: {listed(list(known))}" if known else "its atoms use none: leave it out"
+            raise _wrong_param("TLT0308", f"there is no param `{name}` to set", there)
         if isinstance(value, str) or not hasattr(value, "__float__"):
-            raise MonitorError([Diagnostic("TLT0308", f"the value given for the param `{name}` is no number")])
+            raise _wrong_param("TLT0308", f"the value given for the param `{name}` is no number")
         low, high = known[name].low, known[name].high
         if not isfinite(value):
-            raise MonitorError([Diagnostic("TLT0308", f"the param `{name}` cannot be {shown(value)}")])
+            raise _wrong_param("TLT0308", f"the param `{name}` cannot be {shown(value)}")
         if (low is not None and value < low) or (high is not None and value > high):
-            text = f"the param `{name}` cannot be {shown(value)}: its range is {range_text(low, high)}"
-            raise MonitorError([Diagnostic("TLT0307", text)])
+            title = f"the param `{name}` cannot be {shown(value)}: its range is {range_text(low, high)}"
+            raise _wrong_param("TLT0307", title)
     return {name: float(given.get(name, param.value)) for name, param in known.items()}
+
+
+def _wrong_param(code: str, title: str, way_out: str = "give a number in its range, in SI units") -> MonitorError:
+    return MonitorError([Diagnostic(code, title, help=way_out)])
 
 
 def check_exclusive(fspa: Fspa, values: Sequence[float], step: int) -> None:

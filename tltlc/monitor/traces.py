@@ -108,7 +108,7 @@ def _next_row(rows: Iterator[list[str]], at: _Lines) -> list[str] | None:
     try:
         return next(rows, None)
     except csv.Error as error:
-        raise at.error(str(error)) from None
+        raise at.error(f"this is no CSV: {error}", help="close each quote; write those inside as two") from None
 
 
 def _columns(header: Sequence[str], at: _Lines, signals: Sequence[Signal]) -> list[tuple[str, int]]:
@@ -121,7 +121,7 @@ def _columns(header: Sequence[str], at: _Lines, signals: Sequence[Signal]) -> li
         raise TltlError([Diagnostic("TLT0621", title, (at.label(""),), way_out)])
     for signal in signals:
         if header.count(signal.name) > 1:
-            raise at.error(f"two columns are called `{signal.name}`")
+            raise at.error(f"two columns are called `{signal.name}`", help="keep one of them")
     return [(signal.name, header.index(signal.name)) for signal in signals]
 
 
@@ -177,7 +177,7 @@ def _json_lines(lines: Iterator[str], at: _Lines, signals: Sequence[Signal]) -> 
         except json.JSONDecodeError as error:
             raise at.error("this is not JSON", (error.pos, error.pos + 1), _OBJECTS) from None
         except (RecursionError, ValueError):
-            raise at.error("this nests too deep, or holds a number that is too long") from None
+            raise at.error("this nests too deep, or holds a number that is too long", help=_OBJECTS) from None
         if not isinstance(found, dict):
             raise at.error("this is no object", help=_OBJECTS)
         for name in names:
