@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from tltlc.automaton.build import build
+from tltlc.automaton.build import DEFAULT_STATE_BUDGET, build
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.grammar.parser import parse
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from tltlc.automaton.fspa import Fspa
     from tltlc.resolve.spec import Program, Spec
-
-DEFAULT_STATE_BUDGET = 50_000
 
 _MOST_LABELS = 4
 """Of clauses that contradict each other, as many are pointed at."""

@@ -94,7 +94,7 @@ def test_without_a_picture_in_time_there_is_the_graph() -> None:
     notes: list[Diagnostic] = []
     files = backends.emit("svg", cover_and_hide(), Options(layout_limit_s=0.0001, report=notes.append))
     assert files == backends.emit("dot", cover_and_hide())
-    assert [note.code for note in notes] == ["TLT0711"]
+    assert [(note.code, note.help) for note in notes] == [("TLT0711", "other tools may draw it")]
 
 
 def test_what_the_layout_complains_of_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:

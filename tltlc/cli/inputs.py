@@ -64,7 +64,8 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
     source, is_artefact = read(path)
     if is_artefact:
         return _artefact(source, settings, wanted, project)
-    from tltlc.pipeline import DEFAULT_STATE_BUDGET, CompileOptions, compile_source
+    from tltlc.automaton.build import DEFAULT_STATE_BUDGET
+    from tltlc.pipeline import CompileOptions, compile_source
 
     options = CompileOptions(
         library_dirs=(*settings.libraries, *project.libraries),

@@ -48,7 +48,7 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
         options.report(Diagnostic("TLT0711", title, help=WHOLE_GRAPH, severity="note"))
         return {name: picture}
     title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
-    options.report(Diagnostic("TLT0711", title, severity="note"))
+    options.report(Diagnostic("TLT0711", title, help="other tools may draw it", severity="note"))
     return {f"{fspa.name}.dot": graph(fspa, options)}
 
 
