@@ -127,6 +127,8 @@ def _bounds(place: Place) -> Diagnostic | None:
         example = "F[0, 20]" if before.text in ("[", ",") else f"{before.text} 20 steps"
         title = f"a bound is a number, and {shown(place.found)} is a name"
         return place.error("TLT0111", title, f"write the number, e.g. `{example}`")
+    if before and before.text in ("[", ",") and "NUMBER" in place.allowed and _is_bound(place):
+        return _no_number(place)
     if place.allowed == {"UNIT"} and before:
         return place.error(
             "TLT0111", f"expected a unit after {shown(before)}", f"`{before.text} steps` or `{before.text} s`"
@@ -137,6 +139,18 @@ def _bounds(place: Place) -> Diagnostic | None:
         help_ = "bound an `F` beside it: `(a U b) & F[0,20] b`"
         return place.error("TLT0111", f"`{before.text}` takes no bound", help_)
     return None
+
+
+def _no_number(place: Place) -> Diagnostic:
+    """``F[-1,2] p`` and ``X[!] p``."""
+    operator = place.tokens[_opening(place) - 1].text
+    if operator in _NEXTS:
+        return place.error(
+            "TLT0111",
+            f"`{operator}` takes no bound in brackets",
+            "leave the brackets out; `X` is false at the last step, `N` true",
+        )
+    return place.error("TLT0111", place.expectation(), f"count the steps from now on, e.g. `{operator}[0,20] p`")
 
 
 def _one_end(place: Place, number: str) -> Diagnostic:
