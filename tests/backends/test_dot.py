@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from tests.backends.strategies import automata, hostile_automata
 from tests.fixtures import cover_and_hide
 from tltlc import backends
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Text
 from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, graph
 from tltlc.backends.drawing.texts import Guards, visible, wrapped
@@ -100,9 +100,27 @@ def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
 
 
 def test_a_sketch_has_no_guards() -> None:
-    drawn = parsed(graph(cover_and_hide(), Options(), guards=False))
+    drawn = parsed(graph(cover_and_hide(), Options(), detail="sketch"))
     assert words_of(drawn.get_node("0").attr["label"]).split() == ["3", "0"]
     assert not drawn.get_edge("0", "1").attr["label"]
+
+
+def test_guards_may_be_left_to_the_tooltips() -> None:
+    drawn = parsed(graph(cover_and_hide(), Options(), detail="labels"))
+    assert words_of(drawn.get_node("3").attr["label"]).split() == ["1", "◇near(exit)", "∧", "□alive"]
+    edge = drawn.get_edge("0", "1")
+    assert (edge.attr["label"] or "", edge.attr["tooltip"]) == ("", "near(s1) ∧ alive")
+
+
+@pytest.mark.parametrize("character", ["p", "漢", "\u202e", "\\", '"', "<"])
+def test_texts_of_any_length_can_be_read_by_graphviz(character: str) -> None:
+    fspa = cover_and_hide()
+    text = 10_000 * f"{character}{character} "
+    edges = tuple(replace(edge, guard=replace(edge.guard, text=text)) for edge in fspa.edges)
+    states = tuple(replace(state, label=Text(text, text, text)) for state in fspa.states)
+    drawn = parsed(emitted(replace(fspa, edges=edges, states=states)))
+    assert (len(drawn.nodes()), len(drawn.edges())) == (1 + len(states), 1 + len(edges))
+    assert drawn.get_edge("0", "1").attr["tooltip"].endswith(" …")
 
 
 def test_long_labels_are_wrapped_before_operators_and_cut() -> None:

@@ -90,6 +90,16 @@ def test_tangled_graphs_are_sketched_and_that_is_said() -> None:
     assert "g0" not in shown(picture)
 
 
+def test_many_edges_are_drawn_without_guards_and_that_is_said() -> None:
+    notes: list[Diagnostic] = []
+    picture = drawn(collect(5), Options(report=notes.append))
+    assert [(note.code, note.severity) for note in notes] == [("TLT0711", "note")]
+    assert "◇g0" in shown(picture)
+    assert "¬g0" not in shown(picture)
+    tips = {link.get("{http://www.w3.org/1999/xlink}title") for link in picture.iter(f"{SVG}a")}
+    assert "¬g0 ∧ ¬g1" in tips
+
+
 def test_without_a_picture_in_time_there_is_the_graph() -> None:
     notes: list[Diagnostic] = []
     files = backends.emit("svg", cover_and_hide(), Options(layout_limit_s=0.0001, report=notes.append))

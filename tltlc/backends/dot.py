@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from tltlc.automaton.fspa import Edge, Fspa, State, Verdict
 from tltlc.backends import Files, Options, Target
@@ -29,10 +29,18 @@ FILLS: dict[Verdict, str] = {
     "violated": "#fef2f2",
 }
 
+Detail = Literal["full", "labels", "sketch"]
+"""What the drawing shows: everything; no guards; states by their number alone, for a layout by forces."""
+
 LABEL_WIDTH, GUARD_WIDTH = 30, 22
+LONGEST_TOOLTIP = 2000
+"""In characters: Graphviz reads no string of more than 16 KiB, in which one may take seven."""
 
 FONT = "Helvetica,Arial,sans-serif"
 GRAPH = {"rankdir": "LR", "bgcolor": "white", "pad": "0.2", "nodesep": "0.45", "ranksep": "0.7", "tooltip": " "}
+DENSE_FROM = 30
+"""Edges, each with a guard to be placed, from which on the layers get twice as tall as need be."""
+DENSE = {"nodesep": "0.2"}
 SKETCH = {"overlap": "prism", "K": "1.2", "splines": "line", "outputorder": "edgesfirst"}
 NODE = {
     "shape": "box",
@@ -51,11 +59,8 @@ def emit(fspa: Fspa, options: Options) -> Files:
     return {f"{fspa.name}.dot": graph(fspa, options)}
 
 
-def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, guards: bool = True) -> str:
+def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: Detail = "full") -> str:
     """The DOT text of a drawing, that of everything if none is given.
-
-    Without ``guards``, edges carry none and states only their number: a sketch for tangled graphs, fit for a layout by
-    forces.
 
     Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting
     states are green with a double outline, traps red, and folded ones dashed.
@@ -65,16 +70,20 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, guards: 
     drawing = drawing or whole(fspa)
     texts = Guards(fspa, options.notation)
     title = {"label": _title(fspa, drawing), "labelloc": "t", "labeljust": "l"}
-    drawn = Digraph(visible(fspa.name), graph_attr={**GRAPH, **title, **({} if guards else SKETCH)})
+    dense = DENSE if len(drawing.edges) > DENSE_FROM else {}
+    sketch = SKETCH if detail == "sketch" else {}
+    drawn = Digraph(visible(fspa.name), graph_attr={**GRAPH, **title, **dense, **sketch})
     drawn.attr("node", **NODE)
     drawn.attr("edge", **EDGE)
     drawn.node("start", shape="point", style="filled", width="0.09", color="#475569", tooltip="start")
     for state in drawing.states:
         run = drawing.folded.get(state.id, (state,))
-        _draw_state(drawn, run, span(*(label(end.label, options.notation) for end in (run[0], run[-1]))), guards)
+        _draw_state(
+            drawn, run, span(*(label(end.label, options.notation) for end in (run[0], run[-1]))), detail != "sketch"
+        )
     drawn.edge("start", "0")
     for edge in drawing.edges:
-        _draw_edge(drawn, fspa, edge, texts.text(edge.guard.text), guards)
+        _draw_edge(drawn, fspa, edge, texts.text(edge.guard.text), detail == "full")
     return str(drawn.source)
 
 
@@ -138,7 +147,8 @@ def _plain(text: str) -> str:
     from graphviz import escape
 
     # A subclass of str says so: made a bare str again, "<b>" would be markup.
-    plain: str = escape(visible(text))
+    text = visible(text)
+    plain: str = escape(text if len(text) <= LONGEST_TOOLTIP else f"{text[:LONGEST_TOOLTIP]} …")
     return plain
 
 

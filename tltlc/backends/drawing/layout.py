@@ -9,24 +9,35 @@ from pathlib import Path
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options
-from tltlc.backends.dot import graph
+from tltlc.backends.dot import Detail, graph
 from tltlc.backends.drawing.folding import folded
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 CHILD = Path(__file__).with_name("child.py")
 
-MOST_EDGES_IN_FULL = 400
-"""Beyond, guards would cover each other, and the layered layout would only use up its time."""
+MOST_EDGES_WITH_GUARDS = 150
+"""Beyond, guards cover each other, or keep the states so far apart that nothing can be read."""
+
+MOST_EDGES_IN_LAYERS = 400
+"""Beyond, the layered layout would only use up its time."""
 
 WHOLE_GRAPH = "`tltlc compile -t dot` writes the whole graph for other tools"
+
+ATTEMPTS: tuple[tuple[Detail, str, float, str], ...] = (
+    ("full", "dot", MOST_EDGES_WITH_GUARDS, ""),
+    ("labels", "dot", MOST_EDGES_IN_LAYERS, "without guards"),
+    ("sketch", "sfdp", float("inf"), "by number, without guards"),
+)
+"""Detail, layout engine, the most edges for which it is tried, what to say of that detail."""
 
 
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
     """``NAME.FORMAT``, or the best that could be done in time.
 
-    Runs of states that count are folded.  Tried in this order, each within
-    ``options.layout_limit_s``: everything in layers; only the states' numbers, by forces.  If neither
-    is done in time, ``NAME.dot``, with nothing folded.  What was left out is reported (TLT0711).
+    Runs of states that count are folded.  Tried in this order, as far as there are not too many
+    edges, each within ``options.layout_limit_s``: everything in layers; the same without guards, which
+    an SVG still has as tooltips; only the states' numbers, by forces.  If nothing is done in time,
+    ``NAME.dot``, with nothing folded.  What was left out is reported (TLT0711).
 
     Raises:
         TltlError: TLT0730 where pygraphviz is not installed, TLT0712 where the layout itself failed.
@@ -36,17 +47,14 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
         raise TltlError([Diagnostic("TLT0730", title, help="pip install 'pygraphviz'")])
     name = f"{fspa.name}.{picture_format}"
     drawing = folded(fspa)
-    if len(drawing.edges) <= MOST_EDGES_IN_FULL:
-        picture = _laid_out(graph(fspa, options, drawing), picture_format, "dot", options.layout_limit_s)
-        if picture is not None:
-            return {name: picture}
-    sketch = graph(fspa, options, drawing, guards=False)
-    picture = _laid_out(sketch, picture_format, "sfdp", options.layout_limit_s)
-    if picture is not None:
-        cut = f"shows its {len(fspa.states)} states by number, without guards"
-        title = f"the picture of `{fspa.name}` {cut}: it is too tangled"
-        options.report(Diagnostic("TLT0711", title, help=WHOLE_GRAPH, severity="note"))
-        return {name: picture}
+    for detail, engine, most_edges, cut in ATTEMPTS:
+        if len(drawing.edges) <= most_edges:
+            picture = _laid_out(graph(fspa, options, drawing, detail), picture_format, engine, options.layout_limit_s)
+            if picture is not None:
+                if cut:
+                    title = f"the picture of `{fspa.name}` shows its {len(fspa.states)} states {cut}: it is too tangled"
+                    options.report(Diagnostic("TLT0711", title, help=WHOLE_GRAPH, severity="note"))
+                return {name: picture}
     title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
     options.report(Diagnostic("TLT0711", title, help="other tools may draw it", severity="note"))
     return {f"{fspa.name}.dot": graph(fspa, options)}
