@@ -6,12 +6,14 @@ from hypothesis import given, settings
 
 from tests.backends.strategies import automata, hostile_automata
 from tests.fixtures import cover_and_hide
-from tltlc import backends
+from tltlc import backends, compile_text
 from tltlc.automaton.fspa import Fspa
+from tltlc.backends.drawing.folding import folded
 
 STATE = re.compile(r'    state "([^"]*)" as s(\d+)')
 EDGE = re.compile(r"    s(\d+) --> s(\d+): ([^:;]*(?:#\d+;[^:;]*)*)")
 CLASS = re.compile(r"    class s(\d+) (satisfied|holding|pending|violated)")
+FOLDED = re.compile(r"    class s(\d+) folded")
 
 
 def emitted(fspa: Fspa) -> str:
@@ -21,17 +23,20 @@ def emitted(fspa: Fspa) -> str:
 
 
 def check(fspa: Fspa) -> None:
-    """Every line is one of the few forms that may occur, and each state and edge stands in exactly one."""
+    """Every line is one of the few forms that may occur, and each state and edge drawn stands in exactly one."""
+    drawing = folded(fspa)
     lines = emitted(fspa).splitlines()
     assert lines[:2] == ["stateDiagram-v2", "    direction LR"]
     rest = [line for line in lines[2:] if not line.startswith("    classDef ")]
     states = [match for line in rest if (match := STATE.fullmatch(line))]
     edges = [match for line in rest if (match := EDGE.fullmatch(line))]
     classes = [match for line in rest if (match := CLASS.fullmatch(line))]
-    assert [int(match[2]) for match in states] == [state.id for state in fspa.states]
-    assert [(int(match[1]), int(match[2])) for match in edges] == [(edge.source, edge.target) for edge in fspa.edges]
-    assert [(int(match[1]), match[2]) for match in classes] == [(state.id, state.verdict) for state in fspa.states]
-    assert len(states) + len(edges) + len(classes) + 1 == len(rest)
+    dashed = [int(match[1]) for line in rest if (match := FOLDED.fullmatch(line))]
+    assert [int(match[2]) for match in states] == [state.id for state in drawing.states]
+    assert [(int(match[1]), int(match[2])) for match in edges] == [(edge.source, edge.target) for edge in drawing.edges]
+    assert [(int(match[1]), match[2]) for match in classes] == [(state.id, state.verdict) for state in drawing.states]
+    assert dashed == list(drawing.folded)
+    assert len(states) + len(edges) + len(classes) + len(dashed) + 1 == len(rest)
     assert sum("direction" in line.lower() for line in lines) == 1
     for match in [*states, *edges]:
         text = (match[1] if match.re is STATE else match[3]).replace("<br/>", "")
@@ -45,6 +50,15 @@ def test_the_diagram_of_cover_and_hide() -> None:
     assert "    s3 --> s4: near(exit) ∧ alive\n" in text
     assert "    [*] --> s0\n" in text
     assert "    class s4 holding\n" in text
+
+
+def test_runs_are_folded() -> None:
+    (fspa,) = compile_text("signal fast: bool spec quick = eventually within 40 steps fast")
+    text = emitted(fspa)
+    assert len([line for line in text.splitlines() if STATE.fullmatch(line)]) == 5
+    assert 'state "39 more like these#58;<br/>◇' in text
+    assert "    classDef folded stroke-dasharray:6 4\n" in text
+    check(fspa)
 
 
 @settings(max_examples=30, deadline=None)

@@ -1,4 +1,6 @@
-"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place."""
+"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place: in pictures, runs of
+states that count are folded.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +8,7 @@ import re
 
 from tltlc.automaton.fspa import Edge, Fspa, State
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.drawing.folding import folded, span
 from tltlc.backends.drawing.texts import Guards, label, visible, wrapped
 
 TARGET = Target("mermaid", "a state diagram for Mermaid", (".mmd",))
@@ -17,26 +20,33 @@ CLASSES = """\
     classDef holding fill:#f0fdf4,stroke:#16a34a,stroke-width:4px,color:#0f172a
     classDef pending fill:#f8fafc,stroke:#475569,color:#0f172a
     classDef violated fill:#fef2f2,stroke:#dc2626,color:#0f172a"""
+DASHED = "    classDef folded stroke-dasharray:6 4"
 
 _PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰")
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.mmd``: labels with their distances, guards, and a class for each verdict."""
-    guards = Guards(fspa, options.notation)
+    """``NAME.mmd``: labels with their distances, guards, and a class for each verdict; folded states are dashed."""
+    guards, drawing = Guards(fspa, options.notation), folded(fspa)
     lines = ["stateDiagram-v2", "    direction LR"]
-    lines += [_state(state, label(state.label, options.notation)) for state in fspa.states]
+    lines += [_state(drawing.folded.get(state.id, (state,)), options) for state in drawing.states]
     lines.append("    [*] --> s0")
-    lines += [_edge(edge, guards.text(edge.guard.text)) for edge in fspa.edges]
-    lines.append(CLASSES)
-    lines += [f"    class s{state.id} {state.verdict}" for state in fspa.states]
+    lines += [_edge(edge, guards.text(edge.guard.text)) for edge in drawing.edges]
+    lines += [CLASSES, DASHED] if drawing.folded else [CLASSES]
+    lines += [f"    class s{state.id} {state.verdict}" for state in drawing.states]
+    lines += [f"    class s{state} folded" for state in drawing.folded]
     return {f"{fspa.name}.mmd": "\n".join([*lines, ""])}
 
 
-def _state(state: State, text: str) -> str:
-    distance = "∞" if state.distance is None else str(state.distance)
-    body = "<br/>".join(map(_escaped, wrapped(text, LABEL_WIDTH)))
-    return f'    state "{body}<br/>{_escaped(f"[{distance}]")}" as s{state.id}'
+def _state(run: tuple[State, ...], options: Options) -> str:
+    """A state, or the inner states of a run in one."""
+    ends = run[0], run[-1]
+    distance = span(*("∞" if state.distance is None else str(state.distance) for state in ends))
+    lines = wrapped(span(*(label(state.label, options.notation) for state in ends)), LABEL_WIDTH)
+    if len(run) > 1:
+        lines = [f"{len(run)} more like these:", *lines]
+    body = "<br/>".join(map(_escaped, lines))
+    return f'    state "{body}<br/>{_escaped(f"[{distance}]")}" as s{run[0].id}'
 
 
 def _edge(edge: Edge, text: str) -> str:
