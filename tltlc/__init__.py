@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tltlc.diagnostics.diagnostic import Diagnostic as Diagnostic
     from tltlc.diagnostics.diagnostic import TltlError as TltlError
     from tltlc.logic.formula import Formula as Formula
+    from tltlc.pipeline import CompileOptions as CompileOptions
     from tltlc.pipeline import compile_file as compile_file
     from tltlc.pipeline import compile_text as compile_text
     from tltlc.pipeline import load as load
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "CompileOptions",
     "Diagnostic",
     "Formula",
     "Fspa",
@@ -41,6 +43,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "CompileOptions": "tltlc.pipeline",
     "Diagnostic": "tltlc.diagnostics.diagnostic",
     "Formula": "tltlc.logic.formula",
     "Fspa": "tltlc.automaton.fspa",

@@ -124,6 +124,10 @@ def compile_text(text: str, name: str = "<text>", options: CompileOptions | None
     >>> fspa, = tltlc.compile_text("signal seen: bool  spec hide = G !seen")
     >>> fspa.name, len(fspa.states), fspa.judge
     ('hide', 2, 'limit')
+    >>> options = tltlc.CompileOptions(params={"most": "30 %"})
+    >>> fspa, = tltlc.compile_text("signal n: ratio  param most: ratio = 10 %  spec hush = G n < most", options=options)
+    >>> [param.value for param in fspa.params]
+    [0.3]
     >>> tltlc.compile_text("spec hide = G !seem  signal seen: bool")
     Traceback (most recent call last):
     ...

@@ -36,7 +36,9 @@ def _unknown(name: str, params: Mapping[str, Param]) -> Diagnostic:
 
     close = get_close_matches(name, list(params), n=1)
     listed = ", ".join(f"`{known}`" for known in params)
-    advice = f"did you mean `{close[0]}`?" if close else f"there are: {listed}" if params else "there are none"
+    advice = (
+        f"did you mean `{close[0]}`?" if close else f"there are: {listed}" if params else "there is none: leave it out"
+    )
     return Diagnostic("TLT0308", f"there is no param `{name}` to set", (), advice)
 
 
