@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import html
 import re
-from pathlib import Path
 
 import pygraphviz
 import pytest
@@ -31,11 +30,6 @@ def parsed(text: str) -> pygraphviz.AGraph:
 def words_of(label: str) -> str:
     """The text that an HTML-like label shows."""
     return html.unescape(re.sub(r"<[^>]*>", " ", label.replace("<BR/>", " ")))
-
-
-def test_the_graph_of_cover_and_hide() -> None:
-    golden = Path(__file__).with_name("cover_and_hide.dot").read_text(encoding="utf-8")
-    assert emitted(cover_and_hide()) == golden
 
 
 def test_loops_of_final_states_are_on_the_right_where_no_edge_arrives() -> None:

@@ -17,8 +17,8 @@ _TYPES = {
 }
 
 _COUNTS = {
-    "minItems": "must hold at least {} values",
-    "maxItems": "must hold at most {} values",
+    "minItems": "must hold at least {} {}",
+    "maxItems": "must hold at most {} {}",
     "minProperties": "is empty",
     "maxProperties": "holds fields that do not go together",
     "minLength": "is empty",
@@ -41,7 +41,8 @@ def worded(error: JsonSchemaValueException) -> str:
         fields = _listed(remark.removeprefix("must not contain ").removesuffix(" properties"), " and ")
         return f"{subject} may not hold {fields}"
     if error.rule in _COUNTS:
-        return f"{subject} {_COUNTS[error.rule].format(*(word for word in remark.split() if word.isdigit()))}"
+        count = "".join(word for word in remark.split() if word.isdigit())
+        return f"{subject} {_COUNTS[error.rule].format(count, 'value' if count == '1' else 'values')}"
     return f"{subject} {remark}"
 
 
