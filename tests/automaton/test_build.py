@@ -307,6 +307,12 @@ def test_exclusive_atoms_make_skipping_impossible() -> None:
         ("a W b", "limit"),
         ("!F a", "limit"),
         ("!G a", "goal"),
+        ("a | X a", "goal"),
+        ("a | X(a | X a)", "goal"),
+        ("(a | X(a | X a)) & G b", "goal"),
+        ("(a | b | X(a | b | X(a | b))) & G c", "goal"),
+        ("c | a | X(a | X a)", "limit"),
+        ("a & N(a & N a)", "limit"),
     ],
 )
 def test_default_judge(text: str, judge: str) -> None:

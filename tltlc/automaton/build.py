@@ -17,6 +17,7 @@ from tltlc.automaton.labels import Labels
 from tltlc.automaton.machine import Machine, OutOfStates
 from tltlc.automaton.successors import Successors
 from tltlc.expression import Signal as SignalValue
+from tltlc.logic.bounded import bounded, with_bounds
 from tltlc.logic.formula import Formula, rebuild
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.printer import ascii_text, english_text, unicode_text
@@ -100,13 +101,13 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
 
 
 def default_judge(formula: Formula) -> Judge:
-    """``limit`` where the formula is true of "nothing yet", else ``goal`` (semantics, section 4)."""
+    """``limit`` where the formula is true of "nothing yet", else ``goal`` (semantics, section 4; docs/adr/0009)."""
     normal = negation_normal_form(formula)
     value: dict[Formula, bool] = {}
     stack = [normal]
     while stack:
         node = stack[-1]
-        waiting = [part for part in node.args if part not in value] if node.op in ("and", "or") else []
+        waiting = [part for part in _at_once(node) if part not in value]
         if waiting:
             stack.extend(waiting)
         else:
@@ -114,11 +115,18 @@ def default_judge(formula: Formula) -> Judge:
     return "limit" if value[normal] else "goal"
 
 
+def _at_once(node: Formula) -> list[Formula]:
+    """The operands of an ``and`` or ``or``; of no other operator, nor of ``F[0,n] p``, which is ``p | X(p | …)``."""
+    if node.op == "or":
+        return [] if bounded(node) else with_bounds(node)
+    return list(node.args) if node.op == "and" else []
+
+
 def _of_nothing_yet(node: Formula, value: dict[Formula, bool]) -> bool:
     if node.op == "and":
-        return all(value[argument] for argument in node.args)
+        return all(value[operand] for operand in _at_once(node))
     if node.op == "or":
-        return any(value[argument] for argument in node.args)
+        return any(value[operand] for operand in _at_once(node))
     return node.op not in ("false", "F", "U", "M", "X")
 
 
