@@ -86,7 +86,7 @@ def _neighbour(name: str) -> str | None:
 
     folder, file = os.path.split(name)
     try:
-        close = get_close_matches(file, os.listdir(folder or "."), n=1, cutoff=0.75)  # noqa: PTH208
+        close = get_close_matches(file, os.listdir(folder or "."), n=1, cutoff=0.85)  # noqa: PTH208
     except OSError:
         return f"there is no folder `{folder}` either"
     return f"did you mean `{os.path.join(folder, close[0])}`?" if close else None  # noqa: PTH118

@@ -83,6 +83,13 @@ def test_a_guard_with_too_many_primes_names_the_part(monkeypatch: pytest.MonkeyP
     assert raised.value.diagnostics[0].code == "TLT0502"
 
 
+def test_all_guards_with_too_many_primes_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guards, "TOTAL_PRIME_LIMIT", 3)
+    with pytest.raises(TltlError) as raised:
+        build(spec_from_formula(iff(atom("a"), atom("b"))))
+    assert raised.value.diagnostics[0].title == "all guards of `spec` have more than 3 prime implicants"
+
+
 def test_a_guard_with_too_many_products_ends_soon() -> None:
     """The parity of 25 atoms is a diagram of 49 nodes and a sum of 2^24 products."""
     parity = atom("a0")

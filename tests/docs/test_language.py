@@ -11,7 +11,7 @@ import tltlc
 from tests.docs.blocks import DOCS
 from tltlc import files
 from tltlc.automaton.build import DEFAULT_STATE_BUDGET
-from tltlc.automaton.guards import PRIME_LIMIT
+from tltlc.automaton.guards import PRIME_LIMIT, TOTAL_PRIME_LIMIT
 from tltlc.diagnostics.codes import codes
 from tltlc.grammar import lexer, nesting, words
 from tltlc.grammar.parser import parse_formula
@@ -156,6 +156,7 @@ def test_limits() -> None:
         [context.MOST_EXPANSIONS],
         [DEFAULT_STATE_BUDGET],
         [PRIME_LIMIT],
+        [TOTAL_PRIME_LIMIT],
     ]
     assert {row[2] for row in rows("Limits")} <= set(codes())
 

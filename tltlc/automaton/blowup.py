@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps
-from tltlc.automaton.guards import PRIME_LIMIT, TooManyPrimes
+from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.machine import OutOfStates, machine
 from tltlc.automaton.successors import Successors
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
@@ -43,7 +43,8 @@ def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
             Label(part.source, part.span, f"{sizes[part]} states alone; the parts multiply") for part in worst[:3]
         )
     if isinstance(reason, TooManyPrimes):
-        title = f"a guard of `{spec.name}` has more than {PRIME_LIMIT} prime implicants"
+        verb = "has" if reason.whose == "a guard" else "have"
+        title = f"{reason.whose} of `{spec.name}` {verb} more than {reason.limit} prime implicants"
         return TltlError([Diagnostic("TLT0502", title, labels, "split the spec, or name the condition as a predicate")])
     title = f"the automaton of `{spec.name}` needs more than {state_budget} states"
     if not isinstance(reason, OutOfStates):

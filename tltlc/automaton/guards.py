@@ -16,13 +16,24 @@ from tltlc.logic.printer import operand_text
 Cube = tuple[int, ...]
 
 PRIME_LIMIT = 10_000
+TOTAL_PRIME_LIMIT = 1_500_000
+"""Of one guard, and of all guards of an automaton together: a million of them takes up a gigabyte."""
 
 _MOST_REMEMBERED = 200_000
-"""Covers of subfunctions that are kept from one guard to the next, which shares many of them."""
+"""Covers and primes of subfunctions that are kept from one guard to the next, which shares many of them."""
+
+_PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 
 
 class TooManyPrimes(Exception):
-    """Raised when a guard has more than :data:`PRIME_LIMIT` prime implicants, or products in its short form."""
+    """Raised when a guard has more than :data:`PRIME_LIMIT` prime implicants, or products in its short form.
+
+    Or all of them together more than :data:`TOTAL_PRIME_LIMIT`; ``whose`` is then "all guards", else "a guard".
+    """
+
+    def __init__(self, whose: str = "a guard", limit: int = PRIME_LIMIT) -> None:
+        super().__init__(f"{whose}: more than {limit} prime implicants")
+        self.whose, self.limit = whose, limit
 
 
 class Guards:
@@ -38,17 +49,19 @@ class Guards:
         "_operands",
         "_pairs",
         "_primes",
+        "_total",
     )
 
     def __init__(self, diagrams: Diagrams, names: Sequence[str], allowed: int = ACCEPT) -> None:
         self._diagrams = diagrams
         self._allowed = allowed
         self._names = names
+        self._total = 0
         positive = [operand_text(build.atom(name)) for name in names]
         self._operands = [text for name in positive for text in (f"!{name}", name)]
         self._pairs = [(atom, polarity) for atom in range(len(names)) for polarity in (False, True)]
         self._by_leaf: dict[int, dict[int, int]] = {}
-        self._primes: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
+        self._primes = dict(_PRIMES_OF_CONSTANTS)
         self._covers: dict[tuple[int, int], tuple[tuple[Cube, ...], int]] = {}
         self._negations: dict[int, int] = {ACCEPT: REJECT, REJECT: ACCEPT}
 
@@ -83,6 +96,9 @@ class Guards:
             cubes = self._all_primes(guard)
         else:
             cubes = tuple(cube for cube in self._all_primes(self._upper(guard)) if self._possible(cube))
+        self._total += len(cubes)
+        if self._total > TOTAL_PRIME_LIMIT:
+            raise TooManyPrimes("all guards", TOTAL_PRIME_LIMIT)
         if len(cubes) > 1:
             cubes = tuple(sorted(cubes, key=lambda cube: (len(cube), [literal ^ 1 for literal in cube])))
         pairs = self._pairs
@@ -94,8 +110,9 @@ class Guards:
         Letters that ``exclusive`` rules out are free, they go where the formula gets shorter.  Raises
         :class:`TooManyPrimes`.
         """
-        if len(self._covers) > _MOST_REMEMBERED:
+        if len(self._covers) + len(self._primes) > _MOST_REMEMBERED:
             self._covers.clear()
+            self._primes = dict(_PRIMES_OF_CONSTANTS)
         products = self._cover(guard, self._upper(guard))
         if len(products) == 1:
             return self._product(products[0])
