@@ -50,7 +50,7 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 	@touch $@
 
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(PIP) install -c constraints.txt -e '.[dev]'
+	$(PIP) install -c constraints.txt -e '.[dev,rl]'
 	@touch $@ $(VENV)/.installed
 
 $(VENV)/.installed-bench: benchmarks/requirements.txt | $(VENV)/.installed-dev
