@@ -17,7 +17,7 @@ demo: $(VENV)/.installed
 	@echo "the monitor demo/cover_and_hide_monitor.py and every step of the trace, demo/cover_and_hide_run.csv."
 
 test: lint
-	$(BIN)/python -m pytest -q -n 2
+	$(BIN)/python -m pytest -q -rs -n 2
 
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
