@@ -4,3 +4,33 @@ Importing this package loads neither torch nor pybullet.  It needs the extra ``r
 """
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tltl_runtime.task import Task as Task
+    from tltl_runtime.task import load_task as load_task
+    from tltl_runtime.wrapper import TltlEnv as TltlEnv
+
+__all__ = ["Task", "TltlEnv", "load_task"]
+
+_HOMES = {
+    "Task": "tltl_runtime.task",
+    "TltlEnv": "tltl_runtime.wrapper",
+    "load_task": "tltl_runtime.task",
+}
+
+
+def __getattr__(name: str) -> object:
+    home = _HOMES.get(name)
+    if home is None:
+        raise AttributeError(f"module 'tltl_runtime' has no attribute {name!r}")
+    from importlib import import_module
+
+    value: object = getattr(import_module(home), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -178,3 +178,24 @@ def test_order_of_operations() -> None:
         progress = (3 - 2) / 3 + (1.0 + min(values[1], values[3])) / 3
         assert outcome.progress == max(best, progress)
         assert outcome.reward == (max(best, progress) - best) - 1 / 400
+
+
+def test_an_episode_that_is_cut_off() -> None:
+    """`last` ends it; a failure pays what it left unspent, a success has nothing left to reach."""
+    fspa = automaton(f.eventually(A), 10)
+    monitor = Monitor(fspa)
+    monitor.step_atoms((-0.5,))
+    step = monitor.step_atoms((-0.5,), last=True)
+    assert (step.done, step.verdict, monitor.success) == (True, "pending", False)
+    assert step.reward == pytest.approx(-1 / 10 - 8 / 10)
+    assert monitor.step_atoms((1.0,)).reward == 0.0
+    assert not monitor.success
+
+    survive = Monitor(automaton(f.always(P), None))
+    assert (survive.step_atoms((1.0,), last=True).reward, survive.success, survive.progress) == (1.0, True, 1.0)
+    limited = Monitor(automaton(f.always(P), 4))
+    step = limited.step_atoms((1.0,), last=True)
+    assert (limited.success, step.progress) == (False, 0.25)
+    assert step.reward == pytest.approx(0.25 - 1)
+    literal = Monitor(automaton(f.eventually(A), 4), reward=RewardOptions(termination="paper"))
+    assert (literal.step_atoms((1.0,), last=True).done, literal.success) == (True, True)

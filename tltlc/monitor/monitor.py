@@ -38,7 +38,8 @@ class Monitor:
     """Runs an automaton over one trace after another.
 
     ``params`` override values of params, in SI units.  ``notices`` collects warnings about clamped values, each
-    given once.  After :meth:`step`, ``values`` holds the values of the atoms, in order.
+    given once.  After :meth:`step`, ``values`` holds the values of the atoms, in order, and ``success`` whether the
+    episode is over and was a success.
 
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
@@ -61,20 +62,23 @@ class Monitor:
         self.steps = 0
         self.progress = 0.0
         self.done = False
+        self.success = False
         self.values: tuple[float, ...] = ()
         self._memory: Any = None
 
-    def step(self, signals: Mapping[str, SupportsFloat]) -> Step:
+    def step(self, signals: Mapping[str, SupportsFloat], *, last: bool = False) -> Step:
         """Take one sample: the signals by name, numbers in SI units or bools; names that no atom uses are ignored.
+
+        ``last``: the episode ends with this sample, whatever the spec says.
 
         Raises:
             MonitorError: TLT0611 missing and TLT0612 unusable signals, TLT0613 an atom without a value,
                 TLT0614 exclusive atoms that hold at once.  The state stays.
         """
-        return self._take(self._samples.atom_values(signals, self.steps + 1))
+        return self._take(self._samples.atom_values(signals, self.steps + 1), last)
 
-    def step_atoms(self, values: Sequence[float]) -> Step:
-        """Take one sample that is given as the values of the atoms, in order, each in [-1, 1].
+    def step_atoms(self, values: Sequence[float], *, last: bool = False) -> Step:
+        """Take one sample that is given as the values of the atoms, in order, each in [-1, 1]; ``last`` as for `step`.
 
         Raises:
             MonitorError: TLT0614 exclusive atoms that hold at once.  The state stays.
@@ -82,20 +86,23 @@ class Monitor:
         """
         if len(values) != len(self._names) or not all(-1.0 <= value <= 1.0 for value in values):
             raise ValueError(f"{len(self._names)} values in [-1, 1] are needed, not {tuple(values)}")
-        return self._take(values)
+        return self._take(values, last)
 
-    def _take(self, values: Sequence[float]) -> Step:
+    def _take(self, values: Sequence[float], last: bool) -> Step:
         check_exclusive(self.fspa, values, self.steps + 1)
         source = self.state
         taken = next(edge for edge in self._tables.edges[source] if holds(edge.guard, values))
         target = self.fspa.states[taken.target]
-        outcome = reward_step(self._tables, source, target.id, values, self.progress, self.steps + 1, self._options)
+        outcome = reward_step(
+            self._tables, source, target.id, values, self.progress, self.steps + 1, self._options, last
+        )
         reward = 0.0 if self.done else self._reward(source, target.id, values, outcome)
         improving = self._tables.improving[source] if source == target.id else ()
 
         self.state, self.steps, self.values = target.id, self.steps + 1, tuple(values)
         self.progress = outcome.progress
-        self.done = self.done or outcome.done
+        if not self.done:
+            self.done, self.success = outcome.done, outcome.success
         return Step(
             state=target.id,
             label=target.label.ascii,

@@ -49,16 +49,19 @@ def reward_step(
     best: float,
     step: int,
     options: RewardOptions | None = None,
+    last: bool = False,
 ) -> RewardStep:
     """One pass through the loop of Algorithm 1 (lines 11 to 29), from ``state`` to ``target``.
 
     ``values`` are those of the atoms at the sample that moved the automaton (line 8); ``best`` is the best
-    progress before it (``episode progress``); ``step`` counts the samples of the episode, this one included.
+    progress before it (``episode progress``); ``step`` counts the samples of the episode, this one included;
+    ``last`` says that the episode ends here whatever the spec says, as where a game is over before its time.
     With ``T`` the spec's limit in steps, the order of operations is::
 
         reward = max(0, progress - best)          lines 25 to 28
         reward = reward - 1 / T                   line 29, where there is a limit
-        reward = reward - terminal penalty        line 20, on a violation, where there is a limit
+        reward = reward - terminal penalty        line 20, on a violation, where there is a limit;
+                                                  also where ``last`` makes a failure of what was not over
 
     Deviations from the listing:
 
@@ -74,10 +77,13 @@ def reward_step(
     limit = tables.fspa.limit_steps
     done, success = _end(tables, state, target, step, options)
     progress = max(best, step_progress(tables, state, target, values, step, options))
+    if last and not done:
+        done, success = True, _succeeds_early(tables, target, options)
+        progress = 1.0 if success else progress
     reward = progress - best
     if limit is not None:
         reward -= 1 / limit
-        if done and tables.fspa.states[target].verdict == "violated":
+        if done and (tables.fspa.states[target].verdict == "violated" or (last and not success)):
             reward -= _terminal_penalty(limit, step, options)
     return RewardStep(reward, progress, done, success)
 
@@ -125,8 +131,14 @@ def _end(tables: Tables, state: int, target: int, step: int, options: RewardOpti
     return done, done and reached.accepting
 
 
+def _succeeds_early(tables: Tables, target: int, options: RewardOptions) -> bool:
+    """Whether an episode that is cut off here is a success: a spec that is outlived must have no limit to reach."""
+    at_goal = tables.fspa.judge == "goal" or options.termination == "paper"
+    return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)
+
+
 def _terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
-    """The step penalties that the violation saved: ``(T - t) / T``, or what they are worth discounted to this step."""
+    """The step penalties that the early end saved: ``(T - t) / T``, or what they are worth discounted to this step."""
     left, gamma = limit - step, options.gamma
     if options.terminal_penalty == "undiscounted" or gamma == 1.0:
         return left / limit

@@ -1,0 +1,114 @@
+"""A task: the automaton of a spec, the values of its params, and how its steps are rewarded."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.monitor import Monitor, RewardOptions
+from tltlc.pipeline import CompileOptions, compile_source, compile_text, read_artefact, unknown_spec
+from tltlc.record import EMPTY, record
+from tltlc.source import SourceFile
+
+_FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
+_NAMED: Final = re.compile(r"(?P<path>.+):(?P<name>[A-Za-z_][A-Za-z0-9_]*)\Z", re.DOTALL)
+
+
+@record
+class Task:
+    """What an episode is judged by: the automaton, values of its params (SI units) before its own, the reward.
+
+    A task is plain data and can be pickled; a :class:`Monitor` is not and cannot.
+    """
+
+    fspa: Fspa
+    params: Mapping[str, float]
+    reward: RewardOptions = RewardOptions()
+
+    def monitor(self) -> Monitor:
+        """A new monitor, before its first sample."""
+        return Monitor(self.fspa, self.params, self.reward)
+
+
+def load_task(
+    spec: str | Path | Fspa,
+    params: Mapping[str, float] = EMPTY,
+    reward: RewardOptions | None = None,
+    *,
+    offered: Mapping[str, float] = EMPTY,
+) -> Task:
+    """The task that a spec describes.
+
+    ``spec`` is an automaton; the path ``FILE.tltl`` or ``FILE.fspa.json``, with ``:NAME`` behind it where the file
+    holds several specs; or a text: several lines, or one that has blanks and does not end like a path.  A file's
+    project (``tltl.toml``) gives it its libraries.  ``params`` are values in SI units; ``offered`` are others
+    that a level has at hand, of which those count that the spec has and ``params`` does not set.
+
+    Raises:
+        TltlError: whatever reading and compiling finds; TLT0720 no spec of that name, TLT0721 not exactly one spec,
+            TLT0503 a spec about infinite traces, TLT0307 and TLT0308 for params that do not fit.
+    """
+    fspa = spec if isinstance(spec, Fspa) else _compiled(spec)
+    if fspa.semantics == "infinite":
+        title = f"`{fspa.name}` is about infinite traces, and an episode ends"
+        raise TltlError([Diagnostic("TLT0503", title, help="compile it without `semantics infinite`")])
+    known = {param.name for param in fspa.params}
+    values = {name: value for name, value in offered.items() if name in known}
+    task = Task(fspa, {**values, **params}, reward or RewardOptions())
+    task.monitor()
+    return task
+
+
+def _compiled(spec: str | Path) -> Fspa:
+    if isinstance(spec, str) and _is_text(spec):
+        source = SourceFile("<text>", spec)
+        return read_artefact(source) if _is_artefact(source) else _only(compile_text(spec), source.name)
+    path, name = _split(str(spec))
+    source = read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
+    if _is_artefact(source):
+        fspa = read_artefact(source)
+        if name not in (None, fspa.name):
+            raise TltlError([unknown_spec(str(name), [fspa.name], path)])
+        return fspa
+    from tltlc.cli.project import project_for
+
+    options = CompileOptions(library_dirs=project_for(path).libraries, specs=(name,) if name else ())
+    return _only(compile_source(read_source(path), options).automata, path)
+
+
+def _is_text(spec: str) -> bool:
+    """Whether this is the text of a spec or of an artefact, and no path."""
+    if "\n" in spec or spec.lstrip().startswith("{"):
+        return True
+    return " " in spec and not _FILE.match(spec)
+
+
+def _is_artefact(source: SourceFile) -> bool:
+    """No specification begins with a brace."""
+    return source.text.lstrip().startswith("{")
+
+
+def _split(argument: str) -> tuple[str, str | None]:
+    """The path and the name of ``PATH:NAME``; the path of a file that is there, or a drive letter, is never split."""
+    found = _NAMED.match(argument)
+    if found is None or len(found["path"]) == 1 or Path(argument).is_file():
+        return argument, None
+    return found["path"], found["name"]
+
+
+def _only(automata: tuple[Fspa, ...], file: str) -> Fspa:
+    if len(automata) == 1:
+        return automata[0]
+    names = [fspa.name for fspa in automata]
+    if not names:
+        title, way_out = f"`{file}` holds no spec", "declare one: `spec NAME { … }`"
+    else:
+        listed = ", ".join(f"`{name}`" for name in names[:10]) + (", …" if len(names) > 10 else "")
+        title = f"`{file}` holds {len(names)} specs, and an environment takes one: {listed}"
+        way_out = f"name one of them, e.g. `{file}:{names[0]}`" if file != "<text>" else "give a text with one spec"
+    raise TltlError([Diagnostic("TLT0721", title, help=way_out)])

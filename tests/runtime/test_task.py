@@ -1,0 +1,135 @@
+"""What a spec may be given as, and the params and rewards that a task carries."""
+
+from __future__ import annotations
+
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from tltl_runtime import load_task
+
+import tltlc
+from tests.fixtures import cover_and_hide
+from tltlc.backends import emit
+from tltlc.monitor import RewardOptions
+from tltlc.record import replace
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+TWO = "signal seen: bool\nspec hide = G !seen\nspec show = F seen\n"
+NEAR = "import spatial\nentity e\nspec s = F near(e)\n"
+
+
+def codes(error: pytest.ExceptionInfo[tltlc.TltlError]) -> list[str]:
+    return [diagnostic.code for diagnostic in error.value.diagnostics]
+
+
+def test_a_file_by_path_text_automaton_and_artefact(tmp_path: Path) -> None:
+    path = EXAMPLES / "cover_and_hide.tltl"
+    task = load_task(path)
+    assert (task.fspa.name, task.params, task.reward) == ("cover_and_hide", {}, RewardOptions())
+    assert load_task(str(path)) == load_task(f"{path}:cover_and_hide") == load_task(task.fspa) == task
+    assert load_task(path.read_text(encoding="utf-8")) == task
+    ((name, text),) = emit("json", task.fspa).items()
+    artefact = tmp_path / name
+    artefact.write_text(str(text), encoding="utf-8")
+    assert load_task(artefact) == load_task(f"{artefact}:cover_and_hide") == load_task(str(text)) == task
+
+
+def test_one_of_several(tmp_path: Path) -> None:
+    path = tmp_path / "with blanks.tltl"
+    path.write_text(TWO, encoding="utf-8")
+    assert load_task(f"{path}:show").fspa.name == "show"
+    with pytest.raises(tltlc.TltlError, match=r"TLT0721: .*holds 2 specs, .* `hide`, `show`") as error:
+        load_task(path)
+    assert error.value.diagnostics[0].help == f"name one of them, e.g. `{path}:hide`"
+    with pytest.raises(tltlc.TltlError) as error:
+        load_task(f"{path}:shaw")
+    assert (codes(error), error.value.diagnostics[0].help) == (["TLT0720"], "did you mean `show`?")
+
+
+def test_one_line_of_text() -> None:
+    assert load_task("signal seen: bool spec hide = G !seen").fspa.name == "hide"
+
+
+@pytest.mark.parametrize(
+    ("spec", "code"),
+    [
+        (TWO, "TLT0721"),
+        ("signal seen: bool\n", "TLT0721"),
+        ("nowhere.tltl", "TLT0001"),
+        ("not here.tltl:one", "TLT0001"),
+        ("nowhere", "TLT0001"),
+        ("signal seen: bool spec hide = G !seem", "TLT0201"),
+        ("signal a: bool\nspec s { semantics infinite require G F a }", "TLT0503"),
+        ("{}", "TLT0601"),
+    ],
+)
+def test_what_is_no_task(spec: str, code: str) -> None:
+    with pytest.raises(tltlc.TltlError) as error:
+        load_task(spec)
+    assert code in codes(error)
+
+
+def test_an_artefact_has_another_name_than_the_one_asked_for(tmp_path: Path) -> None:
+    (text,) = emit("json", cover_and_hide()).values()
+    path = tmp_path / "a.fspa.json"
+    path.write_text(str(text), encoding="utf-8")
+    with pytest.raises(tltlc.TltlError, match="TLT0720"):
+        load_task(f"{path}:navigation")
+
+
+def test_an_automaton_over_infinite_traces() -> None:
+    with pytest.raises(tltlc.TltlError, match="TLT0503: `cover_and_hide` is about infinite traces"):
+        load_task(replace(cover_and_hide(), semantics="infinite"))
+
+
+def test_a_file_has_the_libraries_of_its_project(tmp_path: Path) -> None:
+    (tmp_path / "tltl.toml").write_text('libraries = ["mine"]\n', encoding="utf-8")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "words.tltl").write_text("signal seen: bool\nlet hidden = !seen\n", encoding="utf-8")
+    (tmp_path / "s.tltl").write_text("import words\nspec s = G hidden\n", encoding="utf-8")
+    assert len(load_task(tmp_path / "s.tltl").fspa.states) == 2
+
+
+def test_given_params_come_before_offered_ones() -> None:
+    half = {"distance(e)": 10.0}
+
+    def value(**options: dict[str, float]) -> float:
+        monitor = load_task(NEAR, **options).monitor()  # type: ignore[arg-type]
+        monitor.step(half)
+        return monitor.values[0]
+
+    assert value() == value(params={"level_size": 20.0}) == value(offered={"unknown": 1.0})
+    assert value(offered={"level_size": 40.0}) == value(params={"level_size": 40.0}) != value()
+    assert value(params={"level_size": 30.0}, offered={"level_size": 40.0}) == value(params={"level_size": 30.0})
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        ({"params": {"levelsize": 3.0}}, "TLT0308"),
+        ({"params": {"level_size": float("nan")}}, "TLT0308"),
+        ({"params": {"level_size": 1.0}}, "TLT0307"),
+        ({"offered": {"level_size": 1.0}}, "TLT0307"),
+    ],
+)
+def test_params_that_do_not_fit(options: dict[str, dict[str, float]], code: str) -> None:
+    with pytest.raises(tltlc.TltlError) as error:
+        load_task(NEAR, **options)  # type: ignore[arg-type]
+    assert codes(error) == [code]
+
+
+def test_a_task_can_be_pickled() -> None:
+    task = load_task(NEAR, {"level_size": 30.0}, RewardOptions(mode="sparse"))
+    assert pickle.loads(pickle.dumps(task)) == task
+
+
+def test_the_import_loads_little() -> None:
+    heavy = "('torch', 'pybullet', 'matplotlib', 'imageio', 'sympy')"
+    program = (
+        f"import sys, tltl_runtime; tltl_runtime.load_task; print([name for name in {heavy} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout == "[]\n"

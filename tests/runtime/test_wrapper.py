@@ -1,0 +1,347 @@
+"""A spec around other environments: spaces, rewards, ends, errors, and many at once."""
+
+from __future__ import annotations
+
+import pickle
+import warnings
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium import spaces
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AsyncVectorEnv, AutoresetMode, SyncVectorEnv
+from hypothesis import given
+from hypothesis import strategies as st
+from tltl_runtime import TltlEnv
+
+from tests.fixtures import cover_and_hide
+from tltlc import TltlError
+from tltlc.monitor import MonitorError, RewardOptions
+from tltlc.record import replace
+
+FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
+SWING_UP = """
+signal position in [-1.2, 0.6]
+signal velocity in [-0.07, 0.07]
+spec swing_up { limit 200 steps reach position < -0.9 then position >= 0.5 keep abs(velocity) < 0.065 }
+"""
+BALANCE = "signal angle: angle in [-24 deg, 24 deg]\nspec balance { limit 500 steps keep abs(angle) < 12 deg }\n"
+UPRIGHT = "signal cosine in [-1, 1]\nspec upright { limit 100 steps reach cosine > 0.9 }\n"
+Row = Mapping[str, float]
+
+
+class Played(gymnasium.Env[Any, int]):
+    """Plays a trace, a sample a step; ``ends`` says at which step the environment itself ends the episode, and how."""
+
+    action_space = spaces.Discrete(2)
+
+    def __init__(self, rows: Sequence[Row], ends: tuple[int, str] | None = None, space: Any = None) -> None:
+        self.rows, self.ends = rows, ends
+        self.observation_space = space or spaces.Box(-np.inf, np.inf, (1,), np.float32)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        super().reset(seed=seed)
+        self.row, self.taken = self.rows[0], 0
+        return self._observed(), {"host": "reset"}
+
+    def step(self, _: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        self.row = self.rows[min(self.taken, len(self.rows) - 1)]
+        self.taken += 1
+        end = self.ends[1] if self.ends and self.ends[0] == self.taken else None
+        return self._observed(), 100.0, end == "terminated", end == "truncated", {"host": "step"}
+
+    def _observed(self) -> Any:
+        space = self.observation_space
+        return {name: space[name].sample() for name in space} if isinstance(space, spaces.Dict) else space.sample()
+
+
+def current(env: gymnasium.Env[Any, Any]) -> Row:
+    row: Row = env.unwrapped.row  # type: ignore[attr-defined]
+    return row
+
+
+def mountain_car(env: gymnasium.Env[Any, Any]) -> dict[str, float]:
+    position, velocity = env.unwrapped.state  # type: ignore[attr-defined]
+    return {"position": position, "velocity": velocity}
+
+
+def cart_pole(env: gymnasium.Env[Any, Any]) -> dict[str, float]:
+    return {"angle": env.unwrapped.state[2]}  # type: ignore[attr-defined]
+
+
+def pendulum(env: gymnasium.Env[Any, Any]) -> dict[str, float]:
+    return {"cosine": np.cos(env.unwrapped.state[0])}  # type: ignore[attr-defined]
+
+
+def make_mountain_car() -> TltlEnv:
+    return TltlEnv(gymnasium.make("MountainCar-v0"), SWING_UP, mountain_car)
+
+
+def played(rows: Sequence[Row], spec: Any, ends: tuple[int, str] | None = None, **options: Any) -> TltlEnv:
+    return TltlEnv(Played(rows, ends), spec, current, **options)
+
+
+def episode(env: TltlEnv, most: int = 1000) -> list[tuple[float, bool, bool, dict[str, Any]]]:
+    """Reward, terminated, truncated and info of the steps of an episode."""
+    env.reset(seed=0)
+    steps: list[tuple[float, bool, bool, dict[str, Any]]] = []
+    while len(steps) < most and not (steps and (steps[-1][1] or steps[-1][2])):
+        _, reward, terminated, truncated, info = env.step(0)
+        steps.append((reward, terminated, truncated, info))
+    return steps
+
+
+def total(steps: list[tuple[float, bool, bool, dict[str, Any]]]) -> float:
+    return sum(step[0] for step in steps)
+
+
+@pytest.mark.parametrize(
+    ("name", "spec", "signals"),
+    [
+        ("CartPole-v1", BALANCE, cart_pole),
+        ("Pendulum-v1", UPRIGHT, pendulum),
+        ("MountainCar-v0", SWING_UP, mountain_car),
+    ],
+)
+def test_gymnasium_finds_nothing_wrong(name: str, spec: str, signals: Any) -> None:
+    env = TltlEnv(gymnasium.make(name), spec, signals)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=".*different from the unwrapped version")
+        # Drawing these needs pygame, and is none of the wrapper's business.
+        check_env(env, skip_render_check=True)
+    assert env.spec is not None
+    again = gymnasium.make(env.spec)
+    assert again.observation_space == env.observation_space
+
+
+def test_the_papers_numbers() -> None:
+    changes: list[dict[str, float]] = [
+        {},
+        {"distance(s1)": 10.5},
+        {"distance(s1)": 15.0},
+        {"distance(s1)": 0.5},
+        {"distance(s2)": 0.5},
+        {"distance(exit)": 10.5},
+        {"distance(exit)": 0.0},
+    ]
+    steps = episode(played([{**FAR, **change} for change in changes], cover_and_hide()))
+    infos = [info for *_, info in steps]
+    assert [info["state"] for info in infos] == [0, 0, 0, 1, 3, 3, 4]
+    assert [info["progress"] for info in infos] == pytest.approx([0, 0.25 / 3, 0.25 / 3, 1 / 3, 2 / 3, 0.75, 1])
+    assert [terminated for _, terminated, _, _ in steps] == [False] * 6 + [True]
+    assert not any(truncated for _, _, truncated, _ in steps)
+    assert total(steps) == pytest.approx(1 - 7 / 400)
+    assert infos[5]["atoms"]["near(exit)"] == pytest.approx(-0.75)
+    assert (infos[0]["limiting"], infos[3]["limiting"]) == ("near(s1)", None)
+    assert infos[-1] == {
+        "host": "step",
+        "verdict": "holding",
+        "state": 4,
+        "label": "G alive",
+        "progress": 1.0,
+        "success": True,
+        "limiting": None,
+        "atoms": {"near(s1)": -1.0, "near(s2)": -1.0, "near(exit)": 1.0, "alive": 1.0},
+    }
+
+
+def test_the_size_of_the_level_moves_equation_2() -> None:
+    """With b = 1 and B = 10, distance 5 gives -56/81."""
+    near = [{**FAR, "distance(s1)": 5.0}]
+    (step, *_) = episode(played(near, cover_and_hide(), params={"level_size": 10.0}), most=1)
+    assert step[3]["atoms"]["near(s1)"] == pytest.approx(-56 / 81)
+
+    class Sized(Played):
+        def tltl_params(self) -> dict[str, float]:
+            return {"level_size": 10.0, "other": 3.0}
+
+    sized = episode(TltlEnv(Sized(near), cover_and_hide(), current), most=1)
+    assert sized[0][3]["atoms"] == step[3]["atoms"]
+    given = episode(TltlEnv(Sized(near), cover_and_hide(), current, params={"level_size": 20.0}), most=1)
+    assert given[0][3]["atoms"] == episode(played(near, cover_and_hide()), most=1)[0][3]["atoms"]
+
+
+def test_after_a_reset() -> None:
+    env = played([FAR], cover_and_hide())
+    env.reset()
+    env.step(0)
+    observation, info = env.reset()
+    assert observation["automaton"].tolist() == [1, 0, 0, 0, 0]
+    assert observation["progress"].tolist() == [0]
+    assert info["host"] == "reset"
+    assert (info["verdict"], info["state"], info["success"], info["atoms"]) == ("pending", 0, False, {})
+    assert info["label"] == cover_and_hide().formula.ascii
+
+
+def test_a_violation_terminates_and_costs_the_unspent_steps() -> None:
+    steps = episode(played([{**FAR, "distance(s1)": 0.0}, {**FAR, "health": 0.0}], cover_and_hide()))
+    assert steps[-1][1:3] == (True, False)
+    assert (steps[-1][3]["verdict"], steps[-1][3]["success"]) == ("violated", False)
+    assert total(steps) == pytest.approx(1 / 3 - 1)
+
+
+def test_the_limit_truncates() -> None:
+    steps = episode(played([FAR], replace(cover_and_hide(), limit_steps=9)))
+    assert (len(steps), steps[-1][1:3], steps[-1][3]["success"]) == (9, (False, True), False)
+    assert total(steps) == pytest.approx(-1)
+
+
+SAMPLES = st.sampled_from(
+    [FAR, *({**FAR, name: 0.5} for name in list(FAR)[:3]), {**FAR, "distance(s1)": 7.0}, {**FAR, "health": 0.0}]
+)
+
+
+@given(
+    st.lists(SAMPLES, min_size=1, max_size=9),
+    st.none() | st.tuples(st.integers(1, 9), st.sampled_from(["terminated", "truncated"])),
+    st.sampled_from(["goal", "limit"]),
+)
+def test_every_failed_episode_totals_progress_minus_one(rows: list[Row], ends: Any, judge: str) -> None:
+    steps = episode(played(rows, replace(cover_and_hide(), limit_steps=8, judge=judge), ends))
+    progress = steps[-1][3]["progress"]
+    assert 0 <= progress <= 1
+    if steps[-1][3]["success"]:
+        assert progress == 1.0
+        assert total(steps) == pytest.approx(1 - len(steps) / 8)
+    else:
+        assert total(steps) == pytest.approx(progress - 1)
+    assert not any(info["success"] for *_, info in steps[:-1])
+
+
+@pytest.mark.parametrize("how", ["terminated", "truncated"])
+def test_the_environments_own_end_judges_what_has_no_limit(how: str) -> None:
+    survive = "signal seen: bool\nspec hide = G !seen\n"
+    steps = episode(played([{"seen": 0.0}], survive, (3, how)))
+    assert (len(steps), steps[-1][3]["success"], total(steps)) == (3, True, 1.0)
+    assert steps[-1][1:3] == (True, how == "truncated")
+    limited = episode(played([{"seen": 0.0}], survive.replace("= G !seen", "{ limit 4 steps keep !seen }"), (3, how)))
+    assert (limited[-1][3]["success"], limited[-1][3]["progress"]) == (False, 0.75)
+    assert limited[-1][1:3] == (how == "terminated", how == "truncated")
+
+
+def test_the_robustness_of_a_trace_that_the_environment_ends() -> None:
+    options = RewardOptions(mode="sparse")
+    spec = "signal x in [-1, 1]\npredicate p in [-1, 1] = x\nspec s = F p\n"
+    steps = episode(played([{"x": -0.5}, {"x": -0.25}], spec, (2, "terminated"), reward=options))
+    assert [reward for reward, *_ in steps] == [0.0, -0.25]
+
+
+def test_the_papers_termination() -> None:
+    spec = "signal a: bool\nsignal p: bool\nspec s { limit 10 steps reach a keep p }\n"
+    rows = [{"a": 1.0, "p": 1.0}, {"a": 0.0, "p": 0.0}]
+    steps = episode(played(rows, spec, reward=RewardOptions(termination="paper")))
+    assert [(terminated, info["success"]) for _, terminated, _, info in steps] == [(False, False)] * 2 + [(True, False)]
+
+
+def test_spaces() -> None:
+    inner = spaces.Dict({"map": spaces.Box(0, 1, (2, 2)), "kind": spaces.Discrete(3)})
+    env = TltlEnv(Played([FAR], space=inner), cover_and_hide(), current)
+    assert set(env.observation_space) == {"map", "kind", "automaton", "progress"}
+    observation, _ = env.reset()
+    assert env.observation_space.contains(observation)
+    discrete = TltlEnv(Played([FAR], space=spaces.Discrete(3)), cover_and_hide(), current)
+    assert discrete.observation_space["observation"] == spaces.Discrete(3)
+    with pytest.raises(ValueError, match="already has the key 'automaton'"):
+        TltlEnv(env, cover_and_hide(), current)
+
+
+def test_observations_are_the_callers_own() -> None:
+    env = played([FAR], cover_and_hide())
+    observation, _ = env.reset()
+    observation["automaton"][:] = 7
+    assert env.reset()[0]["automaton"].max() == 1
+
+
+def test_a_missing_signal_is_named_at_once() -> None:
+    row = {("distance(exid)" if name == "distance(exit)" else name): value for name, value in FAR.items()}
+    with pytest.raises(MonitorError) as error:
+        played([row], cover_and_hide()).reset()
+    (said,) = error.value.diagnostics
+    assert (said.code, said.title) == ("TLT0611", "after the reset: no value for `distance(exit)`")
+    given = "`signals` gave `distance(s1)`, `distance(s2)`, `distance(exid)`, `health`"
+    assert said.help == f"{given}: is it `distance(exid)`?"
+
+
+def test_a_signal_that_goes_missing_leaves_the_automaton_as_it_was() -> None:
+    env = played([FAR, {}], cover_and_hide())
+    env.reset()
+    env.step(0)
+    with pytest.raises(MonitorError, match="TLT0611: step 2: no value for `distance") as error:
+        env.step(0)
+    assert error.value.diagnostics[0].help == "`signals` gave none"
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", None, [1.0], 10**400])
+def test_a_signal_without_a_finite_number(value: Any) -> None:
+    with pytest.raises(MonitorError, match="TLT0612: after the reset: the signal `health` is "):
+        played([{**FAR, "health": value}], cover_and_hide()).reset()
+    if isinstance(value, float):
+        env = played([FAR, {**FAR, "health": value}], cover_and_hide())
+        env.reset()
+        env.step(0)
+        with pytest.raises(MonitorError, match="TLT0612: step 2"):
+            env.step(0)
+
+
+def test_signals_that_are_no_mapping() -> None:
+    with pytest.raises(TypeError, match=r"after the reset: `signals` must return a mapping .* not \[1\.0\]"):
+        played([[1.0]], cover_and_hide()).reset()  # type: ignore[list-item]
+
+
+def test_a_clamped_signal_is_remarked_on_once() -> None:
+    env = played([{**FAR, "health": 2.0}], cover_and_hide())
+    env.reset()
+    with pytest.warns(UserWarning, match="TLT0615: step 1: the signal `health` is 2"):
+        env.step(0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env.step(0)
+
+
+def test_the_clock_must_be_the_environments() -> None:
+    class Clocked(Played):
+        tltl_clock_s = 0.15
+
+    with pytest.raises(TltlError) as error:
+        TltlEnv(Clocked([FAR]), cover_and_hide(), current)
+    (said,) = error.value.diagnostics
+    assert said.code == "TLT0617"
+    assert said.title == "`cover_and_hide` is sampled every 0.05 s, and a step of the environment takes 0.15 s"
+    assert said.help == "write `clock 0.15 s` in the specification"
+    for clock in (0.15, None):
+        TltlEnv(Clocked([FAR]), replace(cover_and_hide(), clock_s=clock), current)
+
+
+@pytest.mark.parametrize("vector", [SyncVectorEnv, AsyncVectorEnv])
+def test_many_at_once(vector: Any) -> None:
+    makers = [make_mountain_car, partial(TltlEnv, gymnasium.make("MountainCar-v0"), SWING_UP, mountain_car)]
+    pickle.dumps(makers[0])
+    envs = vector(makers, autoreset_mode=AutoresetMode.SAME_STEP)
+    single = [make_mountain_car() for _ in makers]
+    try:
+        observations, _ = envs.reset(seed=[1, 2])
+        alone = [env.reset(seed=seed)[0] for env, seed in zip(single, (1, 2), strict=True)]
+        for _ in range(60):
+            actions = [2 if observation["observation"][1] >= 0 else 0 for observation in alone]
+            observations, rewards, _, _, infos = envs.step(np.array(actions))
+            stepped = [env.step(action) for env, action in zip(single, actions, strict=True)]
+            alone = [step[0] for step in stepped]
+            for index, (observation, reward, *_, info) in enumerate(stepped):
+                for key, value in observation.items():
+                    assert np.array_equal(observations[key][index], value)
+                assert rewards[index] == reward
+                assert infos["verdict"][index] == info["verdict"]
+                assert infos["atoms"]["position < -0.9"][index] == info["atoms"]["position < -0.9"]
+    finally:
+        envs.close()
+
+
+def test_the_constructors_arguments_are_pickled_with_the_env_spec() -> None:
+    spec = make_mountain_car().spec
+    again = gymnasium.make(pickle.loads(pickle.dumps(spec)))
+    assert isinstance(again, TltlEnv)
+    assert again.task == make_mountain_car().task
