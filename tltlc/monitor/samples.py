@@ -89,7 +89,7 @@ class Samples:
     def _notice(self, code: str, name: str, step: int, text: str) -> None:
         if (code, name) not in self._noticed:
             self._noticed.add((code, name))
-            self._notices.append(Diagnostic(code, f"step {step}: {text}", (), _WAYS_OUT[code], "warning"))
+            self._notices.append(Diagnostic(code, f"step {step}: {text}", (), WAYS_OUT[code], "warning"))
 
 
 def param_values(params: Sequence[Param], given: Mapping[str, float]) -> dict[str, float]:
@@ -156,7 +156,7 @@ def _finite(signal: Signal, given: SupportsFloat, step: int) -> float:
     return value
 
 
-_WAYS_OUT: Final = {
+WAYS_OUT: Final = {
     "TLT0611": "supply every signal that the atoms use, at each step",
     "TLT0612": "look where the game computes it",
     "TLT0613": "say in its predicate what holds there, with `when`",
@@ -164,7 +164,8 @@ _WAYS_OUT: Final = {
     "TLT0615": "supply it on the scale that is declared, or declare the range that it has",
     "TLT0616": "write `clamp(…, -1, 1)` in its predicate",
 }
+"""What helps against each problem with a sample."""
 
 
 def _error(code: str, step: int, text: str) -> MonitorError:
-    return MonitorError([Diagnostic(code, f"step {step}: {text}", help=_WAYS_OUT[code])])
+    return MonitorError([Diagnostic(code, f"step {step}: {text}", help=WAYS_OUT[code])])

@@ -1,0 +1,182 @@
+"""N copies of an automaton that run on samples side by side, on a CPU or a GPU."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import torch
+from torch import Tensor
+
+from tltl_runtime.batch.guards import PrimeSets, Transitions
+from tltl_runtime.batch.rewards import VERDICTS, EdgeMode, Outcomes, PotentialMode, SparseMode
+from tltl_runtime.batch.samples import BatchSamples, check_exclusive
+from tltlc.automaton.fspa import Fspa
+from tltlc.monitor import RewardOptions
+
+
+class BatchStep:
+    """What one sample did in each of N environments; every tensor has shape [N] and is never changed later.
+
+    ``state`` int64; ``done`` bool: an episode ends here, or ended before; ``success`` bool: it ended in success,
+    now or before; ``progress`` the best so far, in [0, 1]; ``reward`` of the step, 0 past the end of the episode;
+    ``edge`` int64: the number of the edge taken; ``values`` [atoms, N]: those of the atoms, in [-1, 1].
+    What else there is to know is computed when it is asked for.
+    """
+
+    def __init__(
+        self,
+        monitor: BatchMonitor,
+        edge: Tensor,
+        values: Tensor,
+        state: Tensor,
+        done: Tensor,
+        success: Tensor,
+        progress: Tensor,
+        reward: Tensor,
+    ) -> None:
+        self._monitor = monitor
+        self.edge, self.values, self.state, self.done = edge, values, state, done
+        self.success, self.progress, self.reward = success, progress, reward
+
+    @cached_property
+    def accepting(self) -> Tensor:
+        """Whether the prefix so far is accepted, bool."""
+        return self._monitor.accepting_states.index_select(0, self.state)
+
+    @cached_property
+    def verdict(self) -> Tensor:
+        """The verdict of the prefix so far, int64: an index into ``VERDICTS``."""
+        return self._monitor.state_verdicts.index_select(0, self.state)
+
+    @cached_property
+    def robustness(self) -> Tensor:
+        """The robustness of the edge taken, in [-1, 1]."""
+        return self._monitor.guards.of(self.edge, self.values) + 0.0
+
+    @cached_property
+    def limiting(self) -> Tensor:
+        """The atom that bounds the nearest edge that would have improved, int64; -1 as None in the scalar monitor."""
+        return self._monitor.outcomes.nearest.bounding_atom(self.edge, self.values)
+
+
+class BatchMonitor:
+    """Runs ``count`` copies of an automaton; the environments may be in different states and episodes.
+
+    Equal to as many :class:`tltlc.monitor.Monitor`: on a CPU in float64 to the last bit (the sign of zeros aside)
+    where torch computes an operation as C does, else to within 1e-12 (``exp``, ``tanh``, powers other than 2 and 3,
+    the discounted penalty).  In float32 an atom that is near 0 may be true in one and false in the other.
+    As there, an environment that has finished goes on with its automaton, with reward 0, until it is reset.
+
+    ``state`` int64 [N], ``steps`` and ``progress`` [N] speak of the last step; ``clamped`` counts values out of range,
+    by the names of signals and atoms.  ``signal_names`` is the order of signals in a tensor.
+
+    Raises:
+        MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
+    """
+
+    def __init__(
+        self,
+        fspa: Fspa,
+        count: int,
+        *,
+        reward: RewardOptions | None = None,
+        params: Mapping[str, float] | None = None,
+        device: torch.device | str = "cpu",
+        dtype: torch.dtype = torch.float64,
+    ) -> None:
+        self.fspa, self.count, self.device, self.dtype = fspa, count, torch.device(device), dtype
+        options = reward or RewardOptions()
+        self._samples = BatchSamples(fspa, count, params, self.device, dtype)
+        self.signal_names, self.clamped = self._samples.names, self._samples.clamped
+        self._transitions = Transitions(fspa, self.device)
+        self._targets = torch.tensor([edge.target for edge in fspa.edges], dtype=torch.int64, device=self.device)
+        self.outcomes = Outcomes(fspa, options, self.device, dtype)
+        self.guards = PrimeSets([edge.guard.primes for edge in fspa.edges], len(fspa.atoms), self.device, -1.0)
+        self.accepting_states = torch.tensor([state.accepting for state in fspa.states], device=self.device)
+        self.state_verdicts = torch.tensor(
+            [VERDICTS.index(state.verdict) for state in fspa.states], dtype=torch.int64, device=self.device
+        )
+        self._edge_mode = EdgeMode(fspa, self.device) if options.mode == "edge" else None
+        self._potential = PotentialMode(fspa, options, self.device, dtype) if options.mode == "potential" else None
+        self._sparse = SparseMode(fspa, self.device, dtype) if options.mode == "sparse" else None
+        self.reset()
+
+    def reset(self, mask: Tensor | None = None) -> None:
+        """Take the environments of a mask (bool [N], None: all) back to the state before the first sample."""
+        fresh = self._start()
+        if mask is not None:
+            chosen = mask.to(self.device)
+            if chosen.shape != (self.count,) or chosen.dtype != torch.bool:
+                raise ValueError(f"a bool tensor of shape {(self.count,)} is needed")
+            fresh = tuple(torch.where(chosen, new, old) for new, old in zip(fresh, self._episode(), strict=True))
+        self.state, self.steps, self.progress, self._done, self._success, self._memory = fresh
+
+    def step(self, signals: Mapping[str, Tensor] | Tensor) -> BatchStep:
+        """Take one sample of each environment: a tensor [N] per name of a signal, or one [N, signals].
+
+        Numbers are in SI units; bools count as 0 and 1.  The order in a tensor is ``signal_names``; names that no
+        atom uses are ignored.
+
+        Raises:
+            MonitorError: TLT0611 missing and TLT0612 unusable signals, TLT0613 an atom without a value,
+                TLT0614 exclusive atoms that hold at once.  No environment moves.
+            ValueError: a tensor of another shape.
+        """
+        return self._take(self._samples.atom_values(signals))
+
+    def step_atoms(self, values: Tensor) -> BatchStep:
+        """Take one sample that is given as the values of the atoms, shape [N, atoms], each in [-1, 1].
+
+        Raises:
+            MonitorError: TLT0614 exclusive atoms that hold at once.  No environment moves.
+            ValueError: a value is not in [-1, 1], or another shape.
+        """
+        if values.shape != (self.count, len(self.fspa.atoms)) or not bool((values.abs() <= 1.0).all()):
+            raise ValueError(f"values in [-1, 1] of shape {(self.count, len(self.fspa.atoms))} are needed")
+        return self._take(values.to(self.device, self.dtype).t().contiguous())
+
+    def one_hot(self, dtype: torch.dtype = torch.float32) -> Tensor:
+        """The states as rows with a single 1, shape [N, states]."""
+        rows = torch.zeros((self.count, len(self.fspa.states)), dtype=dtype, device=self.device)
+        return rows.scatter_(1, self.state[:, None], 1.0)
+
+    def _take(self, values: Tensor) -> BatchStep:
+        truth = values > 0.0
+        check_exclusive(self.fspa, truth)
+        edge = self._transitions.edge(self.state, truth)
+        source, state = self.state, self._targets.index_select(0, edge)
+        steps = self.steps + 1.0
+        progress = torch.maximum(self.progress, self.outcomes.progress(edge, values, steps))
+        ends = self.outcomes.done(edge, steps)
+        succeeds = ends & self.outcomes.accepting(edge)
+        memory = self._memory
+        if self._edge_mode is not None:
+            reward = self._edge_mode.reward(source, values)
+        elif self._potential is not None:
+            reward, memory = self._potential.reward(memory, state, values, ends, succeeds)
+        elif self._sparse is not None:
+            reward, memory = self._sparse.reward(memory, state, values, ends)
+        else:
+            reward = self.outcomes.reward(edge, progress - self.progress, steps)
+        reward = reward.masked_fill_(self._done, 0.0)
+
+        success = torch.where(self._done, self._success, succeeds)
+        done = self._done | ends
+        self.state, self.steps, self.progress, self._done, self._success, self._memory = (
+            state, steps, progress, done, success, memory,
+        )  # fmt: skip
+        return BatchStep(self, edge, values, state, done, success, progress, reward)
+
+    def _episode(self) -> tuple[Tensor, ...]:
+        return (self.state, self.steps, self.progress, self._done, self._success, self._memory)
+
+    def _start(self) -> tuple[Tensor, ...]:
+        """State, steps, progress, done, success and the mode's memory before the first sample."""
+        numbers = torch.zeros(self.count, dtype=self.dtype, device=self.device)
+        flags = torch.zeros(self.count, dtype=torch.bool, device=self.device)
+        if self._potential is not None:
+            memory = self._potential.start(self.count)
+        else:
+            memory = self._sparse.start(self.count) if self._sparse is not None else numbers
+        return (numbers.to(torch.int64), numbers, numbers, flags, flags, memory)

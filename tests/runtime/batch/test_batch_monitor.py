@@ -1,0 +1,222 @@
+"""N automata as tensors are N scalar monitors."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import pytest
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tltl_runtime.batch import BatchMonitor, BatchStep
+from tltl_runtime.batch import guards as batch_guards
+from tltl_runtime.batch.rewards import VERDICTS
+
+from tests.fixtures import cover_and_hide
+from tests.monitor.strategies import atom_traces, automata
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.logic import formula as f
+from tltlc.monitor import Monitor, MonitorError, RewardOptions, Step
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
+
+options = st.builds(
+    RewardOptions,
+    mode=st.sampled_from(["progress", "sparse", "edge", "potential"]),
+    termination=st.sampled_from(["entry", "paper"]),
+    terminal_penalty=st.sampled_from(["undiscounted", "discounted"]),
+    gamma=st.sampled_from([1.0, 0.9]),
+)
+
+
+def tensor(rows: Any) -> torch.Tensor:
+    return torch.tensor(rows, dtype=torch.float64)
+
+
+def assert_equal(batch: BatchStep, steps: list[Step], successes: list[bool], fspa: Fspa, exact: bool = True) -> None:
+    """Each field of the batch against those of the scalar monitors."""
+    tolerance = 0.0 if exact else 1e-12
+    names = [atom.name for atom in fspa.atoms]
+    assert batch.state.tolist() == [step.state for step in steps]
+    assert [VERDICTS[index] for index in batch.verdict.tolist()] == [step.verdict for step in steps]
+    assert batch.accepting.tolist() == [step.accepting for step in steps]
+    assert batch.done.tolist() == [step.done for step in steps]
+    assert batch.success.tolist() == successes
+    assert [names[index] if index >= 0 else None for index in batch.limiting.tolist()] == [s.limiting for s in steps]
+    for field in ("progress", "reward", "robustness"):
+        expected = [getattr(step, field) for step in steps]
+        assert getattr(batch, field).tolist() == pytest.approx(expected, rel=0.0, abs=tolerance), field
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.data(), automata(), options, st.booleans())
+def test_a_batch_is_as_many_scalar_monitors(
+    data: st.DataObject, fspa: Fspa, reward: RewardOptions, by_primes: bool
+) -> None:
+    count = data.draw(st.integers(1, 3))
+    traces = [data.draw(atom_traces(fspa, max_size=6)) for _ in range(count)]
+    length = max(map(len, traces))
+    resets = data.draw(st.lists(st.lists(st.booleans(), min_size=count, max_size=count), max_size=length))
+    with pytest.MonkeyPatch.context() as patch:
+        if by_primes:
+            patch.setattr(batch_guards, "_LETTER_ATOMS", -1)
+        batch = BatchMonitor(fspa, count, reward=reward)
+    monitors = [Monitor(fspa, reward=reward) for _ in range(count)]
+    ended: list[bool | None] = [None] * count
+    for number in range(length):
+        if number < len(resets) and number:
+            batch.reset(torch.tensor(resets[number]))
+            for index in range(count):
+                if resets[number][index]:
+                    monitors[index].reset()
+                    ended[index] = None
+        samples = [trace[number % len(trace)] for trace in traces]
+        found = batch.step_atoms(tensor(samples).reshape(count, len(fspa.atoms)))
+        steps = [monitor.step_atoms(sample) for monitor, sample in zip(monitors, samples, strict=True)]
+        for index, step in enumerate(steps):
+            if step.done and ended[index] is None:
+                ended[index] = step.accepting
+        exact = reward.terminal_penalty == "undiscounted" or reward.gamma == 1.0
+        assert_equal(found, steps, [bool(success) for success in ended], fspa, exact)
+        assert batch.one_hot().argmax(1).tolist() == [step.state for step in steps]
+
+
+def test_signals_in_either_form_with_predicates() -> None:
+    fspa, rng = cover_and_hide(), random.Random(3)
+    for reward in (RewardOptions(), RewardOptions(mode="sparse"), RewardOptions(mode="potential", gamma=0.99)):
+        one, other = BatchMonitor(fspa, 5, reward=reward), BatchMonitor(fspa, 5, reward=reward)
+        monitors = [Monitor(fspa, reward=reward) for _ in range(5)]
+        ended: list[bool | None] = [None] * 5
+        for _ in range(60):
+            samples = [
+                {
+                    name: rng.choice([0.0, 1.0, rng.random()])
+                    if name == "health"
+                    else rng.choice([0.25, 1.0, 20.0, 25.0, 20 * rng.random()]) + 1.0 * (row != number % 3)
+                    for number, name in enumerate(FAR)
+                }
+                for row in [rng.randrange(6) for _ in range(5)]
+            ]
+            rows = tensor([[sample[name] for name in one.signal_names] for sample in samples])
+            near = (rows[:, :3] < 1.0).sum(1)
+            rows[:, :3] += 1.0 * (near > 1)[:, None]
+            samples = [dict(zip(one.signal_names, row, strict=True)) for row in rows.tolist()]
+            found = one.step(rows)
+            same = other.step({name: rows[:, index] for index, name in enumerate(one.signal_names)})
+            steps = [monitor.step(sample) for monitor, sample in zip(monitors, samples, strict=True)]
+            for index, step in enumerate(steps):
+                if step.done and ended[index] is None:
+                    ended[index] = step.accepting
+            assert_equal(found, steps, [bool(success) for success in ended], fspa)
+            assert found.reward.tolist() == same.reward.tolist()
+        assert len({monitor.state for monitor in monitors}) > 1 or all(monitor.done for monitor in monitors)
+
+
+def test_worked_numbers() -> None:
+    """Eq. 2 with b = 1, B = 20 at (b + B) / 2 is -0.75; on the way to the exit that is progress 2/3 + 0.25/3 = 0.75."""
+    batch = BatchMonitor(cover_and_hide(), 2)
+
+    def step(**near: float) -> BatchStep:
+        signals = {**FAR, **{f"distance({entity})": distance for entity, distance in near.items()}}
+        return batch.step({name: tensor([value, 20.0 if name != "health" else 1.0]) for name, value in signals.items()})
+
+    step(s1=0.5)
+    step(s2=0.5)
+    half_way = step(exit=10.5)
+    assert half_way.values[2].tolist() == [-0.75, -1.0]
+    assert half_way.progress.tolist() == pytest.approx([0.75, 0.0])
+    assert half_way.reward.tolist() == pytest.approx([0.75 - 2 / 3 - 1 / 400, -1 / 400])
+    last = step(exit=0.0)
+    assert (last.done.tolist(), last.success.tolist()) == ([True, False], [True, False])
+    batch.reset(last.done)
+    assert (batch.state.tolist(), batch.steps.tolist(), batch.progress.tolist()) == ([0, 0], [0.0, 4.0], [0.0, 0.0])
+
+
+def test_eq_2_at_distance_5() -> None:
+    fspa = cover_and_hide()
+    batch = BatchMonitor(fspa, 3, params={"level_size": 10.0})
+    rows = {name: tensor([value] * 3) for name, value in FAR.items()}
+    found = batch.step({**rows, "distance(s1)": tensor([5.0, 5.5, 10.0])})
+    assert found.values[0].tolist() == pytest.approx([-56 / 81, -0.75, -1.0], abs=1e-15)
+
+
+def test_a_step_is_not_changed_by_what_follows() -> None:
+    batch = BatchMonitor(cover_and_hide(), 2)
+    rows = {name: tensor([value] * 2) for name, value in FAR.items()}
+    first = batch.step({**rows, "distance(s1)": tensor([0.5, 20.0])})
+    seen = [getattr(first, name).clone() for name in ("state", "done", "success", "progress", "reward", "values")]
+    batch.reset(torch.tensor([True, False]))
+    batch.step({**rows, "health": tensor([0.0, 0.0])})
+    now = [getattr(first, name) for name in ("state", "done", "success", "progress", "reward", "values")]
+    assert all(torch.equal(one, other) for one, other in zip(seen, now, strict=True))
+
+
+def test_float32() -> None:
+    batch = BatchMonitor(cover_and_hide(), 2, dtype=torch.float32)
+    found = batch.step({**{name: tensor([value] * 2) for name, value in FAR.items()}, "health": tensor([1.0, 0.0])})
+    assert (found.reward.dtype, found.state.tolist()) == (torch.float32, [0, 2])
+
+
+# --- samples --------------------------------------------------------------------------------------
+
+
+def refused(batch: BatchMonitor, signals: dict[str, torch.Tensor]) -> tuple[str, str]:
+    """The code and title of the error; nothing moves."""
+    before = (batch.state.tolist(), batch.steps.tolist())
+    with pytest.raises(MonitorError) as caught:
+        batch.step(signals)
+    assert (batch.state.tolist(), batch.steps.tolist()) == before
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.help
+    return diagnostic.code, diagnostic.title
+
+
+def test_errors_name_signal_and_environments() -> None:
+    batch = BatchMonitor(cover_and_hide(), 8)
+    rows = {name: tensor([value] * 8) for name, value in FAR.items()}
+    health = tensor([1.0, float("nan"), 1.0, float("inf"), 1.0, 1.0, 1.0, 1.0])
+    title = "environments 1 and 3: the signal `health` is nan, not a finite number"
+    assert refused(batch, {**rows, "health": health}) == ("TLT0612", title)
+    every = tensor([float("-inf")] * 8)
+    title = "environments 0, 1, 2, 3, 4 and 3 more: the signal `distance(s1)` is -inf, not a finite number"
+    assert refused(batch, {**rows, "distance(s1)": every}) == ("TLT0612", title)
+    del rows["health"]
+    assert refused(batch, rows) == ("TLT0611", "no value for `health`")
+    with pytest.raises(ValueError, match="shape"):
+        batch.step(torch.zeros(8, 3))
+    with pytest.raises(ValueError, match="health"):
+        batch.step({**rows, "health": torch.ones(7)})
+
+
+def test_exclusive_atoms_that_hold_at_once() -> None:
+    batch = BatchMonitor(cover_and_hide(), 2)
+    rows = {name: tensor([value] * 2) for name, value in FAR.items()}
+    both = {**rows, "distance(s1)": tensor([20.0, 0.5]), "distance(exit)": tensor([0.0, 0.25])}
+    code, title = refused(batch, both)
+    assert code == "TLT0614"
+    assert title.startswith("environment 1: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), ")
+
+
+def test_values_out_of_range_are_clamped_and_counted() -> None:
+    batch, monitor = BatchMonitor(cover_and_hide(), 3), Monitor(cover_and_hide())
+    rows = {name: tensor([value] * 3) for name, value in FAR.items()}
+    for _ in range(2):
+        found = batch.step({**rows, "health": tensor([1.5, 1.0, 100.0]), "distance(s1)": tensor([20.0, 20.0, -3.0])})
+    assert batch.clamped == {"health": 4, "distance(s1)": 2}
+    assert found.values[:, 2].tolist() == [1.0, -1.0, -1.0, 1.0]
+    monitor.step({**FAR, "health": 100.0, "distance(s1)": -3.0})
+    assert list(monitor.values) == found.values[:, 2].tolist()
+
+
+def test_truth_values() -> None:
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    fspa = replace(fspa, signals=(spec.Signal("p", "bool", None, None),))
+    batch = BatchMonitor(fspa, 2)
+    assert batch.step({"p": torch.tensor([True, False])}).success.tolist() == [True, False]
+    for wrong in (0.5, 2.0):
+        text = f"environment 1: the signal `p` is {wrong:g}, not true or false"
+        assert refused(batch, {"p": tensor([1.0, wrong])}) == ("TLT0612", text)

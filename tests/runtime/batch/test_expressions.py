@@ -1,0 +1,125 @@
+"""Expressions over columns compute what they compute over numbers, and fail where those raise an error."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tltl_runtime.batch import BatchMonitor
+from tltl_runtime.batch.expressions import Program
+
+from tests.fixtures import near
+from tests.monitor.strategies import PARAMS, SIGNALS, expressions, numbers
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.expression import Condition, Const, Expression, Op, Signal, When, nodes
+from tltlc.expression_eval import evaluate
+from tltlc.logic import formula as f
+from tltlc.monitor import MonitorError
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+FAILURES = (ZeroDivisionError, OverflowError, ValueError)
+CPU = torch.device("cpu")
+INEXACT = {"exp", "tanh", "^"}
+x, y = Signal("x"), Signal("y")
+
+
+def program(expression: Expression, params: dict[str, float] | None = None) -> Program:
+    return Program([expression], SIGNALS if params else ("x", "y"), params or {}, CPU, torch.float64)
+
+
+@settings(max_examples=400, deadline=None)
+@given(expressions(), st.lists(st.tuples(numbers, numbers), min_size=1, max_size=4), st.tuples(numbers, numbers))
+def test_columns_are_as_many_samples(
+    expression: Expression, samples: list[tuple[float, float]], given_params: tuple[float, float]
+) -> None:
+    if any(isinstance(node, Op) and node.op in INEXACT for node in nodes(expression)):
+        # What torch rounds otherwise may decide a comparison, so that nothing bounds the difference.
+        samples, given_params = [(0.5, 0.25)], (0.75, 1.0)
+    params = dict(zip(PARAMS, given_params, strict=True))
+    (values,), (failures,) = program(expression, params).run(torch.tensor(samples, dtype=torch.float64).t())
+    for index, sample in enumerate(samples):
+        failed = failures is not None and bool(failures[index])
+        try:
+            expected = evaluate(expression, dict(zip(SIGNALS, sample, strict=True)), params)
+        except FAILURES:
+            assert failed
+            continue
+        assert not failed
+        found = float(values[index])
+        if not any(isinstance(node, Op) and node.op in INEXACT for node in nodes(expression)):
+            assert found == expected or (math.isnan(found) and math.isnan(expected))
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        Op("exp", (x,)),
+        Op("tanh", (x,)),
+        Op("^", (x, Const(0.5))),
+        Op("^", (x, Const(-1.0))),
+        Op("^", (x, Const(4.0))),
+        Op("^", (Const(2.5), x)),
+        Op("^", (x, y)),
+        Op("tanh", (Op("exp", (Op("sqrt", (Op("abs", (x,)),)),)),)),
+    ],
+)
+def test_what_torch_rounds_otherwise(expression: Expression) -> None:
+    samples = [(a, b) for a in (0.0, 0.1, 1.0, -2.0, 3.7, 710.0, 1e300) for b in (0.0, 0.5, -1.0, 7.5)]
+    (values,), (failures,) = program(expression).run(torch.tensor(samples, dtype=torch.float64).t())
+    for index, (a, b) in enumerate(samples):
+        try:
+            expected = evaluate(expression, {"x": a, "y": b}, {})
+        except FAILURES:
+            assert failures is not None
+            assert failures[index]
+            continue
+        assert failures is None or not failures[index]
+        assert float(values[index]) == pytest.approx(expected, rel=1e-12, abs=0.0)
+
+
+def test_shared_subexpressions_are_computed_once() -> None:
+    shared = Op("sqrt", (Op("abs", (x,)),))
+    both = Program([Op("+", (shared, y)), Op("-", (shared, y))], ("x", "y"), {}, CPU, torch.float64)
+    assert both.source.count("sqrt(") == 1
+
+
+def test_a_case_that_is_not_taken_cannot_fail() -> None:
+    guarded = When(((Condition(">", (x, Const(0.0))), Op("/", (Const(1.0), x))),), Const(-1.0))
+    (values,), (failures,) = program(guarded).run(torch.tensor([[0.0, 4.0], [0.0, 0.0]], dtype=torch.float64))
+    assert values.tolist() == [-1.0, 0.25]
+    assert failures is not None
+    assert not failures.any()
+
+
+def test_closeness_at_its_borders() -> None:
+    distances = [0.0, 0.5, 1.0, 5.0, 5.5, 10.0, 11.0]
+    near_x = Program([near("x")], ("x",), {"level_size": 10.0}, CPU, torch.float64)
+    (values,), _ = near_x.run(torch.tensor([distances], dtype=torch.float64))
+    assert values.tolist() == [evaluate(near("x"), {"x": d}, {"level_size": 10.0}) for d in distances]
+
+
+@pytest.mark.parametrize(
+    ("expression", "text"),
+    [
+        (Op("/", (Const(1.0), x)), "divides by zero"),
+        (Op("sqrt", (Op("-", (x, Const(0.5))),)), "takes a root or power that does not exist"),
+        (Op("exp", (Op("-", (Const(1000.0), Op("*", (x, Const(2000.0))))),)), "is too large to compute"),
+        (Op("*", (Const(1e300), Op("-", (Op("*", (x, Const(1e300))), Const(1e300))))), "is too large to compute"),
+        (Op("/", (Const(1.0), Const(0.0))), "divides by zero"),
+    ],
+)
+def test_an_atom_without_a_value_is_named_with_its_environments(expression: Expression, text: str) -> None:
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    fspa = replace(fspa, signals=(spec.Signal("x", "number", None, None),), atoms=(spec.Atom("p", expression),))
+    batch = BatchMonitor(fspa, 3)
+    with pytest.raises(MonitorError) as caught:
+        batch.step({"x": torch.tensor([1.0, 0.0, 1.0])})
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TLT0613"
+    assert diagnostic.title.endswith(f": the atom `p` {text}")
+    assert diagnostic.title.startswith("environment")
+    assert batch.steps.tolist() == [0.0] * 3
