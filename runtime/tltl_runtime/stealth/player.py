@@ -1,0 +1,87 @@
+"""What the player can do: its numbers, and what an action asks of its body.
+
+An action is five whole numbers, the branches of MultiDiscrete([3, 3, 2, 2, 2]): x (0 none, 1 along x, 2 against it),
+y (the same), jump, crouch, sprint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, sqrt
+
+from tltl_runtime.stealth.level import Point
+from tltlc.record import record
+
+DECISION = 0.15
+"""Seconds from one action to the next."""
+
+_SIGN = (0.0, 1.0, -1.0)
+
+
+@record
+class PlayerKind:
+    """The numbers of the player: metres, seconds, metres a second.
+
+    ``jump_speed`` and ``gravity`` lift the feet by 0.97 m and the round foot of the capsule slides up the rest of an
+    edge: platforms of 1.0 m are reached from a walk and a sprint, those of 1.2 m are not (1.1 m at times).
+    """
+
+    radius: float = 0.3
+    height: float = 1.8
+    crouched_height: float = 0.9
+    walk_speed: float = 3.0
+    sprint_speed: float = 5.0
+    crouch_speed: float = 1.5
+    stamina_time: float = 3.0
+    """How long a full stamina lets sprint."""
+    refill_time: float = 5.0
+    """How long an empty stamina takes to be full again."""
+    jump_speed: float = 6.4
+    gravity: float = 20.0
+    step_height: float = 0.25
+    """The highest stair that is walked up."""
+    fall_speed: float = 12.0
+    """Greatest speed of a fall, at the beginning of a decision."""
+
+
+@record
+class PlayerState:
+    """The player at the end of a decision: ``position`` is that of the feet, ``stamina`` in [0, 1]."""
+
+    position: Point
+    velocity: Point
+    yaw: float
+    crouching: bool
+    grounded: bool
+    stamina: float
+
+
+@record
+class Control:
+    """What an action asks of the body during one decision; ``stamina`` is what is left at its end."""
+
+    velocity: tuple[float, float]
+    yaw: float
+    jump: bool
+    stamina: float
+
+
+def control(kind: PlayerKind, state: PlayerState, action: Sequence[int], crouching: bool) -> Control:
+    """What ``action`` asks of a player in ``state`` that will be ``crouching`` or not.
+
+    Diagonal motion is no faster than straight motion.  Sprinting needs stamina for a whole decision; crouched
+    players neither sprint nor jump, and a jump needs ground.
+    """
+    x, y = _SIGN[action[0]], _SIGN[action[1]]
+    moving = x != 0.0 or y != 0.0
+    spent = DECISION / kind.stamina_time
+    sprinting = moving and bool(action[4]) and not crouching and state.stamina >= spent - 1e-9
+    if sprinting:
+        speed, stamina = kind.sprint_speed, max(0.0, state.stamina - spent)
+    else:
+        speed = kind.crouch_speed if crouching else kind.walk_speed
+        stamina = min(1.0, state.stamina + DECISION / kind.refill_time)
+    if x and y:
+        speed /= sqrt(2.0)
+    jump = bool(action[2]) and state.grounded and not crouching
+    return Control((speed * x, speed * y), atan2(y, x) if moving else state.yaw, jump, stamina)
