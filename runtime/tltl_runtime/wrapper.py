@@ -187,8 +187,6 @@ def _missing(missing: list[str], given: list[str], when: str) -> Diagnostic:
     """TLT0611, with what there is instead."""
     names = ", ".join(f"`{name}`" for name in missing)
     listed = ", ".join(f"`{name}`" for name in given[:_MOST_LISTED]) + (", …" if len(given) > _MOST_LISTED else "")
-    there = f"`signals` gave {listed}" if given else "`signals` gave none"
     close = get_close_matches(missing[0], given, n=1)
-    return Diagnostic(
-        "TLT0611", f"{when}: no value for {names}", help=f"{there}{f': is it `{close[0]}`?' if close else ''}"
-    )
+    way_out = f"did you mean `{missing[0]}` by `{close[0]}`?" if close else "supply every signal that the atoms use"
+    return Diagnostic("TLT0611", f"{when}: no value for {names}; `signals` gave {listed or 'none'}", help=way_out)

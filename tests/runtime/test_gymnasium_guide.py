@@ -61,4 +61,4 @@ def test_the_message_is_that() -> None:
         TltlEnv(gymnasium.make("MountainCar-v0"), SPEC, signals).reset()
     page = PAGE.read_text(encoding="utf-8")
     assert f"    {type(error.value).__name__}: {error.value}\n" in page
-    assert f"`` {error.value.diagnostics[0].help} ``" in page
+    assert f"``{error.value.diagnostics[0].help}``" in page
