@@ -9,7 +9,8 @@ take cannot fail there.  On a CPU in float64 the values are equal to the last bi
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
 from operator import add, ge, gt, le, lt, mul
 from typing import Any, Final, cast
 
@@ -54,7 +55,7 @@ class Program:
         self.source = "\n".join(
             [
                 "def values(columns):",
-                *(f"    {line}" for line in writer.lines),
+                *(f"    {line}" for line in _released(writer.lines, {*values, *map(str, failures)})),
                 f"    return ({', '.join([*values, ''])}), ({', '.join([*map(str, failures), ''])})",
             ]
         )
@@ -111,7 +112,7 @@ class _Writer:
                 if total.constant is not None and term.constant is not None:
                     total = self._constant(compute(total.constant, term.constant))
                 else:
-                    total = _Term(self._line(f"{total.name} {node.op} {term.name}"))
+                    total = _Term(self._line(f"{self._operand(total)} {node.op} {self._operand(term)}"))
             return _Term(total.name, None, fails)
         if node.op in ("min", "max"):
             best = args[0]
@@ -133,7 +134,7 @@ class _Writer:
                 own = self._everywhere() if args[1].constant == 0.0 else None
             return _Term(self._line(f"{top} / {bottom}"), None, self._any_of([fails, own]))
         if node.op == "-":
-            return _Term(self._line(f"{args[0].name} - {args[1].name}"), None, fails)
+            return _Term(self._line(f"{self._operand(args[0])} - {self._operand(args[1])}"), None, fails)
         inner = args[0].name
         if node.op == "neg":
             return _Term(self._line(f"-{inner}"), None, fails)
@@ -161,8 +162,9 @@ class _Writer:
             return self._constant((min if op == "min" else max)(first.constant, second.constant))
         if second.constant is not None:
             return _Term(self._line(f"clamp({first.name}, {'max' if op == 'min' else 'min'}={second.name})"))
-        beyond = self._line(f"{second.name} {'<' if op == 'min' else '>'} {first.name}")
-        return _Term(self._line(f"where({beyond}, {second.name}, {first.name})"))
+        one, other = self._operand(first), self._operand(second)
+        beyond = self._line(f"{other} {'<' if op == 'min' else '>'} {one}")
+        return _Term(self._line(f"where({beyond}, {other}, {one})"))
 
     def _when(self, node: When) -> _Term:
         result = self.number(node.otherwise)
@@ -175,9 +177,8 @@ class _Writer:
             taken = self._truth(test)
             other = self._both(self._line(f"~{taken}"), result.fails) if result.fails else None
             fails = self._any_of([test.fails, self._both(taken, case.fails), other])
-            if case.constant is not None and result.constant is not None:
-                case = _Term(self._operand(case))
-            result = _Term(self._line(f"where({taken}, {case.name}, {result.name})"), None, fails)
+            values = f"{self._operand(case)}, {self._operand(result)}"
+            result = _Term(self._line(f"where({taken}, {values})"), None, fails)
         return result
 
     def _condition(self, node: Expression | Condition) -> _Term:
@@ -193,7 +194,7 @@ class _Writer:
         fails = self._any_of([left.fails, right.fails])
         if left.constant is not None and right.constant is not None:
             return _Term("", float(_COMPARISONS[node.op](left.constant, right.constant)), fails)
-        return _Term(self._line(f"{left.name} {node.op} {right.name}"), None, fails)
+        return _Term(self._line(f"{self._operand(left)} {node.op} {self._operand(right)}"), None, fails)
 
     def _connective(self, node: Condition) -> _Term:
         """From the last part to the first: a part behind one that decides is not computed and cannot fail."""
@@ -231,7 +232,7 @@ class _Writer:
         return (f"({text})" if text.startswith("-") else text), value
 
     def _operand(self, term: _Term) -> str:
-        """The term as a tensor: torch divides by a number, and a number by a tensor, less exactly."""
+        """The term as a tensor, which torch takes faster than a number; and with numbers it divides less exactly."""
         return term.name if term.constant is None else self._held(term.constant)
 
     def _held(self, constant: float) -> str:
@@ -267,3 +268,15 @@ class _Writer:
             self._known[text] = name
             self.lines.append(f"{name} = {text}")
         return self._known[text]
+
+
+def _released(lines: Sequence[str], kept: Collection[str]) -> list[str]:
+    """The lines with each tensor deleted after its last use: its memory is in the cache when the next takes it."""
+    seen: set[str] = set()
+    result: list[str] = []
+    for line in reversed(lines):
+        names = {name for name in re.findall(r"\bt\d+\b", line) if name not in kept} - seen
+        result += [f"del {', '.join(sorted(names))}"] if names else []
+        result.append(line)
+        seen |= names
+    return result[::-1]

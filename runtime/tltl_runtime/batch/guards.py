@@ -8,6 +8,7 @@ from typing import Final
 import torch
 from torch import Tensor
 
+from tltl_runtime.batch.samples import check_exclusive
 from tltlc.automaton.fspa import Fspa, Implicant
 
 Primes = tuple[Implicant, ...]
@@ -31,6 +32,7 @@ class PrimeSets:
         primes = {prime for chosen in self._distinct for prime in chosen}
         self._depth = max((len(chosen) for chosen in self._distinct), default=1) or 1
         self._width = max((len(prime) for prime in primes), default=1) or 1
+        self._negates = any(not polarity for prime in primes for _, polarity in prime)
         # A gather costs about as much as four passes over a column.
         operations = sum(map(len, primes)) + sum(map(len, self._distinct))
         self._dense = operations <= 4 * self._depth * self._width + 8
@@ -60,7 +62,7 @@ class PrimeSets:
 
     def _each(self, values: Tensor) -> Tensor:
         """The robustness of each distinct set, [distinct, N]; primes that sets share are computed once."""
-        negated = -values
+        negated = -values if self._negates else values
         known: dict[Implicant, Tensor] = {}
         results = []
         for primes in self._distinct:
@@ -112,13 +114,24 @@ class Transitions:
         self._guards = None if fits else PrimeSets([e.guard.primes for e in fspa.edges], self._atoms, device, -1.0)
 
     def edge(self, state: Tensor, truth: Tensor) -> Tensor:
-        """The edges taken from states [N] where the atoms are true or not (bool [atoms, N]), int64 [N]."""
+        """The edges taken from states [N] where the atoms are true or not (bool [atoms, N]), int64 [N].
+
+        Raises:
+            MonitorError: TLT0614 exclusive atoms that hold at once.
+        """
         if self._table is None:
+            check_exclusive(self._fspa, truth)
             return self._by_primes(state, truth)
-        cell = state * self._letters
-        for atom in range(self._atoms):
-            cell.add_(truth[atom], alpha=1 << atom)
-        return self._table.index_select(0, cell)
+        # Bytes are added four times as fast as wide integers.
+        bits = truth.view(torch.uint8) if self._atoms <= 8 else truth.to(torch.int16)
+        letter = bits[0] if self._atoms else torch.zeros_like(state)
+        for atom in range(1, self._atoms):
+            letter = torch.add(letter, bits[atom], alpha=1 << atom)
+        cell = torch.add(letter.to(torch.int64), state, alpha=self._letters)
+        edge = self._table.index_select(0, cell)
+        if self._fspa.exclusive and int(edge.amin()) < 0:
+            check_exclusive(self._fspa, truth)
+        return edge
 
     def _by_primes(self, state: Tensor, truth: Tensor) -> Tensor:
         assert self._leaving is not None and self._guards is not None
@@ -138,7 +151,7 @@ class Transitions:
         return torch.tensor([row + row[:1] * (most - len(row)) for row in leaving], dtype=torch.int64).t().contiguous()
 
     def _edge_table(self) -> Tensor:
-        """int64 [states * letters]; a letter has the bit 2^i iff atom i is true."""
+        """int64 [states * letters]; a letter has the bit 2^i iff atom i is true; -1 where exclusive atoms are."""
         letters = torch.arange(self._letters)
         table = torch.zeros((len(self._fspa.states), self._letters), dtype=torch.int64)
         for number, edge in enumerate(self._fspa.edges):
@@ -146,6 +159,9 @@ class Transitions:
                 mask = sum(1 << atom for atom, _ in prime)
                 bits = sum(1 << atom for atom, polarity in prime if polarity)
                 table[edge.source][(letters & mask) == bits] = number
+        for group in self._fspa.exclusive:
+            held = sum(((letters >> atom) & 1 for atom in group), torch.zeros_like(letters))
+            table[:, held > 1] = -1
         return table.view(-1)
 
 

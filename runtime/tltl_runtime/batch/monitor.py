@@ -10,7 +10,7 @@ from torch import Tensor
 
 from tltl_runtime.batch.guards import PrimeSets, Transitions
 from tltl_runtime.batch.rewards import VERDICTS, EdgeMode, Outcomes, PotentialMode, SparseMode
-from tltl_runtime.batch.samples import BatchSamples, check_exclusive
+from tltl_runtime.batch.samples import BatchSamples
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
 
@@ -73,6 +73,7 @@ class BatchMonitor:
 
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
+        ValueError: ``count`` is below 1.
     """
 
     def __init__(
@@ -86,6 +87,8 @@ class BatchMonitor:
         dtype: torch.dtype = torch.float64,
     ) -> None:
         self.fspa, self.count, self.device, self.dtype = fspa, count, torch.device(device), dtype
+        if count < 1:
+            raise ValueError(f"at least one environment is needed, not {count}")
         options = reward or RewardOptions()
         self._samples = BatchSamples(fspa, count, params, self.device, dtype)
         self.signal_names, self.clamped = self._samples.names, self._samples.clamped
@@ -142,9 +145,7 @@ class BatchMonitor:
         return rows.scatter_(1, self.state[:, None], 1.0)
 
     def _take(self, values: Tensor) -> BatchStep:
-        truth = values > 0.0
-        check_exclusive(self.fspa, truth)
-        edge = self._transitions.edge(self.state, truth)
+        edge = self._transitions.edge(self.state, values > 0.0)
         source, state = self.state, self._targets.index_select(0, edge)
         steps = self.steps + 1.0
         progress = torch.maximum(self.progress, self.outcomes.progress(edge, values, steps))
@@ -161,7 +162,7 @@ class BatchMonitor:
             reward = self.outcomes.reward(edge, progress - self.progress, steps)
         reward = reward.masked_fill_(self._done, 0.0)
 
-        success = torch.where(self._done, self._success, succeeds)
+        success = self._success | (succeeds & ~self._done)
         done = self._done | ends
         self.state, self.steps, self.progress, self._done, self._success, self._memory = (
             state, steps, progress, done, success, memory,

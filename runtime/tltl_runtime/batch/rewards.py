@@ -86,7 +86,7 @@ class Outcomes:
     def _penalty(self, steps: Tensor) -> Tensor:
         """The step penalties that a violation saves: ``(T - t) / T``, or what they are worth discounted."""
         assert self._limit is not None
-        left = (self._limit - steps).clamp_(min=0.0)
+        left = self._limit - steps
         gamma = self._options.gamma
         if self._options.terminal_penalty == "undiscounted" or gamma == 1.0:
             return left.div_(self._limit_number)

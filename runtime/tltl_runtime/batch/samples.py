@@ -36,6 +36,7 @@ class BatchSamples:
         most = torch.finfo(dtype).max
         low = [0.0 if s.type == "bool" else -most if s.low is None else s.low for s in fspa.signals]
         high = [1.0 if s.type == "bool" else most if s.high is None else s.high for s in fspa.signals]
+        self._ranges = tuple(zip(low, high, strict=True))
         self._low = torch.tensor(low, dtype=dtype, device=device)[:, None]
         self._high = torch.tensor(high, dtype=dtype, device=device)[:, None]
         self._bools = [row for row, signal in enumerate(fspa.signals) if signal.type == "bool"]
@@ -51,15 +52,18 @@ class BatchSamples:
                 an atom has no value; the message names the environments.
             ValueError: a tensor has another shape.
         """
-        given = self._columns(signals)
-        columns = torch.clamp(given, self._low, self._high)
-        if not torch.equal(columns, given):
+        columns = self._columns(signals)
+        if self.names and not self._in_range(columns):
+            given, columns = columns, torch.clamp(columns, self._low, self._high)
             self._check_signals(given, columns)
         for row in self._bools:
             self._check_truth(row, columns[row])
-        raw, failures = self._program.run(columns)
-        values = torch.clamp(raw, -1.0, 1.0)
-        if any(bool(mask.any()) for mask in failures if mask is not None) or not torch.equal(values, raw):
+        values, failures = self._program.run(columns)
+        if not self._fspa.atoms:
+            return values
+        failed = any(bool(mask.any()) for mask in failures if mask is not None)
+        if failed or not (float(values.amin()) >= -1.0 and float(values.amax()) <= 1.0):
+            raw, values = values, torch.clamp(values, -1.0, 1.0)
             self._check_atoms(columns, raw, values, failures)
         return values
 
@@ -70,7 +74,13 @@ class BatchSamples:
                 raise ValueError(
                     f"signals of shape {(self._count, len(self.names))} needed, not {tuple(signals.shape)}"
                 )
-            return signals.to(self._device, self._dtype).t().contiguous()
+            columns = signals.t()
+            if columns.is_contiguous():
+                return columns.to(self._device, self._dtype)
+            # Twice as fast as `contiguous`.
+            result = torch.empty(columns.shape, dtype=self._dtype, device=self._device)
+            result.t().copy_(signals)
+            return result
         missing = [name for name in self.names if name not in signals]
         if missing:
             raise _error("TLT0611", f"no value for {listed(missing)}")
@@ -81,6 +91,11 @@ class BatchSamples:
             if row.shape != (self._count,):
                 raise ValueError(f"the signal {name}: shape {(self._count,)} needed, not {tuple(row.shape)}")
         return torch.stack(rows)
+
+    def _in_range(self, columns: Tensor) -> bool:
+        """Whether no signal has to be clamped; the extremes of numbers are NaN where one of them is."""
+        extremes = zip(columns.amin(1).tolist(), columns.amax(1).tolist(), self._ranges, strict=True)
+        return all(least >= low and greatest <= high for least, greatest, (low, high) in extremes)
 
     def _check_signals(self, given: Tensor, columns: Tensor) -> None:
         finite = torch.isfinite(given)
