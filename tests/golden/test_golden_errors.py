@@ -19,6 +19,8 @@ from tltlc.diagnostics.codes import codes, page, title
 
 ROOT = Path(__file__).parents[2]
 CASES = sorted(path for path in (Path(__file__).parent / "error").iterdir() if path.is_dir())
+LEVELS = sorted(path for path in (Path(__file__).parent / "level").iterdir() if path.is_dir())
+"""Messages of the runtime, which `tests/runtime/stealth/test_level_file.py` compares."""
 CODE = re.compile(r"TLT[0-9]{4}")
 NEEDS_ANOTHER_INSTALLATION = {"TLT0712", "TLT0730"}
 """Codes that no file causes; tests/backends and tests/cli show their messages."""
@@ -55,7 +57,9 @@ def test_message(
 
 
 def test_every_code_has_a_golden_message() -> None:
-    assert {case.name[:7] for case in CASES} == set(codes()) - NEEDS_ANOTHER_INSTALLATION - NEEDS_AN_ENVIRONMENT
+    assert {case.name[:7] for case in (*CASES, *LEVELS)} == set(
+        codes()
+    ) - NEEDS_ANOTHER_INSTALLATION - NEEDS_AN_ENVIRONMENT
 
 
 def test_every_code_in_the_source_has_a_page_and_every_page_is_used() -> None:

@@ -57,9 +57,10 @@ def read_project(path: Path) -> Project:
     Errors: TLT0701 no TOML; else everything that is wrong: TLT0702 an unknown key, TLT0703 a value of the wrong kind.
     """
     from tltlc.files import read_source
+    from tltlc.toml_text import parse
 
     source = read_source(path, _shown(path))
-    table = _parse(source)
+    table = parse(source, "TLT0701", 'values are written as in `targets = ["json", "dot"]`')
     style = table.get("style", {})
     wrong = _unknown(table, _KEYS, source)
     if not isinstance(style, dict):
@@ -79,38 +80,6 @@ def read_project(path: Path) -> Project:
     if wrong:
         raise TltlError(wrong)
     return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation)
-
-
-def _parse(source: SourceFile) -> dict[str, Any]:
-    import sys
-
-    if sys.version_info >= (3, 11):
-        import tomllib
-    else:
-        import tomli as tomllib
-    try:
-        table: dict[str, Any] = tomllib.loads(source.text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        message = str(error) or "it is nested too deeply"
-        raise TltlError([_syntax_error(source, message)]) from None
-    return table
-
-
-def _syntax_error(source: SourceFile, message: str) -> Diagnostic:
-    """The TOML reader's message; its place becomes a label."""
-    import re
-
-    found = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", message)
-    reason = message[: found.start()] if found else message
-    label = Label(source, Span(len(source.text), len(source.text)), reason[:1].lower() + reason[1:])
-    if found and found[1]:
-        end_of_line = 0
-        for _ in range(int(found[1]) - 1):
-            end_of_line = source.text.index("\n", end_of_line) + 1
-        start = min(end_of_line + int(found[2]) - 1, len(source.text))
-        label = Label(source, Span(start, min(start + 1, len(source.text))), label.message)
-    help_ = 'values are written as in `targets = ["json", "dot"]`'
-    return Diagnostic("TLT0701", f"`{source.name}` is not TOML", (label,), help_)
 
 
 def _unknown(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:

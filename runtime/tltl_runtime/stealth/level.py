@@ -178,3 +178,5 @@ class Level:
     spec: str
     """The file of the spec that the level is made for, and what it is called there: ``FILE.tltl:NAME``."""
     files: tuple[tuple[str, str], ...]
+    signals: tuple[tuple[str, str], ...] = ()
+    """Further names of signals, for specs that call them otherwise: (``open_right``, ``open(right)``)."""

@@ -1,0 +1,116 @@
+"""TOML with places: every value knows the text that it came from, so that overlays keep their own places."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Final
+
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.record import record
+from tltlc.source import SourceFile, Span
+from tltlc.toml_text import parse
+
+_HELP: Final = 'values are written as in `at = [1.0, 2.0, 0.0]`, texts as in `asset = "corridor"`'
+_KEY: Final = r"(?:[A-Za-z0-9_-]+|\"[^\"\n]*\"|'[^'\n]*')"
+_DOTTED: Final = re.compile(rf"{_KEY}(?:[ \t]*\.[ \t]*{_KEY})*")
+_BLANK: Final = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
+_VALUE_PART: Final = re.compile(
+    r"\"\"\"(?:\\.|(?!\"\"\").)*\"{3,5}|'''(?:(?!''').)*'{3,5}|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*'|#[^\n]*|[\[\]{}\n]|.",
+    re.DOTALL,
+)
+
+
+@record
+class Entry:
+    """A value and its place: a scalar, a list, a :data:`Tree`, or a list of trees."""
+
+    value: Any
+    label: Label
+
+
+Tree = dict[str, Entry]
+"""A table: what its keys stand for."""
+
+
+def read_tree(source: SourceFile) -> Tree:
+    """The tables of a TOML text; raises TltlError (TLT0801) where it is none.
+
+    What stands in an inline table has the place of the key before it.
+    """
+    data = parse(source, "TLT0801", _HELP)
+    return _tree(data, (), _places(source.text), Label(source, Span(0, 0)))
+
+
+def _tree(data: dict[str, Any], path: tuple[str | int, ...], places: dict[Any, Span], around: Label) -> Tree:
+    found: Tree = {}
+    for key, value in data.items():
+        here = (*path, key)
+        label = Label(around.source, places[here]) if here in places else around
+        if isinstance(value, dict):
+            found[key] = Entry(_tree(value, here, places, label), label)
+        elif isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+            tables = []
+            for number, item in enumerate(value):
+                place = Label(around.source, places.get((*here, number), label.span))
+                tables.append(Entry(_tree(item, (*here, number), places, place), place))
+            found[key] = Entry(tables, label)
+        else:
+            found[key] = Entry(value, label)
+    return found
+
+
+def _places(text: str) -> dict[tuple[str | int, ...], Span]:
+    """Where the keys and the headers of tables stand in a text that is known to be TOML."""
+    places: dict[tuple[str | int, ...], Span] = {}
+    counts: dict[tuple[str | int, ...], int] = {}
+    table: tuple[str | int, ...] = ()
+    position = 0
+    while (position := _end(_BLANK, text, position)) < len(text):
+        brackets = 2 if text.startswith("[[", position) else 1 if text[position] == "[" else 0
+        start = _end(_BLANK, text, position + brackets)
+        end = _end(_DOTTED, text, start)
+        path = _inside(text[start:end], () if brackets else table, counts)
+        if brackets == 2:
+            counts[path] = counts.get(path, -1) + 1
+            places.setdefault(path, Span(start, end))
+            path = (*path, counts[path])
+        for length in range(0 if brackets else len(table), len(path)):
+            places.setdefault(path[:length], Span(start, end))
+        places[path] = Span(start, end)
+        if brackets:
+            table = path
+            position = text.find("]", end) + brackets
+        else:
+            position = _value_end(text, text.index("=", end) + 1)
+    return places
+
+
+def _inside(
+    dotted: str, around: tuple[str | int, ...], counts: dict[tuple[str | int, ...], int]
+) -> tuple[str | int, ...]:
+    """The path of a dotted key inside the table ``around``; what it passes of lists of tables is their last one."""
+    path = around
+    keys = re.findall(_KEY, dotted)
+    for number, key in enumerate(keys):
+        path = (*path, key.strip("\"'"))
+        if number < len(keys) - 1 and path in counts:
+            path = (*path, counts[path])
+    return path
+
+
+def _end(pattern: re.Pattern[str], text: str, position: int) -> int:
+    found = pattern.match(text, position)
+    return found.end() if found else position
+
+
+def _value_end(text: str, position: int) -> int:
+    """The end of the line that a value ends on."""
+    depth = 0
+    while position < len(text):
+        part = _VALUE_PART.match(text, position)
+        assert part is not None  # its last alternative is any character
+        position = part.end()
+        depth += (part[0] in ("[", "{")) - (part[0] in ("]", "}"))
+        if part[0] == "\n" and depth == 0:
+            break
+    return position
