@@ -62,7 +62,10 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         reward: RewardOptions | None = None,
         params: Mapping[str, float] | None = None,
     ) -> None:
-        RecordConstructorArgs.__init__(self, spec=spec, signals=signals, reward=reward, params=dict(params or {}))
+        # Not copied deeply: `signals` may be a method of something that cannot be, such as a running game.
+        RecordConstructorArgs.__init__(
+            self, _disable_deepcopy=True, spec=spec, signals=signals, reward=reward, params=dict(params or {})
+        )
         gymnasium.Wrapper.__init__(self, env)
         offered = env.get_wrapper_attr("tltl_params")() if env.has_wrapper_attr("tltl_params") else {}
         self.task = load_task(spec, params or {}, reward, offered=offered)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import threading
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -307,6 +308,18 @@ def test_a_clamped_signal_is_remarked_on_once() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         env.step(0)
+
+
+def test_signals_may_be_a_method_of_a_running_game() -> None:
+    class Game:
+        def __init__(self) -> None:
+            self.running = threading.Lock()
+
+        def signals(self, env: gymnasium.Env[Any, Any]) -> Row:
+            return current(env)
+
+    env = TltlEnv(Played([FAR]), cover_and_hide(), Game().signals)
+    assert env.reset()[1]["verdict"] == "pending"
 
 
 def test_the_clock_must_be_the_environments() -> None:
