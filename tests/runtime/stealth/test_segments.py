@@ -9,6 +9,10 @@ from tltl_runtime.stealth.segments import Corners, blocked, crosses
 POINTS = st.tuples(*[st.floats(-5, 5).map(lambda x: round(x, 2))] * 3)
 
 
+def around(c: Point, d: Point) -> Corners:
+    return (min(c[0], d[0]), min(c[1], d[1]), min(c[2], d[2]), max(c[0], d[0]), max(c[1], d[1]), max(c[2], d[2]))
+
+
 def exactly(a: np.ndarray, b: np.ndarray, box: Corners) -> float:
     """The length, as a part of the segment, that is inside the box: all six planes at once."""
     low, high = np.array(box[:3]), np.array(box[3:])
@@ -26,7 +30,7 @@ def exactly(a: np.ndarray, b: np.ndarray, box: Corners) -> float:
 @settings(max_examples=300, deadline=None)
 @given(POINTS, POINTS, POINTS, POINTS)
 def test_sight_is_the_exact_intersection_with_boxes(a: Point, b: Point, c: Point, d: Point) -> None:
-    box: Corners = (*map(min, c, d), *map(max, c, d))
+    box = around(c, d)
     assume(all(box[i] < box[i + 3] for i in range(3)))
     length = exactly(np.array(a), np.array(b), box)
     assume(abs(length) > 1e-9 or a == b)
@@ -38,7 +42,7 @@ def test_sight_is_the_exact_intersection_with_boxes(a: Point, b: Point, c: Point
 @settings(max_examples=200, deadline=None)
 @given(POINTS, POINTS, POINTS, POINTS)
 def test_walking_is_sight_without_heights(a: Point, b: Point, c: Point, d: Point) -> None:
-    box: Corners = (*map(min, c, d), *map(max, c, d))
+    box = around(c, d)
     assume(box[0] < box[3] and box[1] < box[4])
     flat = (box[0], box[1], -1.0, box[3], box[4], 1.0)
     rectangle = (box[0], box[1], box[3], box[4])
