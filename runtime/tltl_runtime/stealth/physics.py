@@ -32,7 +32,10 @@ SUBSTEPS = 9
 """Physics steps in a decision."""
 
 _COMPOUND = 16
-_WORLD, _PLAYER, _PARKED = 1, 2, 4
+_RAY, _PLAYER, _PARKED, _WORLD = 1, 2, 4, 8
+"""Groups of collision; Bullet puts rays in the first."""
+_STOPS = _RAY | _PLAYER
+"""What the world stops; not itself, since static bodies that meet would cost five times the rest of a step."""
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 _SPECULATION = 0.12
 """Contacts count from this distance on, so that a fast body is stopped at a surface and not a step behind it."""
@@ -147,7 +150,7 @@ class World:
         body = self._barriers[barrier]
         if body is not None:
             # Switching the filter keeps the body where its level says, and rays honour it (moving it does as well).
-            self._filter(body, 0 if is_open else _WORLD, 0 if is_open else _WORLD | _PLAYER)
+            self._filter(body, 0 if is_open else _WORLD, 0 if is_open else _STOPS)
 
     def ray_blocked(self, start: Point, end: Point) -> bool:
         """Whether a solid, a shut barrier or a mover stands between two points; lasers and the player do not."""
@@ -243,7 +246,7 @@ class World:
             physicsClientId=self._client,
         )
         pybullet.changeDynamics(body, -1, lateralFriction=0.0, restitution=0.0, physicsClientId=self._client)
-        self._filter(body, _WORLD, _WORLD | _PLAYER)
+        self._filter(body, _WORLD, _STOPS)
         return body
 
     def _capsule(self, crouching: bool) -> int:
@@ -299,7 +302,7 @@ class World:
         for body, played in ((self._bodies[not crouching], False), (self._bodies[crouching], True)):
             height = self._height(crouching if played else not crouching)
             x, y, z = feet if played else self._perches[not crouching]
-            self._filter(body, _PLAYER if played else _PARKED, _WORLD if played else _PARKED)
+            self._filter(body, _PLAYER if played else _PARKED, _WORLD | _RAY if played else _PARKED)
             place = (x, y, z + height / 2)
             pybullet.resetBasePositionAndOrientation(body, place, _UPRIGHT, physicsClientId=self._client)
             pybullet.resetBaseVelocity(
