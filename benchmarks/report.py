@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from benchmarks import compile_table, monitors, process, summary
+from benchmarks import batch, compile_table, monitors, process, summary
 from benchmarks.reference import references
 from benchmarks.store import Record, Store
 
@@ -17,6 +17,8 @@ COMPILE_FACTOR = 3.0
 LTLF2DFA_FACTOR = 20.0
 PROCESS_FACTOR = 15.0
 MONITOR_FACTOR = 0.5
+BATCH_STEPS_PER_S = 10e6
+BATCH_GPU_MS = 1.0
 MISSED = "**missed**"
 
 
@@ -39,8 +41,9 @@ def render(store: Store) -> str:
         _large(compiled),
         _process(store.section(process.SECTION)),
         _monitors(store.section(monitors.SECTION)),
+        _batch(store.section(batch.SECTION)),
     ]
-    return "\n\n".join(part.strip() for part in parts) + "\n"
+    return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
 
 def _head(store: Store) -> str:
@@ -120,6 +123,25 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
             "the generated Python monitor at least 0.5 of the speed of one written by hand, on the paper's specs",
             f"least {min(ratios_by_hand):.2f}",
             _verdict(min(ratios_by_hand) >= MONITOR_FACTOR),
+        )
+    yield from _batch_goals(store.section(batch.SECTION))
+
+
+def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:
+    record = records.get("cover_and_hide", {})
+    if "steps_per_s" in record:
+        rate = record["steps_per_s"]["batch"]
+        yield (
+            f"batched monitor and reward at least 10 million steps per second on one core, N = {record['count']}",
+            f"{rate / 1e6:.1f} million on cover_and_hide",
+            _verdict(rate >= BATCH_STEPS_PER_S),
+        )
+    if "gpu_ms" in record:
+        middle = record["gpu_ms"][1]
+        yield (
+            f"batched monitor and reward of {record['gpu_count']:,} environments in under 1 ms on a GPU",
+            f"{middle:.2f} ms on cover_and_hide",
+            _verdict(middle < BATCH_GPU_MS),
         )
 
 
@@ -275,6 +297,32 @@ gives no notices of clamped values. *tltlc.monitor*: the monitor behind `tltlc m
 their answers was checked against acceptance at each step.
 
 {_table(("spec", "samples", *whos, "generated / hand_written"), body)}
+"""
+
+
+def _batch(records: dict[str, Record]) -> str:
+    body = [
+        (
+            name,
+            f"{record['steps_per_s']['batch']:,}",
+            f"{record['steps_per_s']['scalar']:,}",
+            _spread(record["batch_to_scalar"]),
+            f"{_spread(record['gpu_ms'], 2)} ({record['gpu']})" if "gpu_ms" in record else "–",
+        )
+        for name, record in records.items()
+        if "steps_per_s" in record
+    ]
+    if not body:
+        return ""
+    return f"""
+## Many automata at once, steps per second
+
+`tltl_runtime.batch` on one core for N = {batch.COUNT:,} environments in different states, in float64, beside
+`tltlc.monitor`, one sample at a time; both in turns in each of {batch.ROUNDS} rounds, checked to be equal before. A
+step computes atoms, transition, progress, reward and the end of the episode from signals that are given as one tensor.
+On a GPU: wall time of one call for {batch.GPU_COUNT:,} environments.
+
+{_table(("spec", "batch", "tltlc.monitor", "batch / tltlc.monitor", "GPU, ms a call"), body)}
 """
 
 

@@ -90,6 +90,22 @@ def test_a_report_of_part_of_the_results_renders(tmp_path: Path) -> None:
     assert "nan" not in text
 
 
+def test_the_batched_monitor_has_its_goals_and_table(tmp_path: Path) -> None:
+    store = Store(tmp_path / "results.json")
+    store.put("machine", "facts", {"processor": "abacus"})
+    store.put("machine", "options", {"peer_timeout_s": 20.0})
+    assert "Many automata" not in render(store)
+    rates = {"steps_per_s": {"batch": 12_000_000, "scalar": 60_000}, "batch_to_scalar": [190.0, 200.0, 210.0]}
+    store.put("batch", "cover_and_hide", rates | {"count": 4096, "source": "x"})
+    store.put("batch", "navigation", {"left_out": "torch is not installed"})
+    text = render(store)
+    assert "| 12.0 million on cover_and_hide | met |" in text
+    assert "| cover_and_hide | 12,000,000 | 60,000 | 200.0 (190.0–210.0) | – |" in text
+    gpu = {"gpu": "abacus", "gpu_count": 1_000_000, "gpu_ms": [1.0, 1.25, 1.5]}
+    store.put("batch", "cover_and_hide", rates | gpu | {"count": 4096})
+    assert "| 1.25 ms on cover_and_hide | **missed** |" in render(store)
+
+
 def test_a_fresh_store_forgets(tmp_path: Path) -> None:
     path = tmp_path / "results.json"
     Store(path).put("compile", "one", {"x": 1})

@@ -13,8 +13,10 @@ from tltl_runtime.batch import BatchMonitor, BatchStep
 from tltl_runtime.batch import guards as batch_guards
 from tltl_runtime.batch.rewards import VERDICTS
 
+from benchmarks.specs import PAPER_SPECS, source, trace
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import atom_traces, automata
+from tltlc import compile_file
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.logic import formula as f
@@ -114,6 +116,24 @@ def test_signals_in_either_form_with_predicates() -> None:
             assert_equal(found, steps, [bool(success) for success in ended], fspa)
             assert found.reward.tolist() == same.reward.tolist()
         assert len({monitor.state for monitor in monitors}) > 1 or all(monitor.done for monitor in monitors)
+
+
+@pytest.mark.parametrize("name", PAPER_SPECS)
+def test_the_recorded_traces_of_the_paper_s_specs(name: str) -> None:
+    """Four environments, each from another sample of the trace on."""
+    fspa = next(fspa for fspa in compile_file(source(name)) if fspa.name == name)
+    samples = trace(name)
+    batch, monitors = BatchMonitor(fspa, 4), [Monitor(fspa) for _ in range(4)]
+    ended: list[bool | None] = [None] * 4
+    for number in range(len(samples)):
+        rows = [samples[(number + 41 * index) % len(samples)] for index in range(4)]
+        found = batch.step(tensor([[row[signal] for signal in batch.signal_names] for row in rows]))
+        steps = [monitor.step(row) for monitor, row in zip(monitors, rows, strict=True)]
+        for index, step in enumerate(steps):
+            if step.done and ended[index] is None:
+                ended[index] = step.accepting
+        assert_equal(found, steps, [bool(success) for success in ended], fspa)
+    assert found.success[0]
 
 
 def test_worked_numbers() -> None:
