@@ -30,7 +30,7 @@ OUTER_WALL: Final = 0.2
 MAX_RISE: Final = 0.25
 """The highest step of stairs that the player walks up, in metres."""
 
-CELL_TYPES: Final = ("wall", "low", "platform", "barrier", "laser", "mover", "enemy", "switch", "exit")
+CELL_TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barrier", "laser", "mover", "enemy")
 """What a cell of the semantic map can hold, beside nothing."""
 
 SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
