@@ -1,0 +1,161 @@
+"""The game: one level, played decision by decision; it knows no spec, no reward and no end.
+
+Same level, seed and actions give the same episode, bit for bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from tltl_runtime.stealth.enemy import Enemies, PlayerView
+from tltl_runtime.stealth.level import Box, Level, Mover, Point
+from tltl_runtime.stealth.physics import World
+from tltl_runtime.stealth.player import DECISION, PlayerState
+from tltl_runtime.stealth.signals import Signals
+from tltlc.record import record
+
+BRANCHES: Final = (3, 3, 2, 2, 2)
+"""Of an action: x and y (0 stay, 1 towards greater, 2 towards smaller values), jump, crouch, sprint."""
+
+
+@record
+class Snapshot:
+    """What there is to see at one moment, for logs and pictures; tuples are in the level's order.
+
+    ``modes`` are those of the enemies (``patrol``, ``chase``, ``search``, ``return``), ``sees`` whether the player is
+    in their sight.
+    """
+
+    time: float
+    player: PlayerState
+    health: float
+    enemies: tuple[Point, ...]
+    yaws: tuple[float, ...]
+    modes: tuple[str, ...]
+    sees: tuple[bool, ...]
+    movers: tuple[Point, ...]
+    active: tuple[bool, ...]
+    open: tuple[bool, ...]
+
+
+class Game:
+    """A level that is played: ``reset``, then ``step`` after ``step``.
+
+    ``health`` is in [0, 1], ``time`` in seconds since the reset; ``active`` and ``open`` say which switches and
+    barriers are.  The game goes on without health: the spec decides what is over.
+
+    Raises:
+        WorldError: the level leaves the player no room, or a body leaves the level.
+    """
+
+    def __init__(self, level: Level) -> None:
+        self.level = level
+        self.world = World(level)
+        self.enemies = Enemies(level)
+        self._unlocks = {unlock.switch: unlock.barriers for unlock in level.unlocks}
+        self._barriers = {barrier.name: index for index, barrier in enumerate(level.barriers)}
+        self.reset(0)
+
+    def close(self) -> None:
+        """Give up the physics; the game is of no use afterwards."""
+        self.world.close()
+
+    def reset(self, seed: int) -> None:
+        """Begin the episode of this seed."""
+        self._rng = np.random.default_rng(seed)
+        self.world.reset(self._rng)
+        self.enemies.reset(self._rng)
+        self.steps = 0
+        self.health = 1.0
+        self.active = [False] * len(self.level.switches)
+        self.open = [False] * len(self.level.barriers)
+
+    def step(self, action: Sequence[int]) -> None:
+        """Play one decision of :data:`~tltl_runtime.stealth.player.DECISION` seconds: one number per branch."""
+        self.world.step(action)
+        movers = [_box(*each) for each in zip(self.level.movers, self.world.mover_positions(), strict=True)]
+        self.enemies.step(DECISION, self._player_view(), movers)
+        self.steps += 1
+        self.health = max(0.0, self.health - self.enemies.damage - self._burns() * DECISION)
+        self._press_switches()
+
+    @property
+    def time(self) -> float:
+        """Seconds since the reset."""
+        return self.steps * DECISION
+
+    def signals(self) -> Signals:
+        """The signals that specs may use, by name; they stay those of this moment only until the next step."""
+        return Signals(self)
+
+    def snapshot(self) -> Snapshot:
+        """What there is to see now."""
+        enemies = self.enemies
+        return Snapshot(
+            time=self.time,
+            player=self.world.player,
+            health=self.health,
+            enemies=enemies.positions,
+            yaws=enemies.yaws,
+            modes=tuple(map(str, enemies.modes)),
+            sees=enemies.sees,
+            movers=self.world.mover_positions(),
+            active=tuple(self.active),
+            open=tuple(self.open),
+        )
+
+    def _player_view(self) -> PlayerView:
+        player = self.world.player
+        if not player.crouching:
+            return PlayerView(player.position, velocity=player.velocity)
+        kind = self.world.kind
+        return PlayerView(player.position, kind.crouched_height, True, player.velocity)
+
+    def _press_switches(self) -> None:
+        """Activate the switches that the player has come to, and open what they open."""
+        feet = self.world.player.position
+        for index, switch in enumerate(self.level.switches):
+            if not self.active[index] and _distance(feet, switch.position) <= switch.radius:
+                self.active[index] = True
+                choices = self._unlocks.get(switch.name)
+                if choices:
+                    self._open(self._barriers[choices[int(self._rng.integers(len(choices)))]])
+        pressed = {switch.name for switch, active in zip(self.level.switches, self.active, strict=True) if active}
+        for index, barrier in enumerate(self.level.barriers):
+            if not self.open[index] and barrier.opened_by and pressed.issuperset(barrier.opened_by):
+                self._open(index)
+
+    def _open(self, barrier: int) -> None:
+        self.open[barrier] = True
+        self.world.set_open(barrier, True)
+        self.enemies.set_open(barrier, True)
+
+    def _burns(self) -> float:
+        """The health a second that lasers take from where the player's body is."""
+        player, kind = self.world.player, self.world.kind
+        height = kind.crouched_height if player.crouching else kind.height
+        return sum(
+            barrier.damage
+            for barrier, is_open in zip(self.level.barriers, self.open, strict=True)
+            if barrier.kind == "laser" and not is_open and _touches(player.position, kind.radius, height, barrier.box)
+        )
+
+
+def _box(mover: Mover, centre: Point) -> Box:
+    x, y, z = (side / 2 for side in mover.size)
+    return Box((centre[0] - x, centre[1] - y, centre[2] - z), (centre[0] + x, centre[1] + y, centre[2] + z))
+
+
+def _distance(a: Point, b: Point) -> float:
+    return float(((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2) ** 0.5)
+
+
+def _touches(feet: Point, radius: float, height: float, box: Box) -> bool:
+    """Whether an upright box around the body meets ``box``."""
+    return (
+        all(box.low[axis] - radius < feet[axis] < box.high[axis] + radius for axis in (0, 1))
+        and box.low[2] - height < feet[2] < box.high[2]
+    )

@@ -1,0 +1,135 @@
+"""The signals of the game: what specs may speak of, in SI units, each computed when it is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from math import atan2, dist, pi
+from typing import TYPE_CHECKING, Final
+
+from tltl_runtime.stealth.level import Level, Point
+
+if TYPE_CHECKING:
+    from tltl_runtime.stealth.game import Game
+
+_EYES: Final = 0.15
+"""Metres from the top of the body down to its eyes."""
+
+_Reader = Callable[["Game"], float]
+_Place = Callable[["Game"], Point]
+
+
+class Signals(Mapping[str, float]):
+    """The signals of a game at this moment, by the names that specs call them.
+
+    ``health stamina time position.x position.y position.z visible seen crouching grounded``; of each entity
+    ``distance bearing line_of_sight``; ``active(SWITCH)``, ``open(BARRIER)``; and the level's further names.
+    """
+
+    __slots__ = ("_game", "_readers")
+
+    def __init__(self, game: Game) -> None:
+        self._game = game
+        self._readers = readers(game.level)
+
+    def __getitem__(self, name: str) -> float:
+        return float(self._readers[name](self._game))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._readers)
+
+    def __len__(self) -> int:
+        return len(self._readers)
+
+
+_known: dict[Level, dict[str, _Reader]] = {}
+
+
+def readers(level: Level) -> dict[str, _Reader]:
+    """How each signal of a level is read, by name; made once for each level."""
+    if level not in _known:
+        _known[level] = _readers(level)
+    return _known[level]
+
+
+def _readers(level: Level) -> dict[str, _Reader]:
+    found: dict[str, _Reader] = {
+        "health": lambda game: game.health,
+        "stamina": lambda game: game.world.player.stamina,
+        "time": lambda game: game.time,
+        "position.x": lambda game: game.world.player.position[0],
+        "position.y": lambda game: game.world.player.position[1],
+        "position.z": lambda game: game.world.player.position[2],
+        "visible": lambda game: any(game.enemies.sees),
+        "seen": lambda game: any(game.enemies.knows),
+        "crouching": lambda game: game.world.player.crouching,
+        "grounded": lambda game: game.world.player.grounded,
+    }
+    for name, place in entities(level).items():
+        found |= _of_entity(name, place)
+    for index, switch in enumerate(level.switches):
+        found[f"active({switch.name})"] = _active(index)
+    for index, barrier in enumerate(level.barriers):
+        found[f"open({barrier.name})"] = _open(index)
+    for name, meant in level.signals:
+        found[name] = found[meant]
+    return found
+
+
+def entities(level: Level) -> dict[str, _Place]:
+    """Where each entity of a level is, by name: the feet of enemies, the middle of a barrier's base."""
+    found: dict[str, _Place] = {switch.name: _at(switch.position) for switch in level.switches}
+    found |= {each.name: _at(each.position) for each in level.exits}
+    for barrier in level.barriers:
+        low, high = barrier.box.low, barrier.box.high
+        found[barrier.name] = _at(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]))
+    found |= {enemy.name: _enemy(index) for index, enemy in enumerate(level.enemies)}
+    found |= {mover.name: _mover(index) for index, mover in enumerate(level.movers)}
+    return found
+
+
+# --- readers, each for one thing of the level -------------------------------------------------------
+
+
+def _of_entity(name: str, place: _Place) -> dict[str, _Reader]:
+    return {
+        f"distance({name})": lambda game: dist(game.world.player.position, place(game)),
+        f"bearing({name})": lambda game: _bearing(game, place(game)),
+        f"line_of_sight({name})": lambda game: _in_sight(game, place(game)),
+    }
+
+
+def _active(switch: int) -> _Reader:
+    return lambda game: game.active[switch]
+
+
+def _open(barrier: int) -> _Reader:
+    return lambda game: game.open[barrier]
+
+
+def _at(place: Point) -> _Place:
+    return lambda game: place
+
+
+def _enemy(index: int) -> _Place:
+    return lambda game: game.enemies.positions[index]
+
+
+def _mover(index: int) -> _Place:
+    return lambda game: game.world.mover_positions()[index]
+
+
+def _bearing(game: Game, place: Point) -> float:
+    """The angle from where the player looks to a place, from -pi to pi; 0 where the player stands on it."""
+    player = game.world.player
+    x, y = place[0] - player.position[0], place[1] - player.position[1]
+    if x == y == 0.0:
+        return 0.0
+    return (atan2(y, x) - player.yaw + pi) % (2 * pi) - pi
+
+
+def _in_sight(game: Game, place: Point) -> bool:
+    """Whether nothing stands between the player's eyes and a place half a metre above an entity's."""
+    player, kind = game.world.player, game.world.kind
+    x, y, z = player.position
+    eyes = (x, y, z + (kind.crouched_height if player.crouching else kind.height) - _EYES)
+    return not game.world.ray_blocked(eyes, (place[0], place[1], place[2] + 0.5))
