@@ -215,3 +215,27 @@ def test_loading_a_level_loads_no_physics() -> None:
 def test_assets_and_overlays_are_all_used() -> None:
     used = {name for level, variant in SHIPPED for name, _ in load_level(level, variant).files}
     assert used == {str(path.relative_to(LEVELS)) for path in LEVELS.rglob("*.toml")}
+
+
+def test_the_reference_describes_a_level_that_loads_and_every_key(folder: Path) -> None:
+    text = (LEVELS.parents[2] / "docs" / "levels.md").read_text(encoding="utf-8")
+    level, overlay = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    write("vault.toml", level.replace('v1 = ["guard_alert"]', 'v1 = ["guard_alert"]\nv2 = ["changes"]') + CRATES)
+    write("vault.tltl", "signal a: bool\nspec unseen = F a\n")
+    write("overlays/changes.toml", overlay)
+    assert load_level("vault.toml", "v2").enemies[0].kind.branches == ("check_gaps",)
+    assert load_level("vault.toml", "v1").spec.endswith("vault.tltl:unseen")
+    sources = [LEVELS.parent / "stealth" / f"{name}.py" for name in ("level_parts", "level_file")]
+    keys = {
+        key
+        for source in sources
+        for key in re.findall(
+            r"\.(?:number|whole|text|flag|names|points?|tables?)\(\"(\w+)\"", source.read_text(encoding="utf-8")
+        )
+    }
+    assert len(keys) > 35
+    missing = [key for key in sorted(keys) if not re.search(rf"`{key}`|`\[+(sensors\.)?{key}\]+`", text)]
+    assert not missing
+
+
+CRATES = '[[use]]\nasset = "crates"\nat = [5.0, 4.6, 0.0]\n'
