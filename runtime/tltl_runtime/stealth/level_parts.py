@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final, Literal, cast
 
+from tltl_runtime.stealth.branches import added_branches
 from tltl_runtime.stealth.level import (
     Barrier,
     Box,
@@ -20,7 +21,7 @@ from tltl_runtime.stealth.level import (
     Switch,
     Unlock,
 )
-from tltl_runtime.stealth.table import Table
+from tltl_runtime.stealth.table import Table, suggestion
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.record import record
 
@@ -31,7 +32,7 @@ MAX_RISE: Final = 0.25
 """The highest step of stairs that the player walks up, in metres."""
 
 CELL_TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barrier", "laser", "mover", "enemy")
-"""What a cell of the semantic map can hold, beside nothing."""
+"""What a cell of the semantic map can hold, beside nothing; where several meet, it holds the last of them."""
 
 SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
 
@@ -212,6 +213,11 @@ def enemy_kind(table: Table, name: str) -> EnemyKind:
         attack_damage=table.number("attack_damage", low=0.0, high=100.0, unit="a second"),
         branches=table.names("branches"),
     )
+    for branch in kind.branches:
+        if branch not in added_branches():
+            title = f"there is no behaviour branch `{branch}`"
+            help_ = suggestion(branch, added_branches())
+            table.log.append(Diagnostic("TLT0805", title, (table.place("branches"),), help_))
     table.done()
     return kind
 
