@@ -75,7 +75,8 @@ class SemanticMap:
         column = min(max(int((x - x0) * scale) - margin, 0), self._most_column)
         row = min(max(int((y - y0) * scale) - margin, 0), self._most_row)
         layer = min(max(int((z - z0) / LAYER + 0.5), 0), self._most_layer)
-        found = self._layers[crouching][layer][row : row + extent, column : column + extent].copy()
+        window = self._layers[crouching][layer][row : row + extent, column : column + extent]
+        found: NDArray[np.uint8] = window.copy()
         west, south = x0 + column / scale, y0 + row / scale
         bottom, top = z - BELOW, z + (CROUCHED if crouching else STANDING)
         if self._mover:

@@ -3,7 +3,7 @@
 A level is cut into square cells and, every quarter of a metre in height, into layers.  A layer tells for each cell
 what meets a body whose feet are at its height, down to what it stands on; there is one set of layers for a standing
 body and one for a crouched one, so a low passage is free in the second alone.  A cell that a thing meets at all is
-of its type.
+of its type; where several meet, of the one that CELL_TYPES names last.
 """
 
 from __future__ import annotations
@@ -16,10 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Box, Level, MapSensor, Point
+from tltl_runtime.stealth.level_parts import CELL_TYPES
 from tltlc.record import record
-
-TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barrier", "laser", "mover", "enemy")
-"""What a map can tell; where several meet in a cell, it tells the last of them.  0 in a map is none of its types."""
 
 LAYER: Final = 0.25
 """The height of a layer."""
@@ -52,13 +50,14 @@ class Frame:
 class Voxels:
     """The layers of a level, one set for each set of barriers that are shut.
 
-    Each layer has ``margin`` cells of nothing around the level.  Raises ValueError for a type that is none of TYPES.
+    Each layer has ``margin`` cells of nothing around the level.  Raises ValueError for a type that is not in
+    CELL_TYPES.
     """
 
     def __init__(self, level: Level, sensor: MapSensor) -> None:
-        unknown = [name for name in sensor.types if name not in TYPES]
+        unknown = [name for name in sensor.types if name not in CELL_TYPES]
         if unknown:
-            raise ValueError(f"a map knows no type {unknown[0]!r}: it can tell {', '.join(TYPES)}")
+            raise ValueError(f"a map knows no type {unknown[0]!r}: it can tell {', '.join(CELL_TYPES)}")
         self.level = level
         self.ids = {name: 1 + index for index, name in enumerate(sensor.types)}
         self.margin = sensor.extent // 2
@@ -79,7 +78,7 @@ class Voxels:
         """The layers while the barriers with these indices are shut; they are made once and not to be changed."""
         key = frozenset(shut)
         if key not in self._layers:
-            things = sorted(self._things(key), key=lambda thing: TYPES.index(thing[0]))
+            things = sorted(self._things(key), key=lambda thing: CELL_TYPES.index(thing[0]))
             known = [(self.ids[name], box) for name, box in things if name in self.ids]
             self._layers[key] = (self._drawn(known, STANDING), self._drawn(known, CROUCHED))
         return self._layers[key]

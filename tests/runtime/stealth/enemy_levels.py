@@ -21,8 +21,6 @@ from tltl_runtime.stealth.level import (
     Switch,
 )
 
-TYPES = ("floor", "wall", "low", "platform", "barrier", "laser", "mover", "switch", "exit", "enemy")
-
 GUARD = EnemyKind(
     name="guard",
     sight_range=8.0,
