@@ -9,7 +9,7 @@ import pytest
 NEEDED = ("gymnasium", "numpy", "pybullet", "torch")
 MISSING = [name for name in NEEDED if find_spec(name) is None]
 
-collect_ignore_glob = ["test_*.py", "*/test_*.py"] if MISSING else []
+collect_ignore_glob = ["*.py", "*/*.py"] if MISSING else []
 
 
 def pytest_report_header() -> str | None:
