@@ -1,6 +1,7 @@
 """The runtime of .tltl specifications: a stealth game, environments that reward by a spec, and many automata at once.
 
-Importing this package loads neither torch nor pybullet.  It needs the extra ``rl``.
+Importing this package registers the environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0`` and
+``tltl/Branching-v0`` and loads neither torch nor pybullet.  It needs the extra ``rl``.
 """
 
 from __future__ import annotations
@@ -34,3 +35,14 @@ def __getattr__(name: str) -> object:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
+
+
+def _register() -> None:
+    from gymnasium import register
+
+    for name in ("Navigation", "CoverAndHide", "Branching"):
+        maker = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in name).lstrip("_")
+        register(f"tltl/{name}-v0", entry_point=f"tltl_runtime.stealth.env:{maker}")
+
+
+_register()

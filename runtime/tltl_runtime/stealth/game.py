@@ -76,8 +76,7 @@ class Game:
     def step(self, action: Sequence[int]) -> None:
         """Play one decision of :data:`~tltl_runtime.stealth.player.DECISION` seconds: one number per branch."""
         self.world.step(action)
-        movers = [_box(*each) for each in zip(self.level.movers, self.world.mover_positions(), strict=True)]
-        self.enemies.step(DECISION, self._player_view(), movers)
+        self.enemies.step(DECISION, self._player_view(), self.mover_boxes())
         self.steps += 1
         self.health = max(0.0, self.health - self.enemies.damage - self._burns() * DECISION)
         self._press_switches()
@@ -90,6 +89,10 @@ class Game:
     def signals(self) -> Signals:
         """The signals that specs may use, by name; they stay those of this moment only until the next step."""
         return Signals(self)
+
+    def mover_boxes(self) -> list[Box]:
+        """Where the moving obstacles are now."""
+        return [_box(*each) for each in zip(self.level.movers, self.world.mover_positions(), strict=True)]
 
     def snapshot(self) -> Snapshot:
         """What there is to see now."""

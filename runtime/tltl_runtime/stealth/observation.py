@@ -1,0 +1,105 @@
+"""What the agent senses of the game: vectors to entities, values of variables, and the semantic map."""
+
+from __future__ import annotations
+
+from math import dist, pi
+from typing import Any, Final
+
+import numpy as np
+from gymnasium import spaces
+
+from tltl_runtime.stealth.game import Game
+from tltl_runtime.stealth.level import Level, Sensors
+from tltl_runtime.stealth.semantic_map import SemanticMap
+from tltl_runtime.stealth.signals import entities, readers
+
+_HALF_TIME_S: Final = 60.0
+"""The time that is sensed as 0.5: it has no end, and what is sensed has."""
+
+
+class Senses:
+    """The senses that a level, or ``sensors``, declares.  ``reset`` and ``look`` follow a game of that level.
+
+    ``space`` is a Dict, without the keys of which nothing is declared:
+
+    - ``entities`` float32 (3 n,), the vectors from the player's feet, over the diagonal of the bounds, in [-1, 1];
+    - ``variables`` float32 (n,): truth as 0 or 1, lengths over the diagonal, positions as a share of the bounds,
+      angles over pi, and the time t as t / (t + 60 s); the others as they are, all in [-1, 1];
+    - ``map`` uint8 (types, extent, extent), 1 where a cell is of that type; rows run north, columns east.
+
+    Raises:
+        ValueError: an entity or variable that the level does not have.
+    """
+
+    def __init__(self, level: Level, sensors: Sensors | None = None) -> None:
+        self.sensors = sensors = level.sensors if sensors is None else sensors
+        places, signals = entities(level), readers(level)
+        for name in sensors.entities:
+            if name not in places:
+                raise ValueError(f"level {level.name} has no entity `{name}`: there are {', '.join(places)}")
+        for name in sensors.variables:
+            if name not in signals:
+                raise ValueError(f"level {level.name} has no signal `{name}`: there are {', '.join(signals)}")
+        self._places = [places[name] for name in sensors.entities]
+        self._variables = [(signals[name], *_scale(name, level)) for name in sensors.variables]
+        self._diagonal = dist(level.bounds.low, level.bounds.high)
+        self._map = SemanticMap(level, sensors.map) if sensors.map else None
+        self._open: tuple[bool, ...] = ()
+        self.space = spaces.Dict(self._spaces())
+
+    def look(self, game: Game) -> dict[str, Any]:
+        """What is sensed now, in ``space``."""
+        found: dict[str, Any] = {}
+        if self._places:
+            x, y, z = game.world.player.position
+            vectors = [
+                part for place in self._places for px, py, pz in (place(game),) for part in (px - x, py - y, pz - z)
+            ]
+            found["entities"] = np.clip(np.array(vectors, dtype=np.float32) / self._diagonal, -1.0, 1.0)
+        if self._variables:
+            values = [_share(read(game), low, size) for read, low, size in self._variables]
+            found["variables"] = np.clip(np.array(values, dtype=np.float32), -1.0, 1.0)
+        if self._map is not None:
+            found["map"] = self._see(game, self._map)
+        return found
+
+    def _see(self, game: Game, semantic_map: SemanticMap) -> Any:
+        opened = tuple(game.open)
+        if opened != self._open:
+            semantic_map.reset()
+            for barrier, is_open in enumerate(opened):
+                if is_open:
+                    semantic_map.set_open(barrier, True)
+            self._open = opened
+        player = game.world.player
+        ids = semantic_map.look(player.position, player.crouching, game.mover_boxes(), game.enemies.positions)
+        return semantic_map.one_hot(ids)
+
+    def _spaces(self) -> dict[str, spaces.Space[Any]]:
+        found: dict[str, spaces.Space[Any]] = {}
+        if self._places:
+            found["entities"] = spaces.Box(-1.0, 1.0, (3 * len(self._places),), np.float32)
+        if self._variables:
+            found["variables"] = spaces.Box(-1.0, 1.0, (len(self._variables),), np.float32)
+        if self._map is not None:
+            sensor = self._map.sensor
+            found["map"] = spaces.Box(0, 1, (len(sensor.types), sensor.extent, sensor.extent), np.uint8)
+        return found
+
+
+def _share(value: float, low: float, size: float) -> float:
+    """A value as a share of what it can be; of no size, as a share of an open end."""
+    return (value - low) / size if size else value / (value + _HALF_TIME_S)
+
+
+def _scale(name: str, level: Level) -> tuple[float, float]:
+    """The least value and the size of the range in which a signal is sensed; size 0 where it has no end."""
+    low, high = level.bounds.low, level.bounds.high
+    if name == "time":
+        return 0.0, 0.0
+    if name.startswith("position."):
+        axis = "xyz".index(name[-1])
+        return low[axis], high[axis] - low[axis]
+    if name.startswith("distance("):
+        return 0.0, dist(low, high)
+    return 0.0, pi if name.startswith("bearing(") else 1.0
