@@ -40,8 +40,8 @@ class PlayerKind:
     gravity: float = 20.0
     step_height: float = 0.25
     """The highest stair that is walked up."""
-    fall_speed: float = 12.0
-    """Greatest speed of a fall, at the beginning of a decision."""
+    fall_speed: float = 8.0
+    """Greatest speed of a fall at the beginning of a decision, so that no landing ends behind a floor."""
 
 
 @record

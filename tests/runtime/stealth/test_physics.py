@@ -14,9 +14,11 @@ from tltlc.record import replace
 
 pybullet = pytest.importorskip("pybullet")
 
+from tltl_runtime.stealth.bodies import capsule, static_box, static_boxes  # noqa: E402
 from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Solid, Start  # noqa: E402
-from tltl_runtime.stealth.physics import Way, World, WorldError  # noqa: E402
+from tltl_runtime.stealth.physics import World, WorldError  # noqa: E402
 from tltl_runtime.stealth.player import DECISION, PlayerKind  # noqa: E402
+from tltl_runtime.stealth.way import Way  # noqa: E402
 
 Action = tuple[int, int, int, int, int]
 EAST, WEST, NORTH, STAY, JUMP, CROUCH = (
@@ -229,6 +231,31 @@ def test_more_boxes_than_a_compound_holds_all_stand(opened: list[World]) -> None
     for box in boxes:
         x, y, _ = box.box.low
         assert world.ray_blocked((x + 0.5, y - 0.2, 1.0), (x + 0.5, y + 0.5, 1.0))
+
+
+def test_bodies_have_nothing_to_draw() -> None:
+    client = pybullet.connect(pybullet.DIRECT)
+    try:
+        static_box(client, (2.0, 2.0, 2.0), (0.0, 0.0, 0.0))
+        capsule(client, 0.3, 1.8, (0.0, 0.0, 2.0))
+        view = pybullet.computeViewMatrix((5, 5, 5), (0, 0, 0), (0, 0, 1))
+        lens = pybullet.computeProjectionMatrixFOV(60, 1, 0.1, 100)
+        picture = pybullet.getCameraImage(32, 32, view, lens, physicsClientId=client)
+        assert max(max(row) for row in picture[4]) == -1
+    finally:
+        pybullet.disconnect(physicsClientId=client)
+
+
+def test_a_compound_of_too_many_boxes_is_refused() -> None:
+    with pytest.raises(ValueError, match="holds 16 boxes, 17 were given"):
+        static_boxes(0, [((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))] * 17)
+
+
+def test_static_bodies_do_not_meet_each_other(opened: list[World]) -> None:
+    world = World(busy())
+    opened.append(world)
+    pairs = {(row[1], row[2]) for row in pybullet.getContactPoints(physicsClientId=world._client)}
+    assert len(pairs) == 1, "only the player and the floor"
 
 
 def test_check_names_the_wall_that_is_not_there(opened: list[World]) -> None:

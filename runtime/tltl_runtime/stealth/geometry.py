@@ -1,0 +1,97 @@
+"""Boxes parallel to the axes and upright capsules: how deep they meet, and which boxes lie together."""
+
+from __future__ import annotations
+
+from math import floor, sqrt
+
+from tltl_runtime.stealth.level import Mover, Point
+
+Bounds = tuple[Point, Point]
+"""The low and the high corner of a box."""
+
+
+def parts(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
+    """The boxes in groups of at most ``size`` that lie together: halves along the longer side, again and again."""
+    if len(boxes) <= size:
+        return [boxes] if boxes else []
+    middles = [[low[axis] + high[axis] for low, high in boxes] for axis in (0, 1)]
+    axis = 0 if max(middles[0]) - min(middles[0]) >= max(middles[1]) - min(middles[1]) else 1
+    ordered = sorted(boxes, key=lambda box: box[0][axis] + box[1][axis])
+    half = len(boxes) // 2
+    return parts(ordered[:half], size) + parts(ordered[half:], size)
+
+
+def cells(boxes: list[Bounds], reach: float) -> dict[tuple[int, int], list[Bounds]]:
+    """For each square metre, the boxes within ``reach`` of it."""
+    cells: dict[tuple[int, int], list[Bounds]] = {}
+    for low, high in boxes:
+        for x in range(floor(low[0] - reach), floor(high[0] + reach) + 1):
+            for y in range(floor(low[1] - reach), floor(high[1] + reach) + 1):
+                cells.setdefault((x, y), []).append((low, high))
+    return cells
+
+
+def depth(feet: Point, height: float, radius: float, low: Point, high: Point) -> float:
+    """How far an upright capsule reaches into a box; negative when they are apart."""
+    return contact(feet, height, radius, low, high)[0]
+
+
+def contact(feet: Point, height: float, radius: float, low: Point, high: Point) -> tuple[float, Point]:
+    """How far an upright capsule reaches into a box, and the direction out of the box in which it is freed."""
+    x, y, z = feet
+    bottom, top = z + radius, z + height - radius
+    dx = x - min(max(x, low[0]), high[0])
+    dy = y - min(max(y, low[1]), high[1])
+    # The point of the axis that is nearest to the box, and the point of the box nearest to it.
+    if top < low[2]:
+        dz = top - low[2]
+    elif bottom > high[2]:
+        dz = bottom - high[2]
+    else:
+        dz = 0.0
+    distance = sqrt(dx * dx + dy * dy + dz * dz)
+    if distance > 0.0:
+        return radius - distance, (dx / distance, dy / distance, dz / distance)
+    # The axis is inside the box: out by the nearest side.
+    ways = (
+        (x - low[0], (-1.0, 0.0, 0.0)),
+        (high[0] - x, (1.0, 0.0, 0.0)),
+        (y - low[1], (0.0, -1.0, 0.0)),
+        (high[1] - y, (0.0, 1.0, 0.0)),
+        (top - low[2], (0.0, 0.0, -1.0)),
+        (high[2] - bottom, (0.0, 0.0, 1.0)),
+    )
+    way, normal = min(ways)
+    return radius + way, normal
+
+
+def reaches(feet: Point, height: float, place: Point, mover: Mover, reach: float) -> bool:
+    """Whether the box of a mover is within about ``reach`` of an upright capsule."""
+    low, high = around(place, mover.size)
+    return all(low[axis] - reach <= feet[axis] <= high[axis] + reach for axis in (0, 1)) and (
+        low[2] - reach - height <= feet[2] <= high[2] + reach
+    )
+
+
+def around(centre: Point, size: Point) -> Bounds:
+    """The corners of a box of this ``size``."""
+    (x, y, z), (a, b, c) = centre, size
+    return (x - a / 2, y - b / 2, z - c / 2), (x + a / 2, y + b / 2, z + c / 2)
+
+
+def inside(point: Point, low: Point, high: Point) -> bool:
+    """Whether a point is in a box or on its surface."""
+    return all(a <= value <= b for a, value, b in zip(low, point, high, strict=True))
+
+
+def sides(low: Point, high: Point) -> dict[str, tuple[Point, Point]]:
+    """The six sides of a box by name: a point a centimetre outside its middle, and the middle itself."""
+    middle = [(a + b) / 2 for a, b in zip(low, high, strict=True)]
+    sides: dict[str, tuple[Point, Point]] = {}
+    for axis, name in enumerate("xyz"):
+        for sign, edge in ((-1, low[axis]), (1, high[axis])):
+            outside, face = list(middle), list(middle)
+            outside[axis], face[axis] = edge + 0.01 * sign, edge
+            key = ("+" if sign > 0 else "-") + name
+            sides[key] = ((outside[0], outside[1], outside[2]), (face[0], face[1], face[2]))
+    return sides

@@ -1,0 +1,37 @@
+"""The ways of movers."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import sqrt
+
+from tltl_runtime.stealth.level import Mover, Point
+
+
+class Way:
+    """Where a mover is at a time of its own clock: there and back again, or round and round where it is closed."""
+
+    def __init__(self, mover: Mover) -> None:
+        path = mover.path
+        stops = [*path, path[0]] if mover.closed else [*path, *path[-2::-1]]
+        self._first = path[0]
+        self._legs: list[tuple[float, Point, Point, float]] = []
+        self._pause = mover.pause
+        self._lap = 0.0
+        for start, end in pairwise(stops):
+            length = sqrt(sum((b - a) ** 2 for a, b in zip(start, end, strict=True)))
+            self._legs.append((self._lap, start, end, length / mover.speed))
+            self._lap += mover.pause + length / mover.speed
+
+    def at(self, clock: float) -> Point:
+        """The centre at ``clock`` seconds; each leg begins with the pause at its first point."""
+        if self._lap <= 0.0:
+            return self._first
+        time = clock % self._lap
+        begin, start, end, duration = next(leg for leg in reversed(self._legs) if leg[0] <= time)
+        share = 0.0 if duration <= 0.0 else min(1.0, max(0.0, (time - begin - self._pause) / duration))
+        return (
+            start[0] + share * (end[0] - start[0]),
+            start[1] + share * (end[1] - start[1]),
+            start[2] + share * (end[2] - start[2]),
+        )
