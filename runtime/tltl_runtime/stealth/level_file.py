@@ -173,9 +173,7 @@ class _Loading:
         """The level's uses of parts, and its assets by name, with the overlays of the variant."""
         uses = self.table.tables("use")
         wanted = [(use, "asset") for use in uses]
-        listed = self.root.value.get("enemy")
-        enemies = listed.value if listed is not None and isinstance(listed.value, list) else []
-        wanted += [(Table(enemy, "`[[enemy]]`", []), "kind") for enemy in enemies if isinstance(enemy, Entry)]
+        wanted += [(Table(enemy, "`[[enemy]]`", []), "kind") for enemy in self._listed("enemy")]
         found: dict[str, Entry] = {}
         for table, key in wanted:
             name = table.text(key)
@@ -194,6 +192,12 @@ class _Loading:
         for table in assets.values():
             table.text("doc")
         return uses, assets
+
+    def _listed(self, key: str) -> list[Entry]:
+        """The tables under a key, if they are any."""
+        entry = self.root.value.get(key)
+        items = entry.value if entry is not None and isinstance(entry.value, list) else []
+        return [item for item in items if isinstance(item, Entry)]
 
     def _shared(self, folder: str, name: str, label: Label) -> Path | None:
         """The file of an asset or overlay, beside the level or in the package."""
@@ -228,9 +232,9 @@ class _Loading:
             solids += parts.solids(assets[asset], self.places, shift, prefix)
             movers += parts.movers(assets[asset], self.places, shift, prefix)
             assets[asset].done()
-        for enemy in self.root.value["enemy"].value if "enemy" in self.root.value else ():
+        for enemy in self._listed("enemy"):
             kind = enemy.value.get("kind")
-            if kind is not None and kind.value in assets and kind.value not in kinds:
+            if kind is not None and kind.value in [name for name in assets if name not in kinds]:
                 self.log.append(wrong(kind, "kind", 'the name of an asset with `type = "enemy"`'))
         return solids, movers
 
