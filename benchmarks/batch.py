@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from benchmarks.measure import median, quartiles, run
 from benchmarks.specs import PAPER_SPECS, source, trace
-from benchmarks.store import ROOT, Record, Store, source_digest
+from benchmarks.store import ROOT, Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -36,11 +36,7 @@ TIMEOUT_S = 600.0
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
     """Measure each spec that the store does not have yet, or that failed."""
-    for name in PAPER_SPECS:
-        if "steps_per_s" not in store.section(SECTION).get(name, {}):
-            record = _measured(name)
-            store.put(SECTION, name, record)
-            say(f"{name}: {json.dumps(record)}")
+    measure_missing(store, SECTION, PAPER_SPECS, _measured, say)
 
 
 def compared(name: str) -> Record:

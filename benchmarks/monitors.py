@@ -19,7 +19,7 @@ from typing import Any
 from benchmarks.measure import median, quartiles, run
 from benchmarks.peer_monitors import PEERS
 from benchmarks.specs import PAPER_SPECS, hand_written, source, trace
-from benchmarks.store import ROOT, Record, Store, source_digest
+from benchmarks.store import ROOT, Record, Store, measure_missing, source_digest
 
 SECTION = "monitors"
 ROUNDS = 15
@@ -29,12 +29,13 @@ TIMEOUT_S = 600.0
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
     """Measure each spec that the store does not have yet, or that failed."""
-    for name in PAPER_SPECS:
-        if "steps_per_s" not in store.section(SECTION).get(name, {}):
-            made = run([sys.executable, "-m", "benchmarks.monitors", name], TIMEOUT_S, cwd=ROOT)
-            record = json.loads(made.output) if made.status == 0 else {"failed": f"exit status {made.status}"}
-            store.put(SECTION, name, record)
-            say(f"{name}: {json.dumps(record)}")
+    measure_missing(store, SECTION, PAPER_SPECS, _measured, say)
+
+
+def _measured(name: str) -> Record:
+    made = run([sys.executable, "-m", "benchmarks.monitors", name], TIMEOUT_S, cwd=ROOT)
+    record: Record = json.loads(made.output) if made.status == 0 else {"failed": f"exit status {made.status}"}
+    return record
 
 
 def compared(name: str) -> Record:

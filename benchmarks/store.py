@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,17 @@ class Store:
         partial = self._path.with_suffix(".partial")
         partial.write_text(json.dumps(self._content, indent=1) + "\n", encoding="utf-8")
         partial.replace(self._path)
+
+
+def measure_missing(
+    store: Store, section: str, names: Iterable[str], measured: Callable[[str], Record], say: Callable[[str], None]
+) -> None:
+    """Put the record of each name that has no ``steps_per_s`` in the store yet: not measured, or failed."""
+    for name in names:
+        if "steps_per_s" not in store.section(section).get(name, {}):
+            record = measured(name)
+            store.put(section, name, record)
+            say(f"{name}: {json.dumps(record)}")
 
 
 def source_digest(*packages: str) -> str:

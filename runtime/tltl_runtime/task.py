@@ -9,14 +9,12 @@ from typing import Final
 
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.monitor import Monitor, RewardOptions
 from tltlc.pipeline import CompileOptions, compile_source, compile_text, read_artefact, unknown_spec
 from tltlc.record import EMPTY, record
 from tltlc.source import SourceFile
 
 _FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
-_NAMED: Final = re.compile(r"(?P<path>.+):(?P<name>[A-Za-z_][A-Za-z0-9_]*)\Z", re.DOTALL)
 
 
 @record
@@ -68,17 +66,18 @@ def _compiled(spec: str | Path) -> Fspa:
     if isinstance(spec, str) and _is_text(spec):
         source = SourceFile("<text>", spec)
         return read_artefact(source) if _is_artefact(source) else _only(compile_text(spec), source.name)
-    path, name = _split(str(spec))
-    source = read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
-    if _is_artefact(source):
+    from tltlc.cli.inputs import read, split
+    from tltlc.cli.project import project_for
+
+    path, name = split(str(spec))
+    source, is_artefact = read(path)
+    if is_artefact:
         fspa = read_artefact(source)
         if name not in (None, fspa.name):
             raise TltlError([unknown_spec(str(name), [fspa.name], path)])
         return fspa
-    from tltlc.cli.project import project_for
-
     options = CompileOptions(library_dirs=project_for(path).libraries, specs=(name,) if name else ())
-    return _only(compile_source(read_source(path), options).automata, path)
+    return _only(compile_source(source, options).automata, path)
 
 
 def _is_text(spec: str) -> bool:
@@ -91,14 +90,6 @@ def _is_text(spec: str) -> bool:
 def _is_artefact(source: SourceFile) -> bool:
     """No specification begins with a brace."""
     return source.text.lstrip().startswith("{")
-
-
-def _split(argument: str) -> tuple[str, str | None]:
-    """The path and the name of ``PATH:NAME``; the path of a file that is there, or a drive letter, is never split."""
-    found = _NAMED.match(argument)
-    if found is None or len(found["path"]) == 1 or Path(argument).is_file():
-        return argument, None
-    return found["path"], found["name"]
 
 
 def _only(automata: tuple[Fspa, ...], file: str) -> Fspa:

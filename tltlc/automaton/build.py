@@ -45,11 +45,15 @@ def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
 
 
 def minimal_machine(
-    formula: Formula, atoms: Sequence[str], state_budget: int, exclusive: Iterable[Sequence[int]] = ()
+    formula: Formula,
+    atoms: Sequence[str],
+    state_budget: int,
+    exclusive: Iterable[Sequence[int]] = (),
+    diagrams: Diagrams | None = None,
 ) -> tuple[Successors, Machine, int]:
     """The minimal machine of a formula, with the tables it lives in and the letters that ``exclusive`` allows."""
     normal = negation_normal_form(formula)
-    diagrams = Diagrams()
+    diagrams = Diagrams() if diagrams is None else diagrams
     successors = Successors(atoms, diagrams)
     successors.number_variables(normal)
     allowed = _allowed_letters(diagrams, exclusive)

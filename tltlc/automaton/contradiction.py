@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import minimal_machine
-from tltlc.automaton.diagrams import IMPOSSIBLE, OutOfSteps
+from tltlc.automaton.diagrams import IMPOSSIBLE, Diagrams, OutOfSteps
 from tltlc.automaton.machine import OutOfStates
 from tltlc.logic.formula import and_
 from tltlc.resolve.spec import Part, Spec
 
 _MOST_PARTS = 40
 _STATES = 1_000
+_STEPS = 50_000
 """Above these, parts are not told apart: a warning must not take longer than the compilation."""
 
 
@@ -33,7 +35,8 @@ def _unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]
     try:
-        successors, machine, _ = minimal_machine(whole, names, _STATES, spec.exclusive)
+        with recursion_room():
+            successors, machine, _ = minimal_machine(whole, names, _STATES, spec.exclusive, Diagrams(step_limit=_STEPS))
     except (OutOfStates, OutOfSteps, RecursionError):
         return False
     diagrams = successors.diagrams

@@ -14,7 +14,7 @@ from tltl_runtime.stealth.enemy import Enemies, PlayerView
 from tltl_runtime.stealth.level import Box, Level, Mover, Point
 from tltl_runtime.stealth.physics import World
 from tltl_runtime.stealth.player import DECISION, PlayerState
-from tltl_runtime.stealth.signals import Signals
+from tltl_runtime.stealth.signals import Signals, readers
 from tltlc.record import record
 
 BRANCHES: Final = (3, 3, 2, 2, 2)
@@ -55,6 +55,7 @@ class Game:
         self.level = level
         self.world = World(level)
         self.enemies = Enemies(level)
+        self.readers = readers(level)
         self._unlocks = {unlock.switch: unlock.barriers for unlock in level.unlocks}
         self._barriers = {barrier.name: index for index, barrier in enumerate(level.barriers)}
         self.reset(0)

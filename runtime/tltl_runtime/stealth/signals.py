@@ -29,7 +29,7 @@ class Signals(Mapping[str, float]):
 
     def __init__(self, game: Game) -> None:
         self._game = game
-        self._readers = readers(game.level)
+        self._readers = game.readers
 
     def __getitem__(self, name: str) -> float:
         return float(self._readers[name](self._game))
@@ -41,17 +41,8 @@ class Signals(Mapping[str, float]):
         return len(self._readers)
 
 
-_known: dict[Level, dict[str, _Reader]] = {}
-
-
 def readers(level: Level) -> dict[str, _Reader]:
-    """How each signal of a level is read, by name; made once for each level."""
-    if level not in _known:
-        _known[level] = _readers(level)
-    return _known[level]
-
-
-def _readers(level: Level) -> dict[str, _Reader]:
+    """How each signal of a level is read, by name."""
     found: dict[str, _Reader] = {
         "health": lambda game: game.health,
         "stamina": lambda game: game.world.player.stamina,

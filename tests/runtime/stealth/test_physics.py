@@ -8,17 +8,15 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import pybullet
 import pytest
+from tltl_runtime.stealth.bodies import capsule, static_box, static_boxes
+from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Solid, Start
+from tltl_runtime.stealth.physics import World, WorldError
+from tltl_runtime.stealth.player import DECISION, PlayerKind
+from tltl_runtime.stealth.way import Way
 
 from tltlc.record import replace
-
-pybullet = pytest.importorskip("pybullet")
-
-from tltl_runtime.stealth.bodies import capsule, static_box, static_boxes  # noqa: E402
-from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Solid, Start  # noqa: E402
-from tltl_runtime.stealth.physics import World, WorldError  # noqa: E402
-from tltl_runtime.stealth.player import DECISION, PlayerKind  # noqa: E402
-from tltl_runtime.stealth.way import Way  # noqa: E402
 
 Action = tuple[int, int, int, int, int]
 EAST, WEST, NORTH, STAY, JUMP, CROUCH = (
@@ -410,3 +408,5 @@ def test_closing_twice_is_harmless() -> None:
     world = World(arena())
     world.close()
     world.close()
+    with pytest.raises(pybullet.error):
+        world.step((0, 0, 0, 0, 0))
