@@ -66,6 +66,7 @@ class Game:
 
     def reset(self, seed: int) -> None:
         """Begin the episode of this seed."""
+        self.seed = seed
         self._rng = np.random.default_rng(seed)
         self.world.reset(self._rng)
         self.enemies.reset(self._rng)
