@@ -11,8 +11,10 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import Monitor, RewardOptions
 from tltlc.pipeline import CompileOptions, compile_source, compile_text, read_artefact, unknown_spec
+from tltlc.project import project_for
 from tltlc.record import EMPTY, record
 from tltlc.source import SourceFile
+from tltlc.spec_file import read, split
 
 _FILE: Final = re.compile(r"(?s:.+)\.(tltl|json)(:[A-Za-z_][A-Za-z0-9_]*)?\Z")
 
@@ -66,9 +68,6 @@ def _compiled(spec: str | Path) -> Fspa:
     if isinstance(spec, str) and _is_text(spec):
         source = SourceFile("<text>", spec)
         return read_artefact(source) if _is_artefact(source) else _only(compile_text(spec), source.name)
-    from tltlc.cli.inputs import read, split
-    from tltlc.cli.project import project_for
-
     path, name = split(str(spec))
     source, is_artefact = read(path)
     if is_artefact:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import HIDE
-from tltlc.cli.inputs import split
+from tltlc.spec_file import split
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.cli.conftest import EXAMPLE, Outcome
-from tltlc.cli.project import Project, project_for, read_project
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.project import Project, project_for, read_project
 
 
 def test_no_project(inside: Path) -> None:

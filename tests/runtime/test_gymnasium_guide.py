@@ -11,9 +11,9 @@ from typing import Any
 
 import gymnasium
 import pytest
-from tltl_runtime import TltlEnv
 
 from tests.docs.blocks import DOCS, ROOT, Block, blocks
+from tltl_runtime import TltlEnv
 from tltlc import TltlError
 
 PAGE = DOCS / "guides" / "gymnasium.md"

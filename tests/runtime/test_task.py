@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from tltl_runtime import load_task
 
 import tltlc
 from tests.fixtures import cover_and_hide
+from tltl_runtime import load_task
 from tltlc.backends import emit
 from tltlc.monitor import RewardOptions
 from tltlc.record import replace

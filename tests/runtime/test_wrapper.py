@@ -17,9 +17,9 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode, SyncVectorEnv
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tltl_runtime import TltlEnv
 
 from tests.fixtures import cover_and_hide
+from tltl_runtime import TltlEnv
 from tltlc import TltlError
 from tltlc.monitor import MonitorError, RewardOptions
 from tltlc.record import replace

@@ -1,30 +1,20 @@
-"""What a command is given: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-`` for standard input."""
+"""What a command is given, compiled: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, or ``-`` for standard input."""
 
 from __future__ import annotations
 
-import os
-import re
-import sys
 from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-from tltlc.cli.main import STDIN_NAME
-from tltlc.cli.project import Project, project_for
 from tltlc.cli.settings import Settings, check_libraries
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, reading_error
+from tltlc.project import Project, project_for
 from tltlc.record import record
-from tltlc.source import SourceFile
+from tltlc.spec_file import STDIN, STDIN_NAME, read, split
 
 if TYPE_CHECKING:
-    from typing import BinaryIO
-
     from tltlc.automaton.fspa import Fspa
     from tltlc.resolve.spec import Program
-
-STDIN: Final = "-"
-_PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+    from tltlc.source import SourceFile
 
 
 @record
@@ -75,35 +65,6 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
     )
     compiled = compile_source(source, options)
     return Input(source.name, compiled.automata, compiled.program, project, compiled.diagnostics)
-
-
-def split(argument: str) -> tuple[str, str | None]:
-    """The path and the name of ``PATH:NAME``; a path that exists, or a drive letter, is never split."""
-    path, colon, name = argument.rpartition(":")
-    if not colon or not path or not _PLAIN_NAME.match(name) or os.path.exists(argument):  # noqa: PTH110
-        return argument, None
-    if len(path) == 1 and path.isalpha() and os.name == "nt":
-        return argument, None
-    return STDIN if path == STDIN_NAME else path, name
-
-
-def read(path: str) -> tuple[SourceFile, bool]:
-    """The text of a file or of standard input, and whether it is an artefact: no source begins with a brace."""
-    if path == STDIN:
-        return _read_stream(sys.stdin.buffer, STDIN_NAME)
-    try:
-        with Path(path).open("rb") as file:
-            return _read_stream(file, path)
-    except (OSError, ValueError) as error:
-        raise reading_error(path, error) from None
-
-
-def _read_stream(stream: BinaryIO, name: str) -> tuple[SourceFile, bool]:
-    data = stream.read(MAX_SOURCE_BYTES + 1)
-    if not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-        return decode(data, name), False
-    data += stream.read(MAX_ARTEFACT_BYTES + 1 - len(data))
-    return decode(data, name, max_bytes=MAX_ARTEFACT_BYTES), True
 
 
 def _artefact(source: SourceFile, settings: Settings, wanted: tuple[str, ...], project: Project) -> Input:

@@ -29,8 +29,6 @@ BUILT_IN: Final = {
 
 ENTRY_POINTS: Final = "tltlc.commands"
 COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
-STDIN_NAME: Final = "<stdin>"
-"""What standard input is called in messages; :mod:`tltlc.cli.inputs` reads it by that name, too."""
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
@@ -60,8 +58,12 @@ class CommandLine(click.Group):
         if not args and not ctx.resilient_parsing:
             click.echo(ctx.get_help(), err=True)
             raise exits.StopQuietlyError(exits.USAGE)
-        # A spec of standard input: click would take the hyphen for the start of options.
-        return super().parse_args(ctx, [f"{STDIN_NAME}{text[1:]}" if text.startswith("-:") else text for text in args])
+        if any(text.startswith("-:") for text in args):
+            # A spec of standard input: click would take the hyphen for the start of options.
+            from tltlc.spec_file import STDIN_NAME
+
+            args = [f"{STDIN_NAME}{text[1:]}" if text.startswith("-:") else text for text in args]
+        return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; click would answer these two with a status of its own."""

@@ -9,13 +9,13 @@ import pytest
 import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tltl_runtime.batch import BatchMonitor, BatchStep
-from tltl_runtime.batch import guards as batch_guards
-from tltl_runtime.batch.rewards import VERDICTS
 
 from benchmarks.specs import PAPER_SPECS, source, trace
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import atom_traces, automata
+from tltl_runtime.batch import BatchMonitor, BatchStep
+from tltl_runtime.batch import guards as batch_guards
+from tltl_runtime.batch.rewards import VERDICTS
 from tltlc import compile_file
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa

@@ -9,11 +9,11 @@ import pytest
 import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tltl_runtime.batch import BatchMonitor
-from tltl_runtime.batch.expressions import Program
 
 from tests.fixtures import near
 from tests.monitor.strategies import PARAMS, SIGNALS, expressions, numbers
+from tltl_runtime.batch import BatchMonitor
+from tltl_runtime.batch.expressions import Program
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.expression import ArithmeticOp, Condition, Const, Expression, Op, Signal, When
 from tltlc.expression_eval import evaluate

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import pi
 
 from hypothesis import strategies as st
+
 from tltl_runtime.stealth.level import (
     Barrier,
     Box,

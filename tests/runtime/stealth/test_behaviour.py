@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+
 from tltl_runtime.stealth import branches
 from tltl_runtime.stealth.behaviour import FAILURE, RUNNING, SUCCESS, Node, action, condition, selector, sequence
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tltl_runtime.stealth.enemy import CROUCHED_HEAD, Enemies, PlayerView
-from tltl_runtime.stealth.grid import RADIUS
-from tltl_runtime.stealth.level import Barrier, Box, Enemy, Level, Solid
 
 from tests.runtime.stealth.enemy_levels import GUARD, box, level, low, places, solids, wall
 from tests.runtime.stealth.test_grid import distance_to_boxes
+from tltl_runtime.stealth.enemy import CROUCHED_HEAD, Enemies, PlayerView
+from tltl_runtime.stealth.grid import RADIUS
+from tltl_runtime.stealth.level import Barrier, Box, Enemy, Level, Solid
 from tltlc.record import replace
 
 DT = 0.15

@@ -9,8 +9,9 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
-import tltl_runtime  # noqa: F401  (registers the environments)
 from gymnasium.utils.env_checker import check_env
+
+import tltl_runtime  # noqa: F401  (registers the environments)
 from tltl_runtime.stealth.env import GameEnv, make_env
 from tltl_runtime.stealth.level import MapSensor, Sensors
 

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+import tltlc
 from tltl_runtime.stealth.game import BRANCHES, Game
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.level_file import level_names, load_level, variants
-
-import tltlc
 
 ROOT = Path(__file__).parents[3]
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tltl_runtime.stealth.grid import RADIUS, Floor, Grid, grid_of
-from tltl_runtime.stealth.level import Barrier, Solid
 
 from tests.runtime.stealth.enemy_levels import box, level, low, places, solids, wall
+from tltl_runtime.stealth.grid import RADIUS, Floor, Grid, grid_of
+from tltl_runtime.stealth.level import Barrier, Solid
 
 ROOMS = (wall(4.9, 0.0, 5.1, 5.0), wall(4.9, 6.5, 5.1, 8.0))
 

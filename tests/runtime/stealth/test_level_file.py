@@ -12,11 +12,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+import tltlc
 from tltl_runtime.stealth.level import Box, Level, Solid
 from tltl_runtime.stealth.level_check import entities
 from tltl_runtime.stealth.level_file import LEVELS, level_names, load_level, variants
-
-import tltlc
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
 

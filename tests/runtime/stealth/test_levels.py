@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 
 import pytest
+
 from tltl_runtime.stealth.level_file import load_level
 from tltl_runtime.stealth.physics import World
 

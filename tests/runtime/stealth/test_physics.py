@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pybullet
 import pytest
+
 from tltl_runtime.stealth.bodies import capsule, static_box, static_boxes
 from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Solid, Start
 from tltl_runtime.stealth.physics import World, WorldError
 from tltl_runtime.stealth.player import DECISION, PlayerKind
 from tltl_runtime.stealth.way import Way
-
 from tltlc.record import replace
 
 Action = tuple[int, int, int, int, int]

@@ -7,6 +7,7 @@ from io import BytesIO
 import numpy as np
 import pytest
 from PIL import Image
+
 from tltl_runtime.stealth.level_file import level_names, load_level
 from tltl_runtime.stealth.plan import draw
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.segments import Corners, blocked, crosses
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from tests.runtime.stealth.enemy_levels import box, level, low, solids, wall
 from tltl_runtime.stealth.level import Barrier, MapSensor, Point, Solid, Switch
 from tltl_runtime.stealth.level_parts import CELL_TYPES
 from tltl_runtime.stealth.semantic_map import SemanticMap
 from tltl_runtime.stealth.voxels import Voxels
-
-from tests.runtime.stealth.enemy_levels import box, level, low, solids, wall
 
 SENSOR = MapSensor(CELL_TYPES, 0.5, 11)
 IDS = {name: 1 + index for index, name in enumerate(CELL_TYPES)}

@@ -51,11 +51,11 @@ def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
 
 def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:
     """The predicates that each library declares, as they stand in its text; files that are broken are reported."""
-    from tltlc.cli.project import project_for
     from tltlc.cli.settings import check_libraries
     from tltlc.files import read_source
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import PredicateDecl
+    from tltlc.project import project_for
     from tltlc.resolve.imports import standard_library
 
     check_libraries(libraries)

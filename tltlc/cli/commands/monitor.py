@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, BinaryIO
 import click
 
 from tltlc.cli import exits
-from tltlc.cli.inputs import STDIN, open_input, split
-from tltlc.cli.main import STDIN_NAME
+from tltlc.cli.inputs import open_input
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings, source_options
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reading_error
+from tltlc.spec_file import STDIN, STDIN_NAME, split
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa

@@ -1,0 +1,134 @@
+"""The optional project file ``tltl.toml``, found upwards from a source file.
+
+libraries = ["predicates"]            # folders, relative to the project file
+targets = ["json", "dot", "python"]   # what `tltlc compile` writes without -t
+
+[style]
+notation = "unicode"                  # of formulas in pictures: unicode, ascii or english
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.record import record
+from tltlc.source import SourceFile, Span
+
+if TYPE_CHECKING:
+    from tltlc.backends import Notation
+
+FILE_NAME: Final = "tltl.toml"
+NOTATIONS: Final = ("unicode", "ascii", "english")
+_KEYS: Final = ("libraries", "targets", "style")
+_STYLE_KEYS: Final = ("notation",)
+
+
+@record
+class Project:
+    """What a project file says; ``targets`` is empty where it says nothing of them."""
+
+    libraries: tuple[Path, ...] = ()
+    targets: tuple[str, ...] = ()
+    notation: Notation = "unicode"
+
+
+def project_for(path: str) -> Project:
+    """The project that a source file belongs to, by the nearest project file in its folder or above.
+
+    For standard input that is the current folder.  Errors: those of :func:`read_project`.
+    """
+    try:
+        folder = Path(path).absolute().parent if path != "-" else Path.cwd()
+    except FileNotFoundError:
+        return Project()  # the current folder has been deleted: nothing is above it
+    for place in (folder, *folder.parents):
+        candidate = place / FILE_NAME
+        if os.path.isfile(candidate):  # noqa: PTH113 (pathlib raises where a name is too long)
+            return read_project(candidate)
+    return Project()
+
+
+def read_project(path: Path) -> Project:
+    """The contents of a project file.
+
+    Errors: TLT0701 no TOML; else everything that is wrong: TLT0702 an unknown key, TLT0703 a value of the wrong kind.
+    """
+    from tltlc.files import read_source
+    from tltlc.toml_text import parse
+
+    source = read_source(path, _shown(path))
+    table = parse(source, "TLT0701", 'values are written as in `targets = ["json", "dot"]`')
+    style = table.get("style", {})
+    wrong = _unknown(table, _KEYS, source)
+    if not isinstance(style, dict):
+        wrong.append(_wrong(source, "style", "a table, e.g. `[style]`", style))
+        style = {}
+    wrong += _unknown(style, _STYLE_KEYS, source)
+    for key, example in (("libraries", '["predicates"]'), ("targets", '["json", "dot"]')):
+        if not _is_list_of_texts(table.get(key, [])):
+            wrong.append(_wrong(source, key, f"a list of texts, e.g. `{key} = {example}`", table.pop(key)))
+    notation = style.get("notation", "unicode")
+    if notation not in NOTATIONS:
+        wrong.append(_wrong(source, "notation", 'one of "unicode", "ascii", "english"', notation))
+    folders = {library: path.parent / library for library in table.get("libraries", [])}
+    for library, folder in folders.items():
+        if not os.path.isdir(folder):  # noqa: PTH112
+            wrong.append(_no_folder(source, library))
+    if wrong:
+        raise TltlError(wrong)
+    return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation)
+
+
+def _unknown(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:
+    """An error for each key that a table cannot have."""
+    from difflib import get_close_matches
+
+    found = []
+    for key in table:
+        if key not in keys:
+            close = get_close_matches(key, keys, n=1)
+            way_out = f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(f'`{k}`' for k in keys)}"
+            found.append(Diagnostic("TLT0702", f"unknown key `{key}`", _place(source, key), way_out))
+    return found
+
+
+def _is_list_of_texts(value: object) -> bool:
+    return isinstance(value, list) and all(isinstance(item, str) for item in value)
+
+
+def _wrong(source: SourceFile, key: str, expected: str, found: object) -> Diagnostic:
+    shown = f'"{found}"' if isinstance(found, str) else _KINDS.get(type(found).__name__, "another kind of value")
+    return Diagnostic("TLT0703", f"wrong value for `{key}`: {shown}", _place(source, key), f"expected {expected}")
+
+
+def _no_folder(source: SourceFile, library: str) -> Diagnostic:
+    title = f"there is no folder `{library}` beside this file"
+    return Diagnostic("TLT0703", title, _place(source, "libraries"), "create it, or name one that is there")
+
+
+_KINDS: Final = {
+    "int": "a number",
+    "float": "a number",
+    "bool": "true or false",
+    "list": "a list",
+    "dict": "a table",
+}
+
+
+def _place(source: SourceFile, key: str) -> tuple[Label, ...]:
+    """Where the key stands, as far as a search for it at the start of a line can tell."""
+    import re
+
+    found = re.search(rf"^\s*\[?\s*[\"']?({re.escape(key)})\b", source.text, re.MULTILINE)
+    return (Label(source, Span(*found.span(1))),) if found else ()
+
+
+def _shown(path: Path) -> str:
+    """The path, relative to the current folder where it lies inside."""
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)

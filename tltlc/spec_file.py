@@ -1,0 +1,54 @@
+"""A file that holds specs, as it is named and read: ``SPEC.tltl``, ``SPEC.tltl:NAME``, an artefact, ``-``."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from typing import TYPE_CHECKING, Final
+
+from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, reading_error
+from tltlc.source import SourceFile
+
+if TYPE_CHECKING:
+    from typing import BinaryIO
+
+STDIN: Final = "-"
+"""The path that stands for standard input."""
+
+STDIN_NAME: Final = "<stdin>"
+"""What standard input is called in messages; it can be named so, too."""
+
+_PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+
+
+def split(argument: str) -> tuple[str, str | None]:
+    """The path and the name of ``PATH:NAME``; a path that exists, or a drive letter, is never split."""
+    path, colon, name = argument.rpartition(":")
+    if not colon or not path or not _PLAIN_NAME.match(name) or os.path.exists(argument):  # noqa: PTH110
+        return argument, None
+    if len(path) == 1 and path.isalpha() and os.name == "nt":
+        return argument, None
+    return STDIN if path == STDIN_NAME else path, name
+
+
+def read(path: str) -> tuple[SourceFile, bool]:
+    """The text of a file or of standard input, and whether it is an artefact: no source begins with a brace.
+
+    Errors: those of :func:`tltlc.files.read_source`.
+    """
+    if path == STDIN:
+        return _read_stream(sys.stdin.buffer, STDIN_NAME)
+    try:
+        with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
+            return _read_stream(file, path)
+    except (OSError, ValueError) as error:
+        raise reading_error(path, error) from None
+
+
+def _read_stream(stream: BinaryIO, name: str) -> tuple[SourceFile, bool]:
+    data = stream.read(MAX_SOURCE_BYTES + 1)
+    if not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
+        return decode(data, name), False
+    data += stream.read(MAX_ARTEFACT_BYTES + 1 - len(data))
+    return decode(data, name, max_bytes=MAX_ARTEFACT_BYTES), True
