@@ -47,6 +47,9 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     ``info`` gains ``verdict``, ``state``, ``label``, ``progress``, ``success`` (the episode ended here, in success),
     ``limiting`` and ``atoms`` (their values by name, none after a reset).
 
+    ``sample`` is what ``signals`` gave last, and ``taken`` the monitor's :class:`~tltlc.monitor.Step` on it, None after
+    a reset: with ``task`` all that a recording of the episode needs.
+
     Raises:
         TltlError: what :func:`load_task` raises; TLT0617 where the environment has a ``tltl_clock_s``, in seconds a
             step, and the spec's clock is another.
@@ -74,6 +77,8 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         self._flat = not isinstance(env.observation_space, spaces.Dict)
         self._signals = signals
         self._monitor = self.task.monitor()
+        self.sample: Mapping[str, SupportsFloat] = {}
+        self.taken: Step | None = None
         self._names = tuple(atom.name for atom in self.task.fspa.atoms)
         self._one_hot: NDArray[np.float32] = np.eye(len(self.task.fspa.states), dtype=np.float32)
 
@@ -88,6 +93,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         """
         observation, info = self.env.reset(seed=seed, options=options)
         self._monitor.reset()
+        self.taken = None
         _check_finite(self.task.fspa, self._sample("after the reset"))
         start = self.task.fspa.states[0]
         info = {
@@ -111,7 +117,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         """
         observation, _, terminated, truncated, info = self.env.step(action)
         sample = self._sample(f"step {self._monitor.steps + 1}")
-        step = self._monitor.step(sample, last=terminated or truncated)
+        self.taken = step = self._monitor.step(sample, last=terminated or truncated)
         for notice in self._monitor.notices:
             warnings.warn(f"{notice.code}: {notice.title}", stacklevel=2)
         self._monitor.notices.clear()
@@ -128,6 +134,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         missing = [signal.name for signal in self.task.fspa.signals if signal.name not in given]
         if missing:
             raise MonitorError([_missing(missing, [str(name) for name in given], when)])
+        self.sample = given
         return given
 
     def _said(self, step: Step) -> dict[str, Any]:

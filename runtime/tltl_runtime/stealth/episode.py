@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Level
 from tltlc.automaton.fspa import Fspa
-from tltlc.record import record
+from tltlc.monitor import RewardOptions
+from tltlc.record import EMPTY, record
 
 End = Literal["success", "violation", "limit", "stopped"]
 
@@ -21,8 +22,8 @@ class Episode:
     """One episode of n decisions, with all that it takes to draw it and to judge it again.
 
     ``seed`` is the game's: the level, reset with it, and ``actions`` give the same episode, bit for bit.  Rows of
-    length n + 1 begin with the moment of the reset.  ``end`` is ``stopped`` where neither the spec nor the limit
-    ended the episode.
+    length n + 1 begin with the moment of the reset.  ``end`` is ``limit`` where the spec's limit or the environment's
+    came before its verdict was settled, and ``stopped`` where the player left off.
     """
 
     level: Level
@@ -50,3 +51,7 @@ class Episode:
     """Of the last step: ``holding``, ``pending``, ``satisfied`` or ``violated``."""
     success: bool
     end: End
+    reward: RewardOptions = RewardOptions()
+    """How the steps were rewarded."""
+    versions: Mapping[str, str] = EMPTY
+    """Of what recorded the episode, by name: the same ones give the same episode again."""

@@ -1,0 +1,175 @@
+"""Record episodes as they are played."""
+
+from __future__ import annotations
+
+import platform
+from functools import lru_cache
+from importlib.metadata import version
+from typing import Any, Final
+
+import gymnasium
+import numpy as np
+from gymnasium.utils import RecordConstructorArgs
+
+from tltl_runtime.stealth.env import GameEnv
+from tltl_runtime.stealth.episode import End, Episode
+from tltl_runtime.stealth.game import BRANCHES, Snapshot
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.wrapper import TltlEnv
+from tltlc.monitor import Step
+
+_PACKAGES: Final = ("tltlc", "pybullet", "numpy")
+
+
+class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
+    """Records the episode that is being played; observations, rewards and infos pass through as they are.
+
+    ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one that leave actions as they are.
+    ``player`` is the name that the recording gives whoever plays.
+
+    Raises:
+        TypeError: ``env`` has no spec or is not the game.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any], player: str = "expert") -> None:
+        RecordConstructorArgs.__init__(self, player=player)
+        gymnasium.Wrapper.__init__(self, env)
+        self._game = _game_env(env).game
+        self._judge = _judge(env)
+        self._player = player
+        self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
+        self._rows: _Rows | None = None
+        self._over = False
+
+    @property
+    def episode(self) -> Episode:
+        """The episode so far, a copy; raises RuntimeError before the first reset."""
+        if self._rows is None:
+            raise RuntimeError("there is no episode before the first reset")
+        return self._rows.episode(self._judge, self._player)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begin a new episode; the one before is forgotten."""
+        observation, info = self.env.reset(seed=seed, options=options)
+        self._rows = _Rows(self._game.level, self._game.seed, self._game.snapshot(), self._signals())
+        self._over = False
+        return observation, info
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """Play one decision and record it, unless the episode was over before.
+
+        Raises:
+            RuntimeError: there was no reset before.
+            ValueError: the action is not one whole number in its range for each branch of the game's actions.
+        """
+        if self._rows is None:
+            raise RuntimeError("there is no episode before the first reset")
+        numbers = _numbers(action)
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        if not self._over:
+            taken = self._judge.taken
+            assert taken is not None
+            atoms = tuple(info["atoms"].values())
+            self._rows.add(numbers, self._game.snapshot(), self._signals(), atoms, taken, info["success"])
+            self._over = terminated or truncated
+        return observation, reward, terminated, truncated, info
+
+    def _signals(self) -> list[float]:
+        sample = self._judge.sample
+        return [float(sample[name]) for name in self._names]
+
+
+class _Rows:
+    """An episode while it grows."""
+
+    def __init__(self, level: Level, seed: int, snapshot: Snapshot, signals: list[float]) -> None:
+        self.level, self.seed = level, seed
+        self.snapshots, self.signals = [snapshot], [signals]
+        self.actions: list[list[int]] = []
+        self.atoms: list[tuple[float, ...]] = []
+        self.steps: list[Step] = []
+        self.success = False
+
+    def add(
+        self,
+        action: list[int],
+        snapshot: Snapshot,
+        signals: list[float],
+        atoms: tuple[float, ...],
+        step: Step,
+        success: bool,
+    ) -> None:
+        """Take one decision."""
+        self.actions.append(action)
+        self.snapshots.append(snapshot)
+        self.signals.append(signals)
+        self.atoms.append(atoms)
+        self.steps.append(step)
+        self.success = success
+
+    def episode(self, judge: TltlEnv, player: str) -> Episode:
+        """What there is so far."""
+        fspa, steps, count = judge.task.fspa, self.steps, len(self.steps)
+        return Episode(
+            level=self.level,
+            fspa=fspa,
+            params=dict(judge.task.params),
+            player=player,
+            seed=self.seed,
+            actions=np.array(self.actions, dtype=np.uint8).reshape(count, len(BRANCHES)),
+            snapshots=tuple(self.snapshots),
+            signals=np.array(self.signals, dtype=np.float64).reshape(count + 1, len(fspa.signals)),
+            atoms=np.array(self.atoms, dtype=np.float64).reshape(count, len(fspa.atoms)),
+            states=np.array([0, *(step.state for step in steps)], dtype=np.int32),
+            progress=np.array([0.0, *(step.progress for step in steps)], dtype=np.float64),
+            rewards=np.array([step.reward for step in steps], dtype=np.float64),
+            verdict=steps[-1].verdict if steps else fspa.states[0].verdict,
+            success=self.success,
+            end=_end(steps[-1] if steps else None, self.success),
+            reward=judge.task.reward,
+            versions=_versions(),
+        )
+
+
+def _end(last: Step | None, success: bool) -> End:
+    """How an episode stands after its last step."""
+    if last is None or not last.done:
+        return "stopped"
+    if success:
+        return "success"
+    return "violation" if last.verdict == "violated" else "limit"
+
+
+def _game_env(env: gymnasium.Env[Any, Any]) -> GameEnv:
+    inner = env.unwrapped
+    if not isinstance(inner, GameEnv):
+        raise TypeError(f"only the stealth game can be recorded, not {type(inner).__name__}: make_env(LEVEL) makes one")
+    return inner
+
+
+def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
+    """The wrapper with the spec."""
+    each: gymnasium.Env[Any, Any] = env
+    while not isinstance(each, TltlEnv):
+        if not isinstance(each, gymnasium.Wrapper):
+            raise TypeError("an episode is recorded with the judgement of a spec: wrap the game in TltlEnv first")
+        each = each.env
+    return each
+
+
+def _numbers(action: Any) -> list[int]:
+    numbers = np.asarray(action)
+    found: list[int] = numbers.tolist()
+    if numbers.dtype.kind not in "iu" or numbers.shape != (len(BRANCHES),) or not _in_range(found):
+        raise ValueError(f"an action is a whole number below each of {BRANCHES}, not {action!r:.80}")
+    return found
+
+
+def _in_range(numbers: list[int]) -> bool:
+    return all(0 <= number < branch for number, branch in zip(numbers, BRANCHES, strict=True))
+
+
+@lru_cache(maxsize=1)
+def _versions() -> dict[str, str]:
+    """Those of Python and of the packages that an episode depends on."""
+    return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}

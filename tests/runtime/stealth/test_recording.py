@@ -1,0 +1,131 @@
+"""Recordings hold what was played, and playing is the same with and without them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+
+import tltl_runtime  # noqa: F401  (registers the environments)
+from tltl_runtime.stealth.env import GameEnv, make_env
+from tltl_runtime.stealth.recording import RecordEpisode
+
+NOTHING = [0, 0, 0, 0, 0]
+SOON = "signal health: ratio  spec soon { limit 4 steps  reach health < 50 % }"
+STAY = "signal health: ratio  spec stay { limit 4 steps  keep health > 50 % }"
+FALL = "signal time: time in [0 s, 60 s]  spec fall { limit 40 steps  keep time < 0.4 s }"
+CLIMB = "signal time: time in [0 s, 60 s]  spec climb { limit 40 steps  reach time > 0.4 s }"
+
+
+def actions(count: int, seed: int = 5) -> list[list[int]]:
+    rng = np.random.default_rng(seed)
+    return [[int(rng.integers(size)) for size in (3, 3, 2, 2, 2)] for _ in range(count)]
+
+
+@pytest.fixture(name="recorder")
+def _recorder() -> Iterator[RecordEpisode]:
+    env = RecordEpisode(make_env("cover_and_hide"), player="dice")
+    yield env
+    env.close()
+
+
+def test_rows_are_those_that_were_played(recorder: RecordEpisode) -> None:
+    _, info = recorder.reset(seed=7)
+    infos, rewards, said = [info], [], actions(30)
+    for action in said:
+        _, reward, _, _, info = recorder.step(action)
+        infos.append(info)
+        rewards.append(reward)
+    episode = recorder.episode
+    game = recorder.unwrapped.game  # type: ignore[attr-defined]
+    names = [signal.name for signal in episode.fspa.signals]
+    assert episode.level.name == "cover_and_hide" and episode.player == "dice" and episode.seed == game.seed
+    assert episode.actions.tolist() == said and episode.rewards.tolist() == rewards
+    assert episode.states.tolist() == [info["state"] for info in infos]
+    assert episode.progress.tolist() == [info["progress"] for info in infos]
+    assert episode.atoms.tolist() == [list(info["atoms"].values()) for info in infos[1:]]
+    assert episode.signals.shape == (31, len(names)) and len(episode.snapshots) == 31
+    assert episode.signals[-1].tolist() == [game.signals()[name] for name in names]
+    assert episode.signals[:, names.index("health")].tolist() == [each.health for each in episode.snapshots]
+    assert episode.snapshots[-1] == game.snapshot() and episode.snapshots[0].time == 0.0
+    assert (episode.end, episode.success, episode.verdict) == ("stopped", False, infos[-1]["verdict"])
+    assert episode.params == {"level_size": pytest.approx(recorder.unwrapped.tltl_params()["level_size"])}  # type: ignore[attr-defined]
+    assert {"python", "tltlc", "pybullet", "numpy"} == set(episode.versions)
+
+
+def test_recording_changes_nothing() -> None:
+    plain, recorded = make_env("branching", "v1"), RecordEpisode(make_env("branching", "v1"))
+    for seed in (3, None):
+        flows: list[list[Any]] = []
+        for env in (plain, recorded):
+            flow: list[Any] = [env.reset(seed=seed)]
+            flow += [env.step(action) for action in actions(40)]
+            flows.append(flow)
+        for one, other in zip(*flows, strict=True):
+            assert all(np.array_equal(one[0][key], other[0][key]) for key in one[0] | other[0])
+            assert one[1:] == other[1:]
+    plain.close()
+    recorded.close()
+
+
+def test_a_copy_stays_and_a_reset_in_the_middle_begins_anew(recorder: RecordEpisode) -> None:
+    with pytest.raises(RuntimeError, match="first reset"):
+        _ = recorder.episode
+    with pytest.raises(RuntimeError, match="first reset"):
+        recorder.step(NOTHING)
+    recorder.reset()
+    first = recorder.episode
+    assert len(first.actions) == 0 and first.verdict == "pending" and first.states.tolist() == [0]
+    assert first.atoms.shape == (0, len(first.fspa.atoms)) and first.actions.shape == (0, 5)
+    recorder.step(NOTHING)
+    assert len(first.snapshots) == 1 and len(recorder.episode.snapshots) == 2
+    recorder.reset()
+    again = recorder.episode
+    assert len(again.snapshots) == 1 and again.seed != first.seed
+
+
+@pytest.mark.parametrize(
+    ("spec", "end", "success", "steps"),
+    [
+        (SOON, "limit", False, 4),
+        (STAY, "success", True, 4),
+        (FALL, "violation", False, 3),
+        (CLIMB, "success", True, 3),
+    ],
+)
+def test_how_episodes_end(spec: str, end: str, success: bool, steps: int) -> None:
+    env = RecordEpisode(make_env("navigation", spec=spec))
+    env.reset(seed=1)
+    for _ in range(6):  # what comes after the end is no part of it
+        env.step(NOTHING)
+    episode = env.episode
+    env.close()
+    assert (episode.end, episode.success, len(episode.actions)) == (end, success, steps)
+
+
+def test_it_records_what_gymnasium_makes_and_a_time_limit_around_it_only_stops() -> None:
+    env = RecordEpisode(gymnasium.make("tltl/Navigation-v0", max_episode_steps=3))
+    env.reset(seed=1)
+    ends = [env.step(NOTHING)[3] for _ in range(3)]
+    assert ends == [False, False, True]
+    assert env.episode.end == "stopped"
+    env.close()
+
+
+def test_what_cannot_be_recorded_is_said() -> None:
+    with pytest.raises(TypeError, match="only the stealth game can be recorded, not CartPoleEnv"):
+        RecordEpisode(gymnasium.make("CartPole-v1"))
+    game = GameEnv("navigation")
+    with pytest.raises(TypeError, match="wrap the game in TltlEnv first"):
+        RecordEpisode(game)
+    game.close()
+
+
+@pytest.mark.parametrize("action", [[0, 0, 0, 0], [3, 0, 0, 0, 0], [-1, 0, 0, 0, 0], [0.0] * 5, "jump"])
+def test_an_action_that_is_none_is_refused(recorder: RecordEpisode, action: Any) -> None:
+    recorder.reset()
+    with pytest.raises(ValueError, match="an action is a whole number below each of"):
+        recorder.step(action)
