@@ -24,9 +24,10 @@ EYES: Final = 1.6
 """An enemy's eyes above its feet."""
 STANDING_HEAD: Final = 1.5
 CROUCHED_HEAD: Final = 0.7
-"""What is looked for of the player, above its feet; its chest is at 0.7 of that."""
+"""What is looked for of the player, above its feet."""
 
-_CHEST: Final = 0.7
+CHEST: Final = 0.7
+"""Of the height of the head."""
 _ARRIVED: Final = 0.05
 _TURNED: Final = pi / 4
 _MOST_LEGS: Final = 16
@@ -215,7 +216,7 @@ class Guard:
         flat = hypot(dx, dy)
         self.sees = self.in_reach = False
         if flat <= kind.sight_range:
-            head, chest = (px, py, pz + player.head), (px, py, pz + _CHEST * player.head)
+            head, chest = (px, py, pz + player.head), (px, py, pz + CHEST * player.head)
             eyes = (self.x, self.y, EYES)
             in_cone = self.knows or dx * cos(self.yaw) + dy * sin(self.yaw) >= flat * self._half_angle_cosine
             near = flat <= kind.attack_range and self.knows
