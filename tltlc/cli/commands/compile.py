@@ -48,7 +48,7 @@ def command(
     from tltlc import backends
     from tltlc.cli.inputs import open_input
     from tltlc.cli.report import Report
-    from tltlc.cli.writing import write_files
+    from tltlc.writing import write_files
 
     with Report(format) as report:
         asked = [name.strip() for names in target_lists for name in names.split(",")]

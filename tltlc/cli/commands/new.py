@@ -23,7 +23,7 @@ Example:
 def command(folder: Path) -> int:
     """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file."""
     from tltlc.cli.report import Report
-    from tltlc.cli.writing import write_files
+    from tltlc.writing import write_files
 
     with Report() as report:
         if not _is_free(folder):

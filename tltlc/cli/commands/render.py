@@ -68,7 +68,7 @@ def command(
     from tltlc import backends
     from tltlc.cli.inputs import open_input
     from tltlc.cli.report import Report
-    from tltlc.cli.writing import write_file
+    from tltlc.writing import write_file
 
     kind = target or _kind(path)
     if path is None and kind == "png" and sys.stdout.isatty():
