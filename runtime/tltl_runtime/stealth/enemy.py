@@ -7,6 +7,7 @@ lines: it cannot enter a solid or a shut barrier.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from math import atan2, cos, hypot, pi, remainder, sin, sqrt
 from typing import Final, Literal
 
@@ -150,6 +151,13 @@ class Guard:
         """Where the way was last found from.  It is a free straight walk away: the way out of narrow corners."""
         self._half_angle_cosine = cos(min(enemy.kind.sight_angle, 2 * pi) / 2)
 
+    def fork(self, rng: np.random.Generator) -> Guard:
+        """The same guard at this moment, that goes on by itself and draws from ``rng``."""
+        other = copy(self)
+        other.rng = rng
+        other._visited = set(self._visited)
+        return other
+
     def step(self, dt: float, player: PlayerView, boxes: Sequence[Corners]) -> float:
         """Look, decide, move; returns the health that the player loses."""
         self.dt = dt
@@ -158,6 +166,11 @@ class Guard:
         self._tick(self)
         self._move(dt)
         return self.kind.attack_damage * dt if self.knows and self.in_reach else 0.0
+
+    @property
+    def state(self) -> tuple[object, ...]:
+        """Where it is, looks and wants to, and what it is at: of guards without added branches, all that counts."""
+        return (self.x, self.y, self.yaw, self.mode, self.leg, self.gap, self.back, self.search_left > 0.0)
 
     def go(self, goal: Place, speed: float) -> None:
         """From now on walk to a place, or to the nearest that can be reached, at a speed in m/s."""

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from tltl_runtime.stealth.enemy import Enemies, PlayerView
+from tltl_runtime.stealth.enemy import CROUCHED_HEAD, STANDING_HEAD, Enemies, PlayerView
 from tltl_runtime.stealth.level import Box, Level, Mover, Point
 from tltl_runtime.stealth.physics import World
 from tltl_runtime.stealth.player import DECISION, PlayerState
@@ -114,10 +114,8 @@ class Game:
 
     def _player_view(self) -> PlayerView:
         player = self.world.player
-        if not player.crouching:
-            return PlayerView(player.position, velocity=player.velocity)
-        kind = self.world.kind
-        return PlayerView(player.position, kind.crouched_height, True, player.velocity)
+        head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
+        return PlayerView(player.position, head, player.crouching, player.velocity)
 
     def _press_switches(self) -> None:
         """Activate the switches that the player has come to, and open what they open."""

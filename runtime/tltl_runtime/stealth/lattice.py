@@ -96,7 +96,7 @@ class Lattice:
         """Whether each action's way is free from each of the places [n, 2]: bool [actions, n]."""
         found = np.zeros((len(ACTIONS), len(places)), dtype=bool)
         for crouched in (0, 1):
-            mine = np.flatnonzero(CROUCHED == crouched)
+            mine = np.flatnonzero(crouched == CROUCHED)
             starts = np.broadcast_to(places[None], (len(mine), *places.shape)).reshape(-1, 2)
             ends = (places[None] + WAYS[mine, None]).reshape(-1, 2)
             found[mine] = ~_crossed(starts, ends, self._obstacles[crouched]).reshape(len(mine), -1)
@@ -139,7 +139,7 @@ class Lattice:
         shares = np.zeros((len(ends), 4), dtype=np.float32)
         limit = np.array(self._number.shape) - 1
         for corner, (dx, dy) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
-            column, row = np.clip(base + (dx + 3, dy + 3), 0, limit).T
+            column, row = np.clip(base + np.array((dx + 3, dy + 3)), 0, limit).T
             number = self._number[column, row]
             share = (part[:, 0] if dx else 1 - part[:, 0]) * (part[:, 1] if dy else 1 - part[:, 1])
             corners[:, corner] = np.maximum(number, 0)
