@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from functools import lru_cache
 from heapq import heappop, heappush
-from math import hypot, sqrt
-from typing import Any, Final
+from math import dist, hypot, inf, sqrt
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from tltl_runtime.stealth.surfaces import CELL, Cells, Surfaces
 from tltlc.record import record
 
 Seconds = NDArray[np.float64]
+_Edges = tuple[NDArray[np.intp], NDArray[np.intp], Seconds, NDArray[np.intp]]
 
 _DIRECTIONS: Final = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 _CLIMB: Final = 1.0
@@ -29,21 +30,54 @@ _CLIMB_REACH, _DROP_REACH, _LEAP_REACH = 1.0, 1.0, 2.25
 """How far from where a climb, a drop and a leap begin they end at most, in metres from centre to centre."""
 _JUMP_TIME: Final = 0.3
 """Seconds that a jump costs beside its way."""
+_GOAL: Final = 0.6
+"""Metres from a goal that count as there."""
 _CLOSE_TO_WALL: Final = 1.25
 """What a way past a wall with hardly any room costs more."""
 
 
+Kind = Literal["walk", "crouch", "climb", "drop", "leap"]
+
+_KINDS: Final[tuple[Kind, ...]] = ("walk", "crouch", "climb", "drop", "leap")
+
+
+@record
+class Leg:
+    """A piece of a way: how one gets to ``place``."""
+
+    kind: Kind
+    place: Point
+
+
 @record
 class Field:
-    """The seconds from each place to a goal [layers, rows, columns]; infinite where no way leads there."""
+    """The seconds from each place to a goal [layers, rows, columns]; infinite where no way leads there.
+
+    ``towards`` [places] holds where the way goes from each, -1 at the goal and where there is none, ``kinds`` how.
+    """
 
     surfaces: Surfaces
     seconds: Seconds
+    towards: NDArray[np.int64]
+    kinds: NDArray[np.uint8]
+
+    def way(self, start: Point, metres: float = inf) -> tuple[Leg, ...]:
+        """The way from the place nearest to ``start``, so far and no further."""
+        place = self.surfaces.nearest(start)
+        legs = []
+        here, length = self.surfaces.point(place), 0.0
+        while self.towards[place] >= 0 and length <= metres:
+            kind, place = _KINDS[self.kinds[place]], int(self.towards[place])
+            there = self.surfaces.point(place)
+            legs.append(Leg(kind, there))
+            length += dist(here, there)
+            here = there
+        return tuple(legs)
 
     def at(self, x: Seconds, y: Seconds, z: Seconds) -> Seconds:
         """The seconds from points [n] on the ground, by the best of the places around each."""
         surfaces, speed = self.surfaces, self.surfaces.kind.walk_speed
-        layers, rows, columns = self.seconds.shape
+        _, rows, columns = self.seconds.shape
         column = np.floor((x - surfaces.origin[0]) / CELL).astype(np.intp)
         row = np.floor((y - surfaces.origin[1]) / CELL).astype(np.intp)
         best = np.full(x.shape, np.inf)
@@ -64,23 +98,36 @@ class Routes:
     def __init__(self, level: Level, shut: Collection[int]) -> None:
         self.surfaces = Surfaces(level, shut)
         self._roomy = Surfaces(level, shut, margin=0.2).crouched
-        edges = list(self._edges())
-        self._into: list[list[tuple[int, float]]] = [[] for _ in range(self.surfaces.places.size)]
-        for sources, targets, seconds in edges:
-            for source, target, cost in zip(sources.tolist(), targets.tolist(), seconds.tolist(), strict=True):
-                self._into[target].append((source, cost))
-        self._fields: dict[tuple[Point, float], Field] = {}
+        self._into: list[list[tuple[int, float, int]]] = [[] for _ in range(self.surfaces.places.size)]
+        for sources, targets, seconds, kinds in self._edges():
+            columns = (each.tolist() for each in (sources, targets, seconds, kinds))
+            for source, target, cost, kind in zip(*columns, strict=True):
+                self._into[target].append((source, cost, kind))
+        self._fields: dict[object, Field] = {}
 
-    def field(self, goal: Point, radius: float = 0.6) -> Field:
+    def field(self, goal: Point, radius: float = _GOAL) -> Field:
         """The way from everywhere to within ``radius`` of ``goal``."""
         key = (goal, radius)
         if key not in self._fields:
-            self._fields[key] = Field(self.surfaces, self._seconds(self.surfaces.near(*goal, radius)))
+            self._fields[key] = self._field(self.surfaces.near(goal, radius))
         return self._fields[key]
 
-    def _seconds(self, goals: NDArray[np.intp]) -> Seconds:
+    def field_from(self, start: Point, goal: Point) -> Field:
+        """The way to ``goal``, or where none leads there from ``start`` to the place nearest to it that one leads to."""
+        field = self.field(goal)
+        place = self.surfaces.nearest(start)
+        if np.isfinite(field.seconds.flat[place]):
+            return field
+        key = (goal, place)
+        if key not in self._fields:
+            reached = min(self._reached(place), key=lambda each: dist(self.surfaces.point(each), goal))
+            self._fields[key] = self._field(np.array([reached]))
+        return self._fields[key]
+
+    def _field(self, goals: NDArray[np.intp]) -> Field:
         """The shortest times to any of ``goals`` (Dijkstra's algorithm, backwards)."""
-        seconds: Any = [float("inf")] * self.surfaces.places.size
+        seconds: Any = [inf] * self.surfaces.places.size
+        towards, kinds = [-1] * len(seconds), [0] * len(seconds)
         queue = [(0.0, goal) for goal in goals.tolist()]
         for _, goal in queue:
             seconds[goal] = 0.0
@@ -88,15 +135,32 @@ class Routes:
             time, place = heappop(queue)
             if time > seconds[place]:
                 continue
-            for source, cost in self._into[place]:
+            for source, cost, kind in self._into[place]:
                 if time + cost < seconds[source]:
-                    seconds[source] = time + cost
+                    seconds[source], towards[source], kinds[source] = time + cost, place, kind
                     heappush(queue, (time + cost, source))
-        return np.array(seconds).reshape(self.surfaces.places.shape)
+        shape = self.surfaces.places.shape
+        return Field(
+            self.surfaces, np.array(seconds).reshape(shape), np.array(towards), np.array(kinds, dtype=np.uint8)
+        )
 
-    # Edges: arrays of sources, of targets, and of seconds, one direction and pair of layers at a time.
+    def _reached(self, start: int) -> set[int]:
+        """The places that a way leads to from ``start``."""
+        out: dict[int, list[int]] = {}
+        for target, sources in enumerate(self._into):
+            for source, _, _ in sources:
+                out.setdefault(source, []).append(target)
+        reached, left = {start}, [start]
+        while left:
+            for target in out.get(left.pop(), ()):
+                if target not in reached:
+                    reached.add(target)
+                    left.append(target)
+        return reached
 
-    def _edges(self) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], Seconds]]:
+    # Edges: arrays of sources, targets, seconds and kinds, one direction and pair of layers at a time.
+
+    def _edges(self) -> Iterator[_Edges]:
         heights = self.surfaces.heights
         occupied = np.flatnonzero(self.surfaces.places.any(axis=(1, 2))).tolist()
         for layer in occupied:
@@ -114,30 +178,25 @@ class Routes:
                     if up < 1e-6:
                         yield from self._leaps(layer, target, direction)
 
-    def _walks(
-        self, layer: int, target: int, direction: tuple[int, int]
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp], Seconds]:
+    def _walks(self, layer: int, target: int, direction: tuple[int, int]) -> _Edges:
         surfaces, kind = self.surfaces, self.surfaces.kind
         sources, targets = self._joined(layer, target, direction, surfaces.places[layer])
         upright = surfaces.standing.ravel()[sources] & surfaces.standing.ravel()[targets]
         roomy = self._roomy.ravel()[targets]
         length = CELL * hypot(*direction)
         seconds = np.where(upright, length / kind.walk_speed, length / kind.crouch_speed)
-        return sources, targets, np.where(roomy, seconds, seconds * _CLOSE_TO_WALL)
+        kinds = np.where(upright, _KINDS.index("walk"), _KINDS.index("crouch"))
+        return sources, targets, np.where(roomy, seconds, seconds * _CLOSE_TO_WALL), kinds
 
-    def _climbs(
-        self, layer: int, target: int, direction: tuple[int, int]
-    ) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], Seconds]]:
+    def _climbs(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
         """Jumps up to a higher place, from at least two cells away."""
         surfaces = self.surfaces
         begin = surfaces.places[layer] & surfaces.standing[layer] & surfaces.standing[target]
         for steps, length in _reaches(direction, 2, _CLIMB_REACH):
             begin = begin & _shifted(surfaces.standing[target], direction, steps - 1)
-            yield self._timed(self._joined(layer, target, direction, begin, steps), length, _JUMP_TIME)
+            yield self._timed(self._joined(layer, target, direction, begin, steps), length, _JUMP_TIME, "climb")
 
-    def _drops(
-        self, layer: int, target: int, direction: tuple[int, int]
-    ) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], Seconds]]:
+    def _drops(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
         """Steps off an edge, down to a lower place."""
         surfaces = self.surfaces
         fall = sqrt(2 * float(surfaces.heights[layer] - surfaces.heights[target]) / surfaces.kind.gravity)
@@ -146,11 +205,9 @@ class Routes:
         for steps, length in _reaches(direction, 2, _DROP_REACH):
             begin = begin & _shifted(surfaces.standing[layer], direction, steps - 1)
             lands = begin & _shifted(column, direction, steps)
-            yield self._timed(self._joined(layer, target, direction, lands, steps), length, fall)
+            yield self._timed(self._joined(layer, target, direction, lands, steps), length, fall, "drop")
 
-    def _leaps(
-        self, layer: int, target: int, direction: tuple[int, int]
-    ) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp], Seconds]]:
+    def _leaps(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
         """Jumps across what cannot be walked on, to a place no higher."""
         surfaces = self.surfaces
         column = surfaces.standing[target : layer + 1].all(axis=0)
@@ -160,7 +217,7 @@ class Routes:
             begin = begin & _shifted(surfaces.leaping[layer], direction, steps - 1)
             walkable = walkable & _shifted(surfaces.places[layer], direction, steps - 1)
             lands = begin & ~walkable & _shifted(column, direction, steps)
-            yield self._timed(self._joined(layer, target, direction, lands, steps), length, _JUMP_TIME)
+            yield self._timed(self._joined(layer, target, direction, lands, steps), length, _JUMP_TIME, "leap")
 
     def _joined(
         self, layer: int, target: int, direction: tuple[int, int], begin: Cells, steps: int = 1
@@ -174,10 +231,11 @@ class Routes:
         return sources, targets
 
     def _timed(
-        self, joined: tuple[NDArray[np.intp], NDArray[np.intp]], length: float, extra: float
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp], Seconds]:
+        self, joined: tuple[NDArray[np.intp], NDArray[np.intp]], length: float, extra: float, kind: Kind
+    ) -> _Edges:
         sources, targets = joined
-        return sources, targets, np.full(sources.shape, length / self.surfaces.kind.walk_speed + extra)
+        seconds = np.full(sources.shape, length / self.surfaces.kind.walk_speed + extra)
+        return sources, targets, seconds, np.full(sources.shape, _KINDS.index(kind))
 
 
 @lru_cache(maxsize=32)

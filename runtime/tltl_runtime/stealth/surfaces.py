@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.level import Box, Level
+from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.player import PlayerKind
 
 CELL: Final = 0.25
@@ -52,15 +52,27 @@ class Surfaces:
         self.crouched = self._free(boxes, self.kind.crouched_height, margin)
         self.leaping = self._free(boxes, self.kind.height + apex, margin)
         self.places: Cells = self.supported & self.crouched & ~self._buried(boxes)
+        layers, rows, columns = np.nonzero(self.places)
+        self._flat = np.flatnonzero(self.places)
+        self._points = np.stack([self.xs[columns], self.ys[rows], self.heights[layers]], axis=1)
 
-    def near(self, x: float, y: float, z: float, radius: float) -> NDArray[np.intp]:
+    def near(self, point: Point, radius: float) -> NDArray[np.intp]:
         """The places within ``radius`` metres of a point, as flat indices into ``places``."""
-        away = (
-            (self.xs[None, None, :] - x) ** 2
-            + (self.ys[None, :, None] - y) ** 2
-            + (self.heights[:, None, None] - z) ** 2
-        )
-        return np.flatnonzero((away <= radius * radius) & self.places)
+        return self._flat[self._squares(point) <= radius * radius]
+
+    def nearest(self, point: Point) -> int:
+        """The place nearest to a point, as a flat index into ``places``."""
+        return int(self._flat[self._squares(point).argmin()])
+
+    def point(self, place: int) -> Point:
+        """The middle of a place that is given by its flat index."""
+        layer, row, column = np.unravel_index(place, self.places.shape)
+        return float(self.xs[column]), float(self.ys[row]), float(self.heights[layer])
+
+    def _squares(self, point: Point) -> NDArray[np.float64]:
+        """The squared distances of all places from a point."""
+        squares: NDArray[np.float64] = ((self._points - np.array(point)) ** 2).sum(axis=1)
+        return squares
 
     def _supported(self, boxes: list[Box]) -> Cells:
         found = self._nothing()
