@@ -42,7 +42,11 @@ def _register() -> None:
 
     for name in ("Navigation", "CoverAndHide", "Branching"):
         maker = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in name).lstrip("_")
-        register(f"tltl/{name}-v0", entry_point=f"tltl_runtime.stealth.env:{maker}")
+        register(
+            f"tltl/{name}-v0",
+            entry_point=f"tltl_runtime.stealth.env:{maker}",
+            vector_entry_point=f"tltl_runtime.vector.game:{maker}",
+        )
 
 
 _register()

@@ -1,0 +1,127 @@
+"""Memory that processes share: one row for each environment.
+
+A row holds an observation, an action, what a step returned and what is being played.  It is a structured NumPy array
+over one anonymous block, which no process can leave behind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from multiprocessing.context import BaseContext
+from typing import Any
+
+import numpy as np
+from gymnasium import Space, spaces
+from numpy.typing import DTypeLike, NDArray
+
+Columns = Any
+"""The values of all rows for a space: an array, or a dict or tuple of columns for a Dict or Tuple space."""
+
+
+class Rows:
+    """``count`` rows; an instance can be handed to a process that is being started, and to no other.
+
+    ``observation`` and ``action`` are the columns of those spaces, ``reward terminated truncated`` those of a step.
+    ``episode`` counts the episodes since the last reset with a seed, from 1; ``step`` the steps of the episode, the
+    one that is being taken included; ``total`` its rewards; ``busy`` says that the environment is at work now.
+    ``info`` are further columns, by name.
+
+    Raises:
+        ValueError: a space that has no fixed size.
+    """
+
+    def __init__(
+        self,
+        context: BaseContext,
+        count: int,
+        observation: Space[Any],
+        action: Space[Any],
+        info: Mapping[str, DTypeLike],
+    ) -> None:
+        self.count = count
+        self._spaces = (observation, action)
+        self._dtype = np.dtype(
+            [
+                ("observation", _dtype(observation)),
+                ("action", _dtype(action)),
+                ("reward", np.float64),
+                ("terminated", np.bool_),
+                ("truncated", np.bool_),
+                ("episode", np.int64),
+                ("step", np.int64),
+                ("total", np.float64),
+                ("busy", np.bool_),
+                ("info", np.dtype(list(info.items()), align=True)),
+            ],
+            align=True,
+        )
+        self._block = context.RawArray("b", count * self._dtype.itemsize)
+        self._view()
+
+    def __getstate__(self) -> tuple[Any, ...]:
+        return self.count, self._spaces, self._dtype, self._block
+
+    def __setstate__(self, state: tuple[Any, ...]) -> None:
+        self.count, self._spaces, self._dtype, self._block = state
+        self._view()
+
+    def _view(self) -> None:
+        rows: NDArray[Any] = np.frombuffer(self._block, dtype=self._dtype)
+        self.observation = _columns(self._spaces[0], rows["observation"])
+        self.action = _columns(self._spaces[1], rows["action"])
+        self.reward, self.terminated, self.truncated = rows["reward"], rows["terminated"], rows["truncated"]
+        self.episode, self.step, self.total, self.busy = rows["episode"], rows["step"], rows["total"], rows["busy"]
+        self.info: dict[str, NDArray[Any]] = {name: rows["info"][name] for name in rows.dtype["info"].names or ()}
+
+
+def write(columns: Columns, row: int, value: Any) -> None:
+    """Put a value of the space into a row."""
+    if isinstance(columns, dict):
+        for key, column in columns.items():
+            write(column, row, value[key])
+    elif isinstance(columns, tuple):
+        for column, part in zip(columns, value, strict=True):
+            write(column, row, part)
+    else:
+        columns[row] = value
+
+
+def write_batch(columns: Columns, batch: Any) -> None:
+    """Put a value into each row; ValueError where there is not one for each."""
+    if isinstance(columns, dict):
+        for key, column in columns.items():
+            write_batch(column, batch[key])
+    elif isinstance(columns, tuple):
+        for column, part in zip(columns, batch, strict=True):
+            write_batch(column, part)
+    elif np.shape(batch) != columns.shape:
+        raise ValueError(f"a batch of shape {columns.shape} is needed, not {np.shape(batch)}")
+    else:
+        columns[...] = batch
+
+
+def read(columns: Columns, rows: int | slice) -> Any:
+    """A copy of what is in a row, or of a slice of rows as a batch."""
+    if isinstance(columns, dict):
+        return {key: read(column, rows) for key, column in columns.items()}
+    if isinstance(columns, tuple):
+        return tuple(read(column, rows) for column in columns)
+    return columns[rows].copy()
+
+
+def _columns(space: Space[Any], rows: NDArray[Any]) -> Columns:
+    if isinstance(space, spaces.Dict):
+        return {key: _columns(part, rows[key]) for key, part in space.items()}
+    if isinstance(space, spaces.Tuple):
+        return tuple(_columns(part, rows[str(index)]) for index, part in enumerate(space))
+    return rows
+
+
+def _dtype(space: Space[Any]) -> np.dtype[Any]:
+    if isinstance(space, spaces.Dict):
+        return np.dtype([(key, _dtype(part)) for key, part in space.items()], align=True)
+    if isinstance(space, spaces.Tuple):
+        return np.dtype([(str(index), _dtype(part)) for index, part in enumerate(space)], align=True)
+    if not isinstance(space, (spaces.Box, spaces.Discrete, spaces.MultiDiscrete, spaces.MultiBinary)):
+        raise ValueError(f"{space} has no fixed size: workers share Box, Discrete, MultiDiscrete and MultiBinary")
+    return np.dtype((space.dtype, space.shape))

@@ -1,0 +1,133 @@
+"""A worker process: it makes its environments, and resets and steps them as it is told."""
+
+from __future__ import annotations
+
+import signal
+import traceback
+from collections.abc import Callable, Sequence
+from multiprocessing.connection import Connection
+from typing import Any, Final
+
+import gymnasium
+from gymnasium.vector import AutoresetMode
+
+from tltl_runtime.vector.memory import Rows, read, write
+
+Info = dict[str, Any]
+EnvFunction = Callable[[], gymnasium.Env[Any, Any]]
+
+DONE: Final = "done"
+FAILED: Final = "failed"
+CLOSE: Final = "close"
+
+
+def work(connection: Connection, functions: Any, rows: Rows, first: int, autoreset: AutoresetMode) -> None:
+    """Serve until ``close`` comes or the other end is gone.
+
+    ``functions`` is a ``CloudpickleWrapper`` of those that make the environments, whose rows begin at ``first``.
+    Commands are pairs of a name and its arguments; each is answered by a pair: ``done`` and what it gave, or
+    ``failed`` and a traceback, after which the worker ends.  The first answer, unasked, says that all is made.
+    """
+    # Ctrl-C goes to the whole group of processes; whoever started this one decides what it means.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        share = Share(functions.fn, rows, first, autoreset)
+        connection.send((DONE, None))
+        while True:
+            command, arguments = connection.recv()
+            if command == CLOSE:
+                share.close()
+                return
+            connection.send((DONE, getattr(share, command)(*arguments)))
+    except (EOFError, BrokenPipeError, ConnectionResetError):
+        return
+    except Exception:
+        connection.send((FAILED, traceback.format_exc()))
+        raise SystemExit(1) from None
+
+
+class Share:
+    """The environments of one worker."""
+
+    def __init__(self, functions: Sequence[EnvFunction], rows: Rows, first: int, autoreset: AutoresetMode) -> None:
+        self._rows = rows
+        self._first = first
+        self._same_step = autoreset == AutoresetMode.SAME_STEP
+        self._envs = [make() for make in functions]
+        self._over = [False] * len(self._envs)
+        for env in self._envs[1:]:
+            for space in ("observation_space", "action_space"):
+                ours, theirs = getattr(self._envs[0], space), getattr(env, space)
+                if ours != theirs:
+                    raise ValueError(f"environments side by side differ in their {space}: {ours} and {theirs}")
+
+    def reset(self, seeds: Sequence[int | None], options: dict[str, Any] | None) -> list[Info]:
+        """Begin an episode in each environment; their infos."""
+        infos = []
+        for index, seed in enumerate(seeds):
+            observation, info = self._begin(index, seed, options)
+            self._tell(index, observation, 0.0, False, False, info)
+            infos.append(info)
+        return infos
+
+    def step(self) -> list[tuple[int, Info]]:
+        """Take the actions that stand in the rows; what there is to say of episodes that ended or began, by row."""
+        actions = read(self._rows.action, slice(self._first, self._first + len(self._envs)))
+        said = []
+        for index, env in enumerate(self._envs):
+            if self._over[index]:
+                observation, info = self._begin(index)
+                self._tell(index, observation, 0.0, False, False, info)
+                said.append((self._first + index, info))
+                continue
+            row = self._first + index
+            self._rows.step[row] += 1
+            self._rows.busy[row] = True
+            observation, reward, terminated, truncated, info = env.step(read(actions, index))
+            self._rows.busy[row] = False
+            self._rows.total[row] += reward
+            if terminated or truncated:
+                info = {**info, "episode": self._statistics(row)}
+                if self._same_step:
+                    last, info = {"final_obs": observation, "final_info": info}, {}
+                    observation, info = self._begin(index)
+                    said.append((row, {**last, **info}))
+                else:
+                    self._over[index] = True
+                    said.append((row, info))
+            self._tell(index, observation, float(reward), terminated, truncated, info)
+        return said
+
+    def call(self, name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
+        """An attribute of each environment, or what its call gives."""
+        found = [env.get_wrapper_attr(name) for env in self._envs]
+        return [each(*args, **kwargs) if callable(each) else each for each in found]
+
+    def close(self) -> None:
+        """Close the environments."""
+        for env in self._envs:
+            env.close()
+
+    def _begin(self, index: int, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Info]:
+        rows, row = self._rows, self._first + index
+        rows.episode[row] = 1 if seed is not None else rows.episode[row] + 1
+        rows.step[row] = 0
+        rows.total[row] = 0.0
+        rows.busy[row] = True
+        observation, info = self._envs[index].reset(seed=seed, options=options)
+        rows.busy[row] = False
+        self._over[index] = False
+        return observation, info
+
+    def _statistics(self, row: int) -> dict[str, Any]:
+        """The sum of rewards and the length of the episode, as Gymnasium's RecordEpisodeStatistics calls them."""
+        return {"r": float(self._rows.total[row]), "l": int(self._rows.step[row])}
+
+    def _tell(self, index: int, observation: Any, reward: float, terminated: bool, truncated: bool, info: Info) -> None:
+        rows, row = self._rows, self._first + index
+        write(rows.observation, row, observation)
+        rows.reward[row] = reward
+        rows.terminated[row] = terminated
+        rows.truncated[row] = truncated
+        for key, column in rows.info.items():
+            column[row] = info[key]

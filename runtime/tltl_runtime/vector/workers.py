@@ -1,0 +1,158 @@
+"""The workers as their owner sees them: started, asked, watched, and stopped."""
+
+from __future__ import annotations
+
+import contextlib
+import selectors
+import time
+from collections.abc import Iterator, Sequence
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnContext, SpawnProcess
+from typing import Any, Final
+
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import CloudpickleWrapper
+
+from tltl_runtime.vector.errors import Loss
+from tltl_runtime.vector.memory import Rows
+from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
+
+_TO_END_S: Final = 5.0
+"""How long a worker that is told to end, or was killed, may take."""
+
+
+class Workers:
+    """Processes that step environments; worker w has those of the w-th slice of ``shares``.
+
+    A process is spawned, not forked: forking with threads of torch or OpenBLAS about would be a gamble.  What
+    is asked of all is answered in order of the workers, by what each gave or by a :class:`Loss`: it ended, raised,
+    or was silent for ``timeout`` seconds.  After a loss, ``start`` puts a new process in its place.
+    """
+
+    def __init__(
+        self,
+        context: SpawnContext,
+        functions: Sequence[EnvFunction],
+        shares: Sequence[slice],
+        rows: Rows,
+        autoreset: AutoresetMode,
+        timeout: float,
+    ) -> None:
+        self.shares = tuple(shares)
+        self._context, self._functions, self._rows = context, functions, rows
+        self._autoreset, self._timeout = autoreset, timeout
+        self._processes: dict[int, SpawnProcess] = {}
+        self._connections: dict[int, Connection] = {}
+        self._asked: dict[int, Any] = {}
+        self._selector = selectors.DefaultSelector()
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether an answer was not waited for, as after a Ctrl-C."""
+        return bool(self._asked)
+
+    def pid(self, worker: int) -> int | None:
+        """The process id of a worker."""
+        return self._processes[worker].pid
+
+    def start(self, workers: Sequence[int]) -> list[Loss]:
+        """Start these, wait until their environments are made, and tell which did not come so far."""
+        for worker in workers:
+            ours, theirs = self._context.Pipe()
+            share = self.shares[worker]
+            functions = CloudpickleWrapper(self._functions[share])  # type: ignore[arg-type]
+            process = self._context.Process(
+                target=work,
+                args=(theirs, functions, self._rows, share.start, self._autoreset),
+                name=f"env worker {worker}",
+                daemon=True,
+            )
+            process.start()
+            theirs.close()
+            self._processes[worker], self._connections[worker] = process, ours
+            for file in (ours.fileno(), process.sentinel):
+                self._selector.register(file, selectors.EVENT_READ, worker)
+            self._asked[worker] = None
+        return [answer for answer in self.answers() if isinstance(answer, Loss)]
+
+    def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
+        """Tell all workers to do something, each with its own arguments, and wait for the answers."""
+        for worker, given in enumerate(arguments):
+            self.tell(worker, command, given)
+        return self.answers()
+
+    def tell(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
+        """Tell one worker to do something; ``answers`` has its answer."""
+        self._asked[worker] = None
+        # Where the other end is gone, the answer is the loss.
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+            self._connections[worker].send((command, arguments))
+
+    def answers(self) -> list[Any]:
+        """Wait for what was asked."""
+        deadline = time.monotonic() + self._timeout
+        found: dict[int, Any] = {}
+        while self._asked:
+            ready = self._ready(deadline)
+            for worker in ready & self._asked.keys():
+                found[worker] = self._answer(worker)
+                del self._asked[worker]
+            if not ready:
+                for worker in list(self._asked):
+                    found[worker] = self._lost(worker, silent=True)
+                    del self._asked[worker]
+        return [found[worker] for worker in sorted(found)]
+
+    def close(self) -> None:
+        """End all: those that do not in time are killed."""
+        for connection in self._connections.values():
+            with contextlib.suppress(OSError):
+                connection.send((CLOSE, ()))
+        deadline = time.monotonic() + _TO_END_S
+        for worker in list(self._processes):
+            self._processes[worker].join(max(0.0, deadline - time.monotonic()))
+            self._end(worker)
+        self._asked.clear()
+        self._selector.close()
+
+    def _ready(self, deadline: float) -> set[int]:
+        """Workers that answered or ended; none once the deadline is over."""
+        left = max(0.0, deadline - time.monotonic())
+        return {key.data for key, _ in self._selector.select(left)}
+
+    def _answer(self, worker: int) -> Any:
+        connection = self._connections[worker]
+        try:
+            # Of one that ended the last words count, where there are any.
+            if connection.poll():
+                outcome, answer = connection.recv()
+                return self._lost(worker, traceback=answer) if outcome == FAILED else answer
+        except (EOFError, OSError):
+            pass
+        return self._lost(worker)
+
+    def _lost(self, worker: int, *, silent: bool = False, traceback: str = "") -> Loss:
+        process = self._processes[worker]
+        if not silent:
+            process.join(_TO_END_S)
+        status = process.exitcode
+        self._end(worker)
+        return Loss(worker, status, self._timeout if silent else None, traceback)
+
+    def _end(self, worker: int) -> None:
+        """Make sure that a worker is gone, and forget it."""
+        process, connection = self._processes.pop(worker), self._connections.pop(worker)
+        for file in (connection.fileno(), process.sentinel):
+            self._selector.unregister(file)
+        connection.close()
+        if process.is_alive():
+            process.kill()
+            process.join(_TO_END_S)
+        with contextlib.suppress(ValueError):
+            process.close()
+
+
+def shared_out(count: int, workers: int) -> Iterator[slice]:
+    """``count`` environments for so many workers: slices whose lengths differ by one at most."""
+    for worker in range(workers):
+        yield slice(worker * count // workers, (worker + 1) * count // workers)

@@ -1,0 +1,77 @@
+"""Environments that misbehave when an action tells them to; they stand in a module that workers can import."""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.level import Box
+from tltl_runtime.wrapper import TltlEnv
+from tltlc.record import replace
+
+GO, EXIT, RAISE, HANG, SLEEP = range(5)
+
+
+class Fragile(gymnasium.Env[Any, Any]):
+    """Counts its steps; an episode has seven."""
+
+    observation_space = spaces.Dict(
+        {
+            "count": spaces.Discrete(100),
+            "pair": spaces.Tuple((spaces.Box(-1.0, 1.0, (2,), np.float32), spaces.MultiBinary(3))),
+        }
+    )
+    action_space = spaces.Discrete(5)
+
+    def __init__(self, dies_in_reset: bool = False) -> None:
+        self.dies_in_reset = dies_in_reset
+        self.seeds: list[int | None] = []
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        super().reset(seed=seed)
+        if self.dies_in_reset:
+            os._exit(5)
+        self.seeds.append(seed)
+        self.count = 0
+        return self._observed(), {"options": options}
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        self.count += 1
+        if action == EXIT:
+            os._exit(3)
+        if action == RAISE:
+            raise RuntimeError("the bridge is out")
+        if action in (HANG, SLEEP):
+            time.sleep(1000.0 if action == HANG else 1.0)
+        return self._observed(), self.count, self.count == 7, False, {"count": self.count}
+
+    def _observed(self) -> dict[str, Any]:
+        numbers = self.np_random.random(2).astype(np.float32)
+        return {"count": self.count, "pair": (numbers, np.array([1, 0, self.count % 2], dtype=np.int8))}
+
+
+class Unmade(gymnasium.Env[Any, Any]):
+    """Is made in the first process and in no other."""
+
+    observation_space = Fragile.observation_space
+    action_space = Fragile.action_space
+
+    def __init__(self, here: int) -> None:
+        if os.getpid() != here:
+            raise RuntimeError("no room for another")
+
+
+def leaves_its_level() -> TltlEnv:
+    """A game whose bounds end a metre from the start."""
+    env = make_env("navigation")
+    world = env.unwrapped.game.world  # type: ignore[attr-defined]
+    (x, y, _), bounds = world.level.start.position, world.level.bounds
+    near = Box((x - 1.0, y - 1.0, bounds.low[2]), (x + 1.0, y + 1.0, bounds.high[2]))
+    world.level = replace(world.level, bounds=near)
+    return env

@@ -1,0 +1,179 @@
+"""Worker processes give what the environments themselves give, bit for bit."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium import spaces
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+
+import tltl_runtime  # noqa: F401  (registers the environments)
+from tests.runtime.vector.envs import Fragile
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.vector import WorkerVectorEnv, make_vec
+from tltl_runtime.vector.workers import shared_out
+
+SPEC = """
+clock 0.15 s
+signal health in [0, 1]
+signal position.x in [-100, 100]
+predicate well in [-1, 1] = clamp(2 * health - 1, -1, 1)
+predicate east in [-1, 1] = clamp((position.x - 90) / 190, -1, 1)
+spec short { limit 23 steps  reach east  keep well }
+"""
+COUNT = 4
+SHARED = ("verdict", "state", "progress", "success")
+
+
+def same(one: Any, other: Any) -> bool:
+    """Equal, down to the types of arrays."""
+    if isinstance(one, dict):
+        return isinstance(other, dict) and one.keys() == other.keys() and all(same(one[k], other[k]) for k in one)
+    if isinstance(one, np.ndarray):
+        if one.dtype == object:
+            return len(one) == len(other) and all(map(same, one, other))
+        return one.dtype == other.dtype and np.array_equal(one, other)
+    return bool(one == other)
+
+
+def played(env: Any) -> list[Any]:
+    """Several hundred steps, with resets of all three kinds."""
+    rng = np.random.default_rng(8)
+    rows: list[Any] = []
+    for seed, steps in ((7, 90), (None, 60), ([5, 7, 5, 9], 60)):
+        rows.append(env.reset(seed=seed))
+        for step in range(steps):
+            if step % 4 == 0:
+                actions = np.stack([rng.integers(size, size=COUNT) for size in (3, 3, 2, 2, 2)], axis=1)
+            rows.append(env.step(actions))
+    env.close()
+    return rows
+
+
+def in_this_process(autoreset: AutoresetMode) -> list[Any]:
+    return played(SyncVectorEnv([partial(make_env, "cover_and_hide", "v2", SPEC)] * COUNT, autoreset_mode=autoreset))
+
+
+def without_episode(info: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in info.items() if key not in ("episode", "_episode")}
+
+
+@pytest.fixture(scope="module")
+def expected() -> list[Any]:
+    return in_this_process(AutoresetMode.SAME_STEP)
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3])
+def test_same_episodes_for_any_number_of_workers(expected: list[Any], workers: int) -> None:
+    env = make_vec("cover_and_hide", "v2", COUNT, workers, spec=SPEC)
+    assert env.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+    assert len(env.worker_pids) == workers
+    found = played(env)
+    ends = 0
+    for ours, theirs in zip(found, expected, strict=True):
+        assert all(same(one, other) for one, other in zip(ours[:-1], theirs[:-1], strict=True))
+        assert all(np.array_equal(ours[-1][key], theirs[-1][key]) for key in SHARED)
+        assert ("final_obs" in ours[-1]) is ("final_obs" in theirs[-1])
+        if "final_obs" in ours[-1]:
+            final = ours[-1]["final_info"]
+            assert same(ours[-1]["final_obs"], theirs[-1]["final_obs"])
+            assert same(without_episode(final), theirs[-1]["final_info"])
+            assert list(final["episode"]["l"][final["_episode"]]) == [23] * int(final["_episode"].sum())
+            ends += 1
+    assert ends > 6
+
+
+def test_autoreset_in_the_next_step() -> None:
+    expected = in_this_process(AutoresetMode.NEXT_STEP)
+    env = make_vec("cover_and_hide", "v2", COUNT, 2, spec=SPEC, autoreset="NextStep")
+    assert env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    totals = np.zeros(COUNT)
+    for ours, theirs in zip(played(env), expected, strict=True):
+        assert all(same(one, other) for one, other in zip(ours[:-1], theirs[:-1], strict=True))
+        assert all(np.array_equal(ours[-1][key], theirs[-1][key]) for key in SHARED)
+        totals = totals + ours[1] if len(ours) == 5 else np.zeros(COUNT)
+        if "episode" in ours[-1]:
+            over = ours[-1]["_episode"]
+            assert np.allclose(ours[-1]["episode"]["r"][over], totals[over])
+            totals[over] = 0.0
+
+
+def test_gymnasium_makes_them_by_their_ids() -> None:
+    env = gymnasium.make_vec(
+        "tltl/Branching-v0", num_envs=3, vectorization_mode="vector_entry_point", variant="v1", workers=2
+    )
+    assert isinstance(env, WorkerVectorEnv)
+    observations, infos = env.reset(seed=3)
+    assert env.observation_space.contains(observations)
+    assert list(infos["verdict"]) == ["pending"] * 3
+    observations, rewards, terminated, truncated, infos = env.step(env.action_space.sample())
+    assert env.observation_space.contains(observations)
+    assert (rewards.shape, terminated.dtype, truncated.dtype) == ((3,), np.bool_, np.bool_)
+    assert set(infos) == {each for key in SHARED for each in (key, f"_{key}")}
+    env.close()
+    with pytest.raises(ClosedEnvironmentError):
+        env.reset()
+
+
+def test_any_environment_with_spaces_of_fixed_size() -> None:
+    env = WorkerVectorEnv([lambda: Fragile()] * 3, workers=2)
+    observations, infos = env.reset(seed=[1, 2, 1], options={"why": 4})
+    assert env.observation_space.contains(observations)
+    assert list(infos["options"]["why"]) == [4, 4, 4]
+    assert same(observations["pair"][0][0], observations["pair"][0][2])
+    with pytest.raises(ValueError, match=r"a batch of shape \(3,\) is needed, not \(\)"):
+        env.step(0)
+    for step in range(1, 7):
+        observations, rewards, terminated, _, infos = env.step(np.zeros(3, dtype=np.int64))
+        assert list(observations["count"]) == list(rewards) == [step] * 3
+        assert infos == {} and not terminated.any()
+    observations, rewards, terminated, _, infos = env.step(np.zeros(3, dtype=np.int64))
+    assert list(rewards) == [7, 7, 7] and terminated.all()
+    assert list(observations["count"]) == [0, 0, 0]
+    assert [final["count"] for final in infos["final_obs"]] == [7, 7, 7]
+    assert list(infos["final_info"]["episode"]["r"]) == [28.0] * 3
+    assert env.call("seeds") == ([1, None], [2, None], [1, None])
+    env.close()
+    env.close()
+
+
+def test_a_first_reset_without_a_seed_draws_seeds() -> None:
+    env = WorkerVectorEnv([Fragile] * 2, workers=1)
+    with pytest.raises(ResetNeeded):
+        env.step(np.zeros(2, dtype=np.int64))
+    env.reset()
+    env.reset()
+    (first, then), (second, _) = env.call("seeds")
+    assert isinstance(first, int) and isinstance(second, int) and first != second
+    assert then is None
+    env.close()
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    class Talks(Fragile):
+        observation_space = spaces.Text(5)  # type: ignore[assignment]
+
+    with pytest.raises(ValueError, match="has no fixed size: workers share Box"):
+        WorkerVectorEnv([Talks])
+    with pytest.raises(ValueError, match="no function"):
+        WorkerVectorEnv([])
+    with pytest.raises(ValueError, match="not 0"):
+        WorkerVectorEnv([Fragile], workers=0)
+    with pytest.raises(ValueError, match="2 names are needed"):
+        WorkerVectorEnv([Fragile] * 2, names=["one"])
+    with pytest.raises(ValueError, match="not DISABLED"):
+        WorkerVectorEnv([Fragile], autoreset=AutoresetMode.DISABLED)
+    with pytest.raises(ValueError, match="SAME_STEP alone"):
+        WorkerVectorEnv([Fragile], autoreset=AutoresetMode.NEXT_STEP, on_death="replace")
+
+
+@pytest.mark.parametrize("count, workers, lengths", [(4, 3, [1, 1, 2]), (32, 2, [16, 16]), (5, 1, [5])])
+def test_shares_are_even(count: int, workers: int, lengths: list[int]) -> None:
+    shares = list(shared_out(count, workers))
+    assert [share.stop - share.start for share in shares] == lengths
+    assert [row for share in shares for row in range(share.start, share.stop)] == list(range(count))
