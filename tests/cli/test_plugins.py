@@ -1,4 +1,4 @@
-"""Commands of other distributions, through the entry-point group ``tltlc.commands``."""
+"""What other distributions add through entry points: commands, and what knows levels."""
 
 from __future__ import annotations
 
@@ -43,6 +43,46 @@ def test_a_missing_component_is_4(process, installed: str) -> None:  # type: ign
     assert found.err == (
         "error[TLT0730]: `tltlc waltz` needs `a_module_that_nobody_has`, which is not installed\n"
         "  help: pip install 'dancer[rl]'\n"
+    )
+
+
+LEVELS = """import click
+
+@click.command()
+@click.option("--map")
+def command(levels, inputs, settings, report, map):
+    print(levels, [each.name for each in inputs], settings.params, report.format, map)
+"""
+
+
+@pytest.fixture
+def knows_levels(tmp_path: Path) -> str:
+    """A folder with an installed distribution that knows levels."""
+    info = tmp_path / "atlas-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: atlas\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text("[tltlc.levels]\ncheck = atlas_module:command [maps]\n")
+    (tmp_path / "atlas_module.py").write_text(LEVELS)
+    return f"{ROOT}:{tmp_path}"
+
+
+def test_levels_have_options_of_their_own(process, knows_levels: str, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    found = process("check", "hide.tltl", "--level", "a:v1", "--level=b", "--map", "x", PYTHONPATH=knows_levels)
+    assert (found.status, found.out) == (0, "('a:v1', 'b') ['hide.tltl'] {} text x\n")
+    assert process("check", "--level", "a", PYTHONPATH=knows_levels).out == "('a',) [] {} text None\n"
+    assert "--map" in process("check", "--level", "a", "--help", PYTHONPATH=knows_levels).out
+    assert "--map" not in process("check", "--help", PYTHONPATH=knows_levels).out
+    assert process("check", "hide.tltl", "--map", "x", PYTHONPATH=knows_levels).status == 2
+    assert process("check", "missing.tltl", "--level", "a", PYTHONPATH=knows_levels).out == ""
+
+
+def test_levels_that_are_not_installed_are_4(process, knows_levels: str, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    (inside / "atlas_module.py").write_text("import a_module_that_nobody_has\n")
+    found = process("check", "hide.tltl", "--level", "a", PYTHONPATH=knows_levels)
+    assert found.status == 4
+    assert found.err == (
+        "error[TLT0730]: `tltlc check --level` needs `a_module_that_nobody_has`, which is not installed\n"
+        "  help: pip install 'atlas[maps]'\n"
     )
 
 

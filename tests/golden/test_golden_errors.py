@@ -10,6 +10,7 @@ import os
 import re
 import shlex
 import shutil
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -21,14 +22,22 @@ ROOT = Path(__file__).parents[2]
 CASES = sorted(path for path in (Path(__file__).parent / "error").iterdir() if path.is_dir())
 LEVELS = sorted(path for path in (Path(__file__).parent / "level").iterdir() if path.is_dir())
 """Messages of the runtime, which `tests/runtime/stealth/test_level_file.py` compares."""
+EPISODES = sorted((Path(__file__).parent / "episode").iterdir())
+"""Messages on recordings, which `tests/runtime/stealth/test_episode_file.py` compares."""
 CODE = re.compile(r"TLT[0-9]{4}")
 NEEDS_ANOTHER_INSTALLATION = {"TLT0712", "TLT0730"}
 """Codes that no file causes; tests/backends and tests/cli show their messages."""
-NEEDS_AN_ENVIRONMENT = {"TLT0617"}
-"""Codes that no command causes; tests/runtime shows their messages."""
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def _case(case: Path) -> object:
+    """A case; one that asks for a level needs the extra `rl`."""
+    command = case / "cmd"
+    needs_levels = command.exists() and "--level" in command.read_text()
+    lacking = needs_levels and not all(map(find_spec, ("gymnasium", "numpy")))
+    return pytest.param(case, id=case.name, marks=pytest.mark.skipif(lacking, reason="needs the extra `rl`"))
+
+
+@pytest.mark.parametrize("case", [_case(case) for case in CASES])
 def test_message(
     case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -57,9 +66,7 @@ def test_message(
 
 
 def test_every_code_has_a_golden_message() -> None:
-    assert {case.name[:7] for case in (*CASES, *LEVELS)} == set(
-        codes()
-    ) - NEEDS_ANOTHER_INSTALLATION - NEEDS_AN_ENVIRONMENT
+    assert {case.name[:7] for case in (*CASES, *LEVELS, *EPISODES)} == set(codes()) - NEEDS_ANOTHER_INSTALLATION
 
 
 def test_every_code_in_the_source_has_a_page_and_every_page_is_used() -> None:

@@ -31,6 +31,8 @@ _STATUS_OF_CODE: Final = {
     "TLT0721": USAGE,
     "TLT0722": USAGE,
     "TLT0730": MISSING_COMPONENT,
+    "TLT0800": USAGE,
+    "TLT0815": USAGE,
 }
 """The codes whose exit status is not that of an error in a source text."""
 

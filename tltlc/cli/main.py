@@ -13,7 +13,7 @@ from typing import Any, Final, NoReturn
 
 import click
 
-from tltlc.cli import exits
+from tltlc.cli import exits, plugins
 
 BUILT_IN: Final = {
     "compile": "Compile the specs of a file to artefacts and monitors.",
@@ -28,6 +28,8 @@ BUILT_IN: Final = {
 }
 
 ENTRY_POINTS: Final = "tltlc.commands"
+"""The group of commands of other distributions."""
+
 COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
 
 
@@ -76,7 +78,7 @@ class CommandLine(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names of the commands, those of other distributions last."""
-        return [*BUILT_IN, *sorted(plugin.name for plugin in _plugins() if plugin.name not in BUILT_IN)]
+        return [*BUILT_IN, *sorted(plugin.name for plugin in plugins.find(ENTRY_POINTS) if plugin.name not in BUILT_IN)]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command of that name, loaded."""
@@ -85,9 +87,10 @@ class CommandLine(click.Group):
 
             command: click.Command = import_module(f"tltlc.cli.commands.{cmd_name}").command
             return command
-        for plugin in _plugins():
+        for plugin in plugins.find(ENTRY_POINTS):
             if plugin.name == cmd_name:
-                return _load(plugin)
+                loaded: click.Command = plugins.load(plugin, f"`tltlc {plugin.name}`")
+                return loaded
         return None
 
     def resolve_command(
@@ -106,7 +109,7 @@ class CommandLine(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """The list of commands, from the table above, so that showing it loads none of them."""
         rows = list(BUILT_IN.items())
-        for plugin in sorted(_plugins(), key=lambda plugin: plugin.name):
+        for plugin in sorted(plugins.find(ENTRY_POINTS), key=lambda plugin: plugin.name):
             if plugin.name not in BUILT_IN:
                 origin = f", from {plugin.dist.name}" if plugin.dist else ""
                 extra = f" (needs the extra {', '.join(plugin.extras)})" if plugin.extras else ""
@@ -122,43 +125,6 @@ class CommandLine(click.Group):
         return [item for item in names if item.value.startswith(incomplete)] + click.Command.shell_complete(
             self, ctx, incomplete
         )
-
-
-def _plugins() -> Any:
-    """The entry points of other distributions."""
-    if not any(map(_may_have_plugins, sys.path)):
-        return ()
-    from importlib.metadata import entry_points
-
-    return entry_points(group=ENTRY_POINTS)
-
-
-def _may_have_plugins(folder: str) -> bool:
-    """Whether a distribution in the folder names our group: asking importlib.metadata costs 16 ms."""
-    try:
-        names = os.listdir(folder or ".")  # noqa: PTH208 (no pathlib while only help is asked for)
-    except OSError:
-        return os.path.isfile(folder)  # noqa: PTH113 (what is inside an archive, only importlib.metadata can say)
-    for name in names:
-        if name.endswith((".dist-info", ".egg-info")):
-            try:
-                with open(f"{folder or '.'}/{name}/entry_points.txt", "rb") as file:  # noqa: PTH123
-                    if f"[{ENTRY_POINTS}]".encode() in file.read():
-                        return True
-            except OSError:
-                continue
-    return False
-
-
-def _load(plugin: Any) -> click.Command:
-    """The command of another distribution; where it lacks a component, the way to install it."""
-    try:
-        command: click.Command = plugin.load()
-    except ModuleNotFoundError as error:
-        package = plugin.dist.name if plugin.dist else "tltlc"
-        wanted = f"{package}[{','.join(plugin.extras)}]" if plugin.extras else error.name or package
-        raise exits.missing_component(f"`tltlc {plugin.name}`", error.name or package, wanted) from error
-    return command
 
 
 def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:

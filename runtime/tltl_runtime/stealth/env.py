@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import dist
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -11,10 +10,11 @@ import numpy as np
 from gymnasium import spaces
 
 from tltl_runtime.stealth.game import BRANCHES, Game
-from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.level_file import load_level
 from tltl_runtime.stealth.observation import Senses
+from tltl_runtime.stealth.offer import params
 from tltl_runtime.stealth.player import DECISION
+from tltl_runtime.stealth.sensors import SensorChoice
 from tltl_runtime.stealth.signals import Signals
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.automaton.fspa import Fspa
@@ -25,17 +25,18 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     """A level without a spec: what the agent senses, no reward and no end.
 
     Action: MultiDiscrete([3, 3, 2, 2, 2]), see :data:`~tltl_runtime.stealth.game.BRANCHES`.  Observation: that of
-    :class:`~tltl_runtime.stealth.observation.Senses`.  ``level`` is the name of a shipped level or a ``.toml`` file.
+    :class:`~tltl_runtime.stealth.observation.Senses`.  ``level`` is the name of a shipped level or a ``.toml`` file,
+    ``sensors`` what :func:`~tltl_runtime.stealth.sensors.chosen` takes.
     ``reset(seed=...)`` reproduces an episode bit for bit.
 
     Raises:
-        TltlError: what :func:`~tltl_runtime.stealth.level_file.load_level` finds.
-        ValueError: ``sensors`` name what the level does not have.
+        TltlError: what :func:`~tltl_runtime.stealth.level_file.load_level` finds; TLT0815, where ``sensors`` say what
+            the level does not have.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "render_fps": round(1 / DECISION)}  # type: ignore[misc]
 
-    def __init__(self, level: str, variant: str = "v0", sensors: Sensors | None = None) -> None:
+    def __init__(self, level: str, variant: str = "v0", sensors: SensorChoice | None = None) -> None:
         self.level = load_level(level, variant)
         self.game = Game(self.level)
         self._senses = Senses(self.level, sensors)
@@ -44,8 +45,8 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self.tltl_clock_s = DECISION
 
     def tltl_params(self) -> dict[str, float]:
-        """The params of specs that the level knows: ``level_size`` is the diagonal of its bounds, in metres."""
-        return {"level_size": dist(self.level.bounds.low, self.level.bounds.high)}
+        """The params of specs that the level knows, see :func:`tltl_runtime.stealth.offer.params`."""
+        return params(self.level)
 
     def tltl_signals(self) -> Signals:
         """The signals of the game now."""
@@ -74,7 +75,7 @@ def make_env(
     variant: str = "v0",
     spec: str | Path | Fspa | None = None,
     *,
-    sensors: Sensors | None = None,
+    sensors: SensorChoice | None = None,
     reward: RewardOptions | None = None,
 ) -> TltlEnv:
     """A level with a spec, by default the one it was made for; errors as of :class:`GameEnv` and :class:`TltlEnv`."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import Final
+from itertools import pairwise
+from typing import Final, cast
 
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.level_parts import CELL_TYPES, Places
+from tltl_runtime.stealth.segments import Corners, blocked
 from tltl_runtime.stealth.table import suggestion
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.source import SourceFile
@@ -122,6 +124,29 @@ def check_room(level: Level, places: Places, start: Label) -> list[Diagnostic]:
                     title = f"`{enemy.name}` cannot walk to {_shown(point)}: `{name}` is there"
                     help_ = f"points of a route keep {_BODY_RADIUS} m away from what stands in the level"
                     found.append(Diagnostic("TLT0807", title, _labels(places.spots, enemy.name, name), help_))
+    return found
+
+
+def check_movers(level: Level, places: Places) -> list[Diagnostic]:
+    """A warning TLT0809 for each mover and solid where its way leads through it.
+
+    Nothing stops a mover but a player, so a door may well slide into a wall; more often it is a mistake.
+    """
+    found = []
+    for mover in level.movers:
+        stops = [*mover.path, mover.path[0]] if mover.closed else mover.path
+        for solid in level.solids:
+            # The box meets the solid where its centre meets the solid that is larger by half of it.
+            low, high = solid.box.low, solid.box.high
+            larger = (
+                *(a - side / 2 + _EPSILON for a, side in zip(low, mover.size, strict=True)),
+                *(b + side / 2 - _EPSILON for b, side in zip(high, mover.size, strict=True)),
+            )
+            if any(blocked(start, end, [cast(Corners, larger)]) for start, end in pairwise(stops)):
+                title = f"`{mover.name}` runs into `{solid.name}`"
+                help_ = "where that is not meant, shorten its `path`, or move one of them"
+                labels = _labels(places.spots, mover.name, solid.name)
+                found.append(Diagnostic("TLT0809", title, labels, help_, "warning"))
     return found
 
 

@@ -42,12 +42,19 @@ def variants(name_or_path: str) -> tuple[str, ...]:
 def load_level(name_or_path: str, variant: str = "v0") -> Level:
     """A level that comes with the package, by name, or one in a ``.toml`` file, in one of its variants.
 
+    :func:`read_level` also tells what looks like a mistake and is none.
+
     Errors (:class:`TltlError`): all that is wrong, as far as it can be told at once.  TLT0800 no such level or
     variant; TLT0801 a file is no TOML; TLT0802 an unknown key; TLT0803 a missing key, a value of the wrong kind or
     out of range; TLT0804 a name that is taken or that specs cannot use; TLT0805 a name that stands for nothing;
     TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay changes what is not there; and those of
     :func:`tltlc.files.read_source`.
     """
+    return read_level(name_or_path, variant)[0]
+
+
+def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
+    """A level as :func:`load_level` reads it, and warnings: TLT0809 a mover runs into something."""
     return _Loading(_level_path(name_or_path)).level(variant)
 
 
@@ -72,8 +79,8 @@ class _Loading:
         self.table = Table(self.root, f"the level `{path.stem}`", self.log)
         self.variants = self._variants()
 
-    def level(self, variant: str) -> Level:
-        """The level in a variant."""
+    def level(self, variant: str) -> tuple[Level, tuple[Diagnostic, ...]]:
+        """The level in a variant, and warnings."""
         if variant not in self.variants:
             title = f"the level `{self.path.stem}` has no variant `{variant}`"
             label = self.table.place("variants")
@@ -120,7 +127,7 @@ class _Loading:
         self.log += level_check.check_references(level, places)
         self.log += level_check.check_room(level, places, table.place("start"))
         self._raise()
-        return level
+        return level, tuple(level_check.check_movers(level, places))
 
     def _read(self, path: Path, name: str) -> Entry:
         source = read_source(path, _shown(path))
@@ -161,12 +168,17 @@ class _Loading:
         if not file.endswith(".tltl") or not name:
             self.log.append(wrong(self.table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
             return ""
+        label = self.table.place("spec")
         for folder in (self.path.parent, *_SPECS):
             if (folder / file).is_file():
+                specs = _specs(folder / file)
+                if name not in specs:
+                    title = f"`{file}` holds no spec `{name}`"
+                    self.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, specs)))
                 return f"{folder / file}{colon}{name}"
         title = f"there is no spec file `{file}`"
         help_ = f"put it beside `{self.path.name}`"
-        self.log.append(Diagnostic("TLT0805", title, (self.table.place("spec"),), help_))
+        self.log.append(Diagnostic("TLT0805", title, (label,), help_))
         return ""
 
     def _assets(self, variant: str) -> tuple[list[Table], dict[str, Table]]:
@@ -246,6 +258,15 @@ class _Loading:
         for key, signal in found:
             self.places.refer("signal", table, key, (signal,))
         return found
+
+
+def _specs(path: Path) -> list[str]:
+    """The names of the specs in a file, whatever else is wrong with it."""
+    from tltlc.grammar.parser import parse
+    from tltlc.grammar.tree import SpecDecl
+
+    declarations = parse(read_source(path, _shown(path)))[0].declarations
+    return [declaration.name for declaration in declarations if isinstance(declaration, SpecDecl)]
 
 
 def _first_line(source: SourceFile) -> Span:

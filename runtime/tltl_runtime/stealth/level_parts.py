@@ -36,6 +36,12 @@ CELL_TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barr
 
 SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
 
+CELL_WIDTH: Final = (0.1, 5.0)
+"""The least and the greatest width of a cell of the semantic map, in metres."""
+
+MAP_EXTENT: Final = (3, 63)
+"""The least and the greatest number of cells to a side of it; the number is odd."""
+
 VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "seen")
 """What the player senses where a level does not say."""
 
@@ -239,14 +245,14 @@ def sensors(table: Table | None, entities: tuple[str, ...], places: Places) -> S
         return Sensors(entities, VARIABLES, None)
     found_map = None
     if (map_ := table.table("map", needed=False)) is not None:
-        extent = map_.whole("extent", low=3, high=63)
+        extent = map_.whole("extent", low=MAP_EXTENT[0], high=MAP_EXTENT[1])
         if extent % 2 == 0:
             help_ = "expected an odd number of cells, so that one is in the middle"
             title = f"wrong value for `extent`: {extent}"
             map_.log.append(Diagnostic("TLT0803", title, (map_.place("extent"),), help_))
         types = map_.names("types", CELL_TYPES)
         places.refer("cell type", map_, "types", types)
-        found_map = MapSensor(types, map_.number("cell", low=0.1, high=5.0), extent)
+        found_map = MapSensor(types, map_.number("cell", low=CELL_WIDTH[0], high=CELL_WIDTH[1]), extent)
         map_.done()
     found = Sensors(table.names("entities", entities), table.names("variables", VARIABLES), found_map)
     places.refer("entity", table, "entities", found.entities)

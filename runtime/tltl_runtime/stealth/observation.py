@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from math import dist, pi
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from gymnasium import spaces
 
-from tltl_runtime.stealth.game import Game
-from tltl_runtime.stealth.level import Level, Sensors
+from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.semantic_map import SemanticMap
+from tltl_runtime.stealth.sensors import SensorChoice, chosen
 from tltl_runtime.stealth.signals import entities, readers
+
+if TYPE_CHECKING:
+    from tltl_runtime.stealth.game import Game
 
 _HALF_TIME_S: Final = 60.0
 """The time that is sensed as 0.5: it has no end, and what is sensed has."""
 
 
 class Senses:
-    """The senses that a level, or ``sensors``, declares.  ``reset`` and ``look`` follow a game of that level.
+    """The senses that a level declares, or ``sensors`` in place of them; ``look`` follows a game of that level.
 
     ``space`` is a Dict, without the keys of which nothing is declared:
 
@@ -28,18 +31,12 @@ class Senses:
     - ``map`` uint8 (types, extent, extent), 1 where a cell is of that type; rows run north, columns east.
 
     Raises:
-        ValueError: an entity or variable that the level does not have.
+        TltlError: TLT0815, where ``sensors`` say what the level does not have.
     """
 
-    def __init__(self, level: Level, sensors: Sensors | None = None) -> None:
-        self.sensors = sensors = level.sensors if sensors is None else sensors
+    def __init__(self, level: Level, sensors: SensorChoice | None = None) -> None:
+        self.sensors = sensors = chosen(level, sensors)
         places, signals = entities(level), readers(level)
-        for name in sensors.entities:
-            if name not in places:
-                raise ValueError(f"level {level.name} has no entity `{name}`: there are {', '.join(places)}")
-        for name in sensors.variables:
-            if name not in signals:
-                raise ValueError(f"level {level.name} has no signal `{name}`: there are {', '.join(signals)}")
         self._places = [places[name] for name in sensors.entities]
         self._variables = [(signals[name], *_scale(name, level)) for name in sensors.variables]
         self._diagonal = dist(level.bounds.low, level.bounds.high)

@@ -66,6 +66,18 @@ def readers(level: Level) -> dict[str, _Reader]:
     return found
 
 
+def described(level: Level) -> str:
+    """The names of a level's signals in words, for messages."""
+    plain = [name for name in readers(level) if "(" not in name]
+    found = ", ".join(f"`{name}`" for name in plain)
+    of = {
+        "`distance(…)`, `bearing(…)`, `line_of_sight(…)`": list(entities(level)),
+        "`active(…)`": [switch.name for switch in level.switches],
+        "`open(…)`": [barrier.name for barrier in level.barriers],
+    }
+    return "; ".join([found, *(f"{calls} of {', '.join(names)}" for calls, names in of.items() if names)])
+
+
 def entities(level: Level) -> dict[str, _Place]:
     """Where each entity of a level is, by name: the feet of enemies, the middle of a barrier's base."""
     found: dict[str, _Place] = {switch.name: _at(switch.position) for switch in level.switches}

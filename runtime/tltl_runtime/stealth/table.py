@@ -127,12 +127,14 @@ def wrong(entry: Entry, key: str, expected: str) -> Diagnostic:
     )
 
 
-def suggestion(name: str, known: Iterable[str]) -> str:
-    """A way out for a name that is none of ``known``."""
+def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
+    """A way out for a name that is none of ``known``; ``listed`` stands for the list of them where that is long."""
     names = list(known)
     close = get_close_matches(name, names, n=1)
     if close:
         return f"did you mean `{close[0]}`?"
+    if listed is not None:
+        return f"there are: {listed}"
     return "there are: " + ", ".join(f"`{known}`" for known in names) if names else "there are none"
 
 

@@ -14,6 +14,7 @@ from gymnasium.utils.env_checker import check_env
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tltl_runtime.stealth.env import GameEnv, make_env
 from tltl_runtime.stealth.level import MapSensor, Sensors
+from tltlc.diagnostics.diagnostic import TltlError
 
 NAMES = ("tltl/Navigation-v0", "tltl/CoverAndHide-v0", "tltl/Branching-v0")
 
@@ -92,8 +93,18 @@ def test_the_designer_chooses_what_is_sensed() -> None:
 
 @pytest.mark.parametrize("sensors", [Sensors(("door",), (), None), Sensors((), ("mood",), None)])
 def test_what_the_level_does_not_have_cannot_be_sensed(sensors: Sensors) -> None:
-    with pytest.raises(ValueError, match=r"has no (entity|signal) `(door|mood)`: there are"):
+    with pytest.raises(TltlError, match=r"TLT0815: the level `navigation` has no (entity|signal) `(door|mood)`"):
         GameEnv("navigation", sensors=sensors)
+
+
+def test_gymnasium_takes_plain_mappings_of_sensors() -> None:
+    sensors = {"entities": ["exit"], "variables": ["health"], "map": {"cell": 1.0}}
+    env = gymnasium.make("tltl/Navigation-v0", sensors=sensors)
+    own = env.get_wrapper_attr("level").sensors.map
+    shapes = {key: value.shape for key, value in env.reset(seed=1)[0].items()}
+    assert shapes["entities"] == (3,) and shapes["variables"] == (1,)
+    assert shapes["map"] == (len(own.types), own.extent, own.extent)
+    env.close()
 
 
 def test_importing_registers_and_loads_neither_torch_nor_pybullet() -> None:

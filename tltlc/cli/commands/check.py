@@ -1,31 +1,82 @@
-"""``tltlc check``: everything that compiling would say, and nothing written."""
+"""``tltlc check``: everything that compiling would say, and nothing written; with a level, whether it fits."""
 
 from __future__ import annotations
 
+from typing import Any, Final
+
 import click
 
+from tltlc.cli import plugins
+from tltlc.cli.exits import missing_component
 from tltlc.cli.settings import Settings, source_options
+
+LEVELS: Final = "tltlc.levels"
+"""The group of entry points that know levels: one click command, whose options join those of ``check --level``.
+
+Its callback is given ``levels`` (as on the command line), ``inputs`` (the compiled arguments), ``settings``, the
+``report``, and the values of its options.
+"""
+
+
+class Check(click.Command):
+    """The command; the options that only levels have are there once ``--level`` is given."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """As click does, with the options of levels where one is named."""
+        if not ctx.resilient_parsing and any(text.partition("=")[0] == "--level" for text in args):
+            ctx.meta[LEVELS] = _levels()
+        return super().parse_args(ctx, args)
+
+    def get_params(self, ctx: click.Context) -> list[click.Parameter]:
+        """The options of the command, and those of levels before its ``--help``."""
+        *own, help_ = super().get_params(ctx)
+        levels = ctx.meta.get(LEVELS)
+        return [*own, *(levels.params if levels else ()), help_]
 
 
 @click.command(
+    cls=Check,
     epilog="""\b
 Examples:
   tltlc check cover_and_hide.tltl
   tltlc check --format github levels/*.tltl      remarks on a pull request
   tltlc check --format sarif levels/*.tltl > tltlc.sarif
-"""
+  tltlc check cover_and_hide.tltl --level vault.toml
+  tltlc check --level navigation:v1              a level against its own spec
+  tltlc check --level all --help                 the further options that levels have
+""",
 )
-@click.argument("specs", metavar="SPEC...", nargs=-1, required=True)
+@click.argument("specs", metavar="[SPEC]...", nargs=-1)
+@click.option(
+    "--level",
+    "levels",
+    metavar="LEVEL[:VARIANT]",
+    multiple=True,
+    help="Tell whether this level has what the specs speak of (repeatable): a .toml file, the name of a level that "
+    "comes with tltlc, or `all` of those; without a variant, each of its variants.",
+)
 @source_options
-def command(specs: tuple[str, ...], settings: Settings, format: str) -> int:  # noqa: A002
+def command(
+    specs: tuple[str, ...],
+    levels: tuple[str, ...],
+    settings: Settings,
+    format: str,  # noqa: A002
+    **options: Any,
+) -> int:
     """Report every error and warning of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
-    The exit status is 1 where there is an error, and 0 where there are warnings at most.
+    With --level, also what a level does not have that a spec needs, and what nobody can reach in it; without a SPEC,
+    by the spec that the level is made for.  The exit status is 1 where there is an error, and 0 where there are
+    warnings at most.
     """
     from tltlc.cli.inputs import open_input
     from tltlc.cli.report import Report
     from tltlc.diagnostics.diagnostic import TltlError
 
+    context = click.get_current_context()
+    if not specs and not levels:
+        raise click.UsageError("Missing argument `SPEC...`", context)
+    inputs = []
     with Report(format) as report:
         for spec in specs:
             try:
@@ -34,7 +85,18 @@ def command(specs: tuple[str, ...], settings: Settings, format: str) -> int:  # 
                 report.add(error.diagnostics)
                 continue
             report.add(opened.diagnostics)
+            inputs.append(opened)
             if not opened.diagnostics:
                 count = len(opened.automata)
                 report.say(f"{opened.name}: {count} spec{'' if count == 1 else 's'}, nothing to report")
+        if levels and (inputs or not specs):
+            context.meta[LEVELS].callback(levels=levels, inputs=inputs, settings=settings, report=report, **options)
     return report.status
+
+
+def _levels() -> click.Command:
+    """What knows levels; error TLT0730 where it is not installed."""
+    for plugin in plugins.find(LEVELS):
+        found: click.Command = plugins.load(plugin, "`tltlc check --level`")
+        return found
+    raise missing_component("`tltlc check --level`", "tltl_runtime", "tltlc[rl]")

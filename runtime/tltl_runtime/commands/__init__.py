@@ -1,0 +1,1 @@
+"""Commands that the runtime adds to `tltlc`, one module each; they alone print."""

@@ -1,0 +1,68 @@
+"""``tltlc check --level``; each of its messages is a golden, too."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import ROOT, Outcome, inside, tltlc  # noqa: F401
+from tltl_runtime.stealth.level_file import level_names, load_level, variants
+from tltl_runtime.stealth.offer import offers
+from tltl_runtime.stealth.signals import readers
+
+EXAMPLES = ROOT / "examples"
+SHIPPED = [(name, variant) for name in level_names() for variant in variants(name)]
+
+
+@pytest.mark.parametrize(("name", "variant"), SHIPPED)
+def test_every_signal_has_a_type_and_a_range(name: str, variant: str) -> None:
+    level = load_level(name, variant)
+    assert offers(level).keys() == readers(level).keys()
+
+
+def test_shipped_levels_supply_their_specs(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("check", "--level", "all")
+    for name, variant in SHIPPED:
+        assert f"{name}:{variant} supplies " in found.err
+    assert "navigation:v0 supplies s1, s2, exit, level_size = 27.39 m (nothing to report)" in found.err
+    assert found.err.count("navigation: the agent senses entities 9 (s1, s2, exit); map 4 x 15 x 15 (") == 1
+
+
+def test_a_spec_and_a_level(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    spec = EXAMPLES / "navigation.tltl"
+    assert tltlc("check", spec, "--level", "navigation:v0").status == 0
+    other: Outcome = tltlc("check", spec, "--level", "cover_and_hide:v0", "--level", "branching:v0")
+    assert other.status == 1  # branching has no `exit`
+    assert "warning[TLT0813]: `navigation` is made for the level `navigation`, not for `cover_and_hide`" in other.err
+    assert "error[TLT0810]: the level `branching` has no entity `exit`" in other.err
+
+
+def test_an_artefact_and_a_level(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("compile", EXAMPLES / "branching.tltl:branching", "-t", "json").status == 0
+    found: Outcome = tltlc("check", "branching.fspa.json", "--level", "branching:v0", "--level", "navigation:v0")
+    assert "branching:v0 supplies s1, s2, s3, e_right, e_left, open_right, open_left, health," in found.err
+    assert "error[TLT0810]: the level `navigation` has no entity `s3`\n  help" in found.err
+
+
+def test_what_holds_of_several_variants_is_said_once(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("check", EXAMPLES / "cover_and_hide.tltl", "--level", "branching")
+    assert found.err.count("TLT0810") == 1
+
+
+def test_the_formats_of_machines(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    arguments = ("check", EXAMPLES / "cover_and_hide.tltl", "--level", "branching:v0", "--format")
+    found: Outcome = tltlc(*arguments, "json")
+    codes = [each["code"] for each in json.loads(found.out)["diagnostics"]]
+    assert (codes, found.err) == (["TLT0810", "TLT0813"], "")
+    assert "ruleId" in tltlc(*arguments, "sarif").out
+    assert "::error file=" in tltlc(*arguments, "github").out
+
+
+def test_wrong_usage(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("check").status == 2
+    assert tltlc("check", "--level", "navigation:v7").status == 2
+    assert tltlc("check", "--level", "nowhere.toml").status == 3
+    assert tltlc("check", "--level", "navigation:v0", "--entities", "s9").status == 2
+    assert tltlc("check", "missing.tltl", "--level", "navigation").status == 3
