@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import platform
-from functools import lru_cache
-from importlib.metadata import version
-from typing import Any, Final
+from pathlib import Path
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -15,28 +13,31 @@ from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.episode import End, Episode
 from tltl_runtime.stealth.game import BRANCHES, Snapshot
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.versions import versions
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.monitor import Step
-
-_PACKAGES: Final = ("tltlc", "pybullet", "numpy")
 
 
 class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     """Records the episode that is being played; observations, rewards and infos pass through as they are.
 
     ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one that leave actions as they are.
-    ``player`` is the name that the recording gives whoever plays.
+    ``player`` is the name that the recording gives whoever plays.  With ``folder``, which is made where it is missing,
+    each episode that comes to its end is written to ``LEVEL-VARIANT-SEED.episode.npz`` there.
 
     Raises:
         TypeError: ``env`` has no spec or is not the game.
     """
 
-    def __init__(self, env: gymnasium.Env[Any, Any], player: str = "expert") -> None:
-        RecordConstructorArgs.__init__(self, player=player)
+    def __init__(
+        self, env: gymnasium.Env[Any, Any], player: str = "expert", *, folder: str | Path | None = None
+    ) -> None:
+        RecordConstructorArgs.__init__(self, player=player, folder=folder)
         gymnasium.Wrapper.__init__(self, env)
         self._game = _game_env(env).game
         self._judge = _judge(env)
         self._player = player
+        self._folder = None if folder is None else Path(folder)
         self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
         self._rows: _Rows | None = None
         self._over = False
@@ -72,11 +73,25 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
             atoms = tuple(info["atoms"].values())
             self._rows.add(numbers, self._game.snapshot(), self._signals(), atoms, taken, info["success"])
             self._over = terminated or truncated
+            if self._over and self._folder is not None:
+                self._write(self._folder)
         return observation, reward, terminated, truncated, info
 
     def _signals(self) -> list[float]:
         sample = self._judge.sample
         return [float(sample[name]) for name in self._names]
+
+    def _write(self, folder: Path) -> None:
+        from tltl_runtime.stealth.episode_file import SUFFIX, write_episode
+
+        episode = self.episode
+        name = f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
+        folder.mkdir(parents=True, exist_ok=True)
+        path, number = folder / f"{name}{SUFFIX}", 1
+        while path.exists():
+            number += 1
+            path = folder / f"{name}-{number}{SUFFIX}"
+        write_episode(path, episode)
 
 
 class _Rows:
@@ -127,7 +142,7 @@ class _Rows:
             success=self.success,
             end=_end(steps[-1] if steps else None, self.success),
             reward=judge.task.reward,
-            versions=_versions(),
+            versions=versions(),
         )
 
 
@@ -167,9 +182,3 @@ def _numbers(action: Any) -> list[int]:
 
 def _in_range(numbers: list[int]) -> bool:
     return all(0 <= number < branch for number, branch in zip(numbers, BRANCHES, strict=True))
-
-
-@lru_cache(maxsize=1)
-def _versions() -> dict[str, str]:
-    """Those of Python and of the packages that an episode depends on."""
-    return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}

@@ -1,0 +1,16 @@
+"""What an episode depends on beside its level: the versions of Python and of the packages that play it."""
+
+from __future__ import annotations
+
+import platform
+from functools import lru_cache
+from importlib.metadata import version
+from typing import Final
+
+_PACKAGES: Final = ("tltlc", "pybullet", "numpy")
+
+
+@lru_cache(maxsize=1)
+def versions() -> dict[str, str]:
+    """The versions here and now, by name."""
+    return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
