@@ -14,11 +14,9 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Box, Point
 from tltl_runtime.stealth.motion import Floats, Motion, Poses, joined, poses_of
-from tltl_runtime.stealth.player import DECISION, PlayerState
+from tltl_runtime.stealth.player import DECISION, Action, PlayerState
 from tltl_runtime.stealth.routes import Field
 from tltlc.record import record
-
-Action = tuple[int, int, int, int, int]
 
 LONGEST_FALL: Final = 9
 """Decisions after which a body that still falls is given up."""
@@ -93,7 +91,6 @@ class Foresight:
         trail = np.zeros((1, LONGEST_FALL + 1, 3))
         due: list[list[_Bodies]] = [[] for _ in range(self._ahead + LONGEST_FALL + 2)]
         due[0] = [_Bodies(start, np.array([-1]), np.array([-1]), none, none, trail)]
-        all_bodies: list[_Bodies] = []
         best: tuple[float, int, int] | None = None
         taken: dict[int, _Bodies] = {}
         for time, groups in enumerate(due):
@@ -110,7 +107,6 @@ class Foresight:
             if time < self._ahead:
                 for later, landed in self._moved(bodies, time):
                     due[time + later].append(landed)
-        del all_bodies
         return self._traced(taken, best)
 
     def _moved(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:

@@ -141,7 +141,8 @@ class Motion:
 
     def _room(self, poses: Poses, height: float) -> Truths:
         depth, _ = self._contacts(poses.x, poses.y, poses.z, np.full(poses.x.shape, height))
-        return (depth <= _TOUCH).all(axis=1)
+        free: Truths = np.logical_and.reduce(depth <= _TOUCH, axis=1)
+        return free
 
     def _push_out(self, x: Floats, y: Floats, z: Floats, vx: Floats, vy: Floats, vz: Floats, height: Floats) -> None:
         """Move bodies out of the boxes, and take away the speed into them; changes all in place but ``height``."""
@@ -183,4 +184,5 @@ def _meets(x: Floats, y: Floats, z: Floats, height: Floats, radius: float, box: 
     dx = np.maximum(np.maximum(box.low[0] - x, x - box.high[0]), 0.0)
     dy = np.maximum(np.maximum(box.low[1] - y, y - box.high[1]), 0.0)
     dz = np.maximum(np.maximum(box.low[2] - (z + height - radius), z + radius - box.high[2]), 0.0)
-    return dx * dx + dy * dy + dz * dz < radius * radius
+    meets: Truths = dx * dx + dy * dy + dz * dz < radius * radius
+    return meets

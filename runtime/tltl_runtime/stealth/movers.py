@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import dist
 from typing import Final
 
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.geometry import around
-from tltl_runtime.stealth.level import Box, Level
+from tltl_runtime.stealth.level import Box, Level, Mover, Point
 from tltl_runtime.stealth.physics import SUBSTEPS
 from tltl_runtime.stealth.player import DECISION
 from tltl_runtime.stealth.way import Way
@@ -40,7 +41,19 @@ class Clocks:
         for mover, way, clock in zip(self._movers, self._ways, self._clocks, strict=True):
             steps = range(first, (first if last is None else last) + 2)
             corners = [around(way.at(clock + step * DECISION), mover.size) for step in steps]
-            low = tuple(min(corner[0][axis] for corner in corners) for axis in range(3))
-            high = tuple(max(corner[1][axis] for corner in corners) for axis in range(3))
-            boxes.append(Box((low[0], low[1], low[2]), (high[0], high[1], high[2])))
+            boxes.append(_hull(corners))
         return boxes
+
+
+def reach_of(mover: Mover) -> Box:
+    """The box of all places where a moving obstacle can be."""
+    return _hull([around(place, mover.size) for place in mover.path])
+
+
+def _hull(boxes: Sequence[tuple[Point, Point]]) -> Box:
+    """The least box that holds all of some boxes, each given by its corners."""
+    lows, highs = [box[0] for box in boxes], [box[1] for box in boxes]
+    return Box(
+        (min(low[0] for low in lows), min(low[1] for low in lows), min(low[2] for low in lows)),
+        (max(high[0] for high in highs), max(high[1] for high in highs), max(high[2] for high in highs)),
+    )

@@ -12,6 +12,8 @@ from math import atan2, sqrt
 from tltl_runtime.stealth.level import Point
 from tltlc.record import record
 
+Action = tuple[int, int, int, int, int]
+
 DECISION = 0.15
 """Seconds from one action to the next."""
 

@@ -16,6 +16,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.surfaces import CELL, Cells, Surfaces
 from tltlc.record import record
@@ -113,7 +114,7 @@ class Routes:
         return self._fields[key]
 
     def field_from(self, start: Point, goal: Point) -> Field:
-        """The way to ``goal``, or where none leads there from ``start`` to the place nearest to it that one leads to."""
+        """The way to ``goal``, or where none leads there from ``start`` to the nearest place that one leads to."""
         field = self.field(goal)
         place = self.surfaces.nearest(start)
         if np.isfinite(field.seconds.flat[place]):
@@ -200,7 +201,7 @@ class Routes:
         """Steps off an edge, down to a lower place."""
         surfaces = self.surfaces
         fall = sqrt(2 * float(surfaces.heights[layer] - surfaces.heights[target]) / surfaces.kind.gravity)
-        column = surfaces.standing[target : layer + 1].all(axis=0)
+        column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
         begin = surfaces.places[layer] & surfaces.standing[layer]
         for steps, length in _reaches(direction, 2, _DROP_REACH):
             begin = begin & _shifted(surfaces.standing[layer], direction, steps - 1)
@@ -210,7 +211,7 @@ class Routes:
     def _leaps(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
         """Jumps across what cannot be walked on, to a place no higher."""
         surfaces = self.surfaces
-        column = surfaces.standing[target : layer + 1].all(axis=0)
+        column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
         begin = surfaces.places[layer] & surfaces.leaping[layer]
         walkable = begin
         for steps, length in _reaches(direction, 2, _LEAP_REACH):
@@ -242,6 +243,11 @@ class Routes:
 def routes_of(level: Level, shut: frozenset[int]) -> Routes:
     """The ways of a level while these barriers are shut, made once in a process."""
     return Routes(level, shut)
+
+
+def shut_of(snapshot: Snapshot) -> frozenset[int]:
+    """The indices of the barriers that are shut."""
+    return frozenset(index for index, is_open in enumerate(snapshot.open) if not is_open)
 
 
 def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:

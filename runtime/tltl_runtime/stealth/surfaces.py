@@ -7,6 +7,7 @@ whose centre lies on such a top with room for the body above it.  The body is ta
 from __future__ import annotations
 
 from collections.abc import Collection
+from math import ceil
 from typing import Final
 
 import numpy as np
@@ -38,23 +39,23 @@ class Surfaces:
     ) -> None:
         self.level = level
         self.kind = kind or PlayerKind()
-        (x0, y0, _), (x1, y1, z1) = level.bounds.low, level.bounds.high
+        (x0, y0, _), (x1, y1, ceiling) = level.bounds.low, level.bounds.high
         self.origin = (x0, y0)
-        columns, rows = round((x1 - x0) / CELL + 0.499), round((y1 - y0) / CELL + 0.499)
+        columns, rows = ceil((x1 - x0) / CELL - _TOUCH), ceil((y1 - y0) / CELL - _TOUCH)
         self.xs = x0 + CELL * (np.arange(columns) + 0.5)
         self.ys = y0 + CELL * (np.arange(rows) + 0.5)
         solids = [solid.box for solid in level.solids]
         boxes = solids + [level.barriers[index].box for index in sorted(shut)]
-        self.heights = np.array(sorted({box.high[2] for box in solids if box.high[2] < z1 - _TOUCH}))
+        self.heights = np.array(sorted({box.high[2] for box in solids if box.high[2] < ceiling - _TOUCH}))
         apex = self.kind.jump_speed**2 / (2 * self.kind.gravity)
         self.supported = self._supported(solids)
         self.standing = self._free(boxes, self.kind.height, margin)
         self.crouched = self._free(boxes, self.kind.crouched_height, margin)
         self.leaping = self._free(boxes, self.kind.height + apex, margin)
         self.places: Cells = self.supported & self.crouched & ~self._buried(boxes)
-        layers, rows, columns = np.nonzero(self.places)
+        layer, row, column = np.nonzero(self.places)
         self._flat = np.flatnonzero(self.places)
-        self._points = np.stack([self.xs[columns], self.ys[rows], self.heights[layers]], axis=1)
+        self._points = np.stack([self.xs[column], self.ys[row], self.heights[layer]], axis=1)
 
     def near(self, point: Point, radius: float) -> NDArray[np.intp]:
         """The places within ``radius`` metres of a point, as flat indices into ``places``."""

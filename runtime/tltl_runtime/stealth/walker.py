@@ -10,13 +10,13 @@ from itertools import product
 from math import dist, hypot
 from typing import Final
 
-from tltl_runtime.stealth.foresight import LONGEST_FALL, Action, Foresight, Move, Plan
+from tltl_runtime.stealth.foresight import LONGEST_FALL, Foresight, Move, Plan
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.motion import Motion
 from tltl_runtime.stealth.movers import Clocks
-from tltl_runtime.stealth.player import PlayerKind
-from tltl_runtime.stealth.routes import Field, routes_of
+from tltl_runtime.stealth.player import Action, PlayerKind
+from tltl_runtime.stealth.routes import Field, routes_of, shut_of
 
 STAY: Final[Action] = (0, 0, 0, 0, 0)
 
@@ -78,7 +78,7 @@ class Walker:
 
     def _search(self, snapshot: Snapshot, goal: Point) -> Plan:
         here = snapshot.player.position
-        shut = frozenset(index for index, is_open in enumerate(snapshot.open) if not is_open)
+        shut = shut_of(snapshot)
         field = routes_of(self.level, shut).field_from(here, goal)
         boxes = [solid.box for solid in self.level.solids] + [self.level.barriers[index].box for index in sorted(shut)]
         motion = Motion(self.kind, [box for box in boxes if _away(box, here) <= _BOXES])
