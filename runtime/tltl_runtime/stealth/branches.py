@@ -15,6 +15,9 @@ from tltlc.record import record
 if TYPE_CHECKING:
     from tltl_runtime.stealth.enemy import Guard
 
+_CLOSE: Final = 0.55
+"""Chasing stops at this share of the attack's range, so that who walks away stays in reach."""
+
 
 @record
 class Branch:
@@ -74,7 +77,7 @@ def chase() -> Node:
         x, y, _ = guard.last_known
         speed = guard.kind.chase_speed
         if guard.sees or guard.in_reach:
-            left = hypot(x - guard.x, y - guard.y) - 0.75 * guard.kind.attack_range
+            left = hypot(x - guard.x, y - guard.y) - _CLOSE * guard.kind.attack_range
             speed = min(speed, max(0.0, left) / guard.dt)
         guard.go((x, y), speed)
         guard.face(x, y)

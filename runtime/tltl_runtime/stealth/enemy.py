@@ -170,7 +170,7 @@ class Guard:
     @property
     def state(self) -> tuple[object, ...]:
         """Where it is, looks and wants to, and what it is at: of guards without added branches, all that counts."""
-        return (self.x, self.y, self.yaw, self.mode, self.leg, self.gap, self.back, self.search_left > 0.0)
+        return (self.x, self.y, self.yaw, self.mode, self.leg, self.back, self.search_left > 0.0)
 
     def go(self, goal: Place, speed: float) -> None:
         """From now on walk to a place, or to the nearest that can be reached, at a speed in m/s."""
