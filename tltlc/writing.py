@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
@@ -30,6 +31,25 @@ def write_files(folder: Path, files: Mapping[str, str | bytes], advice: str = _O
 def write_file(path: Path, content: str | bytes) -> None:
     """Write one file into a folder that exists, in the same way; a device or a pipe is written to directly."""
     _write({path: content})
+
+
+@contextmanager
+def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
+    """A temporary path beside ``path``, of the same ending, for a program that writes by itself.
+
+    What is there at the end becomes ``path``; where anything is raised, Ctrl-C too, it is removed.  Error: TLT0005.
+    """
+    place = Path(os.path.realpath(path))
+    temporary = place.with_name(f".tltlc-{os.getpid()}{place.suffix}")
+    try:
+        # The place may refuse: better to know before an hour of work.
+        temporary.touch()
+        yield temporary
+        temporary.replace(place)
+    except (OSError, ValueError) as error:
+        raise _error(path, error, advice) from None
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 def _write(files: Mapping[Path, str | bytes], advice: str = _OPTION) -> tuple[Path, ...]:

@@ -127,7 +127,7 @@ def test_a_task_can_be_pickled() -> None:
 
 
 def test_the_import_loads_little() -> None:
-    heavy = "('torch', 'pybullet', 'matplotlib', 'imageio', 'sympy')"
+    heavy = "('torch', 'pybullet', 'matplotlib', 'imageio_ffmpeg', 'PIL', 'sympy')"
     program = (
         f"import sys, tltl_runtime; tltl_runtime.load_task; print([name for name in {heavy} if name in sys.modules])"
     )

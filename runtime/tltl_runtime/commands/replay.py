@@ -1,0 +1,206 @@
+"""``tltlc replay``: what recorded episodes hold, whether they are true, and pictures and films of them."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from math import ceil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import click
+
+from tltl_runtime.commands.quiet import load_pybullet
+from tltl_runtime.stealth.player import DECISION
+from tltlc.cli import exits
+from tltlc.cli.report import Report
+
+if TYPE_CHECKING:
+    from tltl_runtime.stealth.episode import Episode
+    from tltl_runtime.stealth.film import View
+
+T = TypeVar("T")
+
+_VIEWS: Final = ("third_person", "top_down", "overview", "plan")
+_FILMS: Final = (".gif", ".mp4")
+_ENDINGS: Final = (".png", *_FILMS, ".csv")
+_SIZES: Final = (160, 4096)
+"""The least and the greatest width and height, in pixels."""
+
+_FILM_SIZE: Final = (640, 480)
+_MOST_FRAMES_A_SECOND: Final = 30.0
+"""A faster film leaves decisions out."""
+
+
+def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    width, cross, height = text.lower().partition("x")
+    low, high = _SIZES
+    if cross and width.isdecimal() and height.isdecimal() and low <= int(width) <= high and low <= int(height) <= high:
+        return int(width), int(height)
+    raise click.BadParameter(f"write WIDTHxHEIGHT, each from {low} to {high}, e.g. 640x480")
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc replay run.episode.npz                          how it went
+  tltlc replay runs/*.episode.npz --check               whether the recordings are true
+  tltlc replay run.episode.npz -o run.png               the way, coloured by the automaton's state
+  tltlc replay run.episode.npz -o run.mp4 --view top_down --speed 2
+  tltlc replay run.episode.npz -o run.gif --view plan --from 4 --to 9.5
+  tltlc replay run.episode.npz -o run.csv               then: tltlc monitor SPEC run.csv
+"""
+)
+@click.argument("files", metavar="FILE...", nargs=-1, required=True)
+@click.option(
+    "--output",
+    "-o",
+    "path",
+    metavar="OUT",
+    type=click.Path(path_type=Path),
+    help="Write a plan (.png), a film (.gif, .mp4) or the signals (.csv), and no summary.",
+)
+@click.option("--view", type=click.Choice(_VIEWS), help="Of a film (default: third_person).")
+@click.option(
+    "--speed",
+    type=click.FloatRange(0.05, 100.0),
+    default=1.0,
+    show_default=True,
+    help="Of a film: 2 is twice as fast as the game.",
+)
+@click.option("--size", metavar="WxH", callback=_size, help="Of a film (default: 640x480) or a plan, in pixels.")
+@click.option("--from", "start", metavar="SECONDS", type=float, help="Begin a film or the signals here.")
+@click.option("--to", "stop", metavar="SECONDS", type=float, help="End a film or the signals here.")
+@click.option("--check", "checked", is_flag=True, help="Judge the episode again, and play it again.")
+@click.option(
+    "--format",
+    type=click.Choice(("text", "json")),
+    default="text",
+    show_default=True,
+    help="Of the summary, and of messages.",
+)
+def command(
+    files: tuple[str, ...],
+    path: Path | None,
+    view: View | None,
+    speed: float,
+    size: tuple[int, int] | None,
+    start: float | None,
+    stop: float | None,
+    checked: bool,
+    format: str,  # noqa: A002
+) -> int:
+    """Show recorded episodes: a summary, the plan of the way, a film, the signals.
+
+    --check says whether the atoms, states and rewards of the recording follow from its signals by the spec, and
+    whether the level, played again from the seed with the same actions, gives the same episode.
+    """
+    ending = path.suffix.lower() if path else ""
+    _check_usage(files, path, ending, view, size)
+    load_pybullet()
+    from tltl_runtime.stealth.episode_check import check, check_replay
+    from tltl_runtime.stealth.episode_file import read_episode
+    from tltl_runtime.stealth.summary import summary, summary_text
+
+    summaries: list[dict[str, Any]] = []
+    with Report(format, results=True) as report:
+        for name in files:
+            episode = read_episode(name)
+            said = {"file": name, **summary(episode)}
+            if checked:
+                judged, played = check(episode), check_replay(episode)
+                report.add((*judged, *played))
+                said |= {"follows_from_spec": not judged, "plays_again": not played}
+            if path is not None:
+                rows = _rows(episode, start, stop)
+                _write(path, ending, episode, rows, view or "third_person", speed, size)
+                report.say(f"wrote {path}")
+            elif format == "text":
+                print(f"{name}\n{summary_text(said)}{_checked_text(said)}")
+            summaries.append(said)
+        if format == "json" and path is None:
+            print(json.dumps(summaries, indent=2, ensure_ascii=False))
+    return report.status
+
+
+def _check_usage(
+    files: tuple[str, ...], path: Path | None, ending: str, view: str | None, size: tuple[int, int] | None
+) -> None:
+    if path is None:
+        return
+    if ending not in _ENDINGS:
+        raise click.UsageError(f"the ending of `{path}` says no kind of output: use one of {', '.join(_ENDINGS)}")
+    if len(files) > 1:
+        raise click.UsageError("-o takes one FILE")
+    if view and ending not in _FILMS:
+        raise click.UsageError(f"--view is for films: {', '.join(_FILMS)}")
+    if ending == ".mp4" and size and (size[0] % 2 or size[1] % 2):
+        raise click.UsageError("the width and the height of an .mp4 are even numbers")
+
+
+def _checked_text(said: dict[str, Any]) -> str:
+    if "plays_again" not in said:
+        return ""
+    follows = "follows" if said["follows_from_spec"] else "does NOT follow"
+    same = "the same" if said["plays_again"] else "ANOTHER"
+    return f"\n  checked  the judgement {follows} from the signals; played again it is {same} episode\n"
+
+
+def _rows(episode: Episode, start: float | None, stop: float | None) -> list[int]:
+    """The rows from ``start`` to ``stop`` seconds."""
+    first = 0.0 if start is None else start
+    last = episode.snapshots[-1].time if stop is None else stop
+    rows = [row for row, shot in enumerate(episode.snapshots) if first - 1e-9 <= shot.time <= last + 1e-9]
+    if not rows:
+        end = episode.snapshots[-1].time
+        raise click.UsageError(f"there is nothing from {first:g} s to {last:g} s: the episode ends at {end:.2f} s")
+    return rows
+
+
+def _write(
+    path: Path, ending: str, episode: Episode, rows: list[int], view: View, speed: float, size: tuple[int, int] | None
+) -> None:
+    from tltlc.writing import write_file
+
+    if ending == ".csv":
+        from tltl_runtime.stealth.summary import trace_csv
+
+        write_file(path, trace_csv(episode, rows))
+    elif ending == ".png":
+        from tltl_runtime.stealth.plan import draw_episode
+
+        write_file(path, draw_episode(episode, size))
+    else:
+        _write_film(path, ending, episode, rows, view, speed, size or _FILM_SIZE)
+
+
+def _write_film(
+    path: Path, ending: str, episode: Episode, rows: list[int], view: View, speed: float, size: tuple[int, int]
+) -> None:
+    from tltl_runtime.stealth.film import frames
+    from tltl_runtime.stealth.film_file import NoEncoderError, write_gif, write_mp4
+    from tltlc.writing import replaced
+
+    stride = ceil(speed / DECISION / _MOST_FRAMES_A_SECOND)
+    shown = rows[::stride]
+    pictures = _counted(frames(episode, shown, view, size), len(shown))
+    write: Callable[..., None] = write_gif if ending == ".gif" else write_mp4
+    try:
+        with replaced(path) as temporary:
+            write(temporary, pictures, DECISION * stride / speed)
+    except NoEncoderError as error:
+        raise exits.missing_component("an .mp4", "imageio-ffmpeg", "imageio-ffmpeg") from error
+
+
+def _counted(pictures: Iterable[T], count: int) -> Iterator[T]:
+    """The pictures, with a bar on a terminal's standard error that says how far they are."""
+    if not sys.stderr.isatty():
+        yield from pictures
+        return
+    from rich.console import Console
+    from rich.progress import track
+
+    yield from track(pictures, "drawing", total=count, console=Console(stderr=True), transient=True)

@@ -1,0 +1,204 @@
+"""``tltlc replay``: summaries, checks, plans, films and traces of recorded episodes."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+import sys
+from io import BytesIO, StringIO
+from itertools import count
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import tltl_runtime.stealth.film as film
+from tests.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episode import Episode
+from tltl_runtime.stealth.episode_file import write_episode
+from tltl_runtime.stealth.film import STRIP, frames
+from tltl_runtime.stealth.plan import draw_episode, state_colour
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltlc.monitor import Monitor
+from tltlc.monitor.traces import read_trace
+from tltlc.record import replace
+
+STEPS = 20
+FILE = "run.episode.npz"
+
+
+@pytest.fixture(name="episode", scope="module")
+def _episode() -> Episode:
+    """To the first switch of branching, past the change of state."""
+    env = RecordEpisode(make_env("branching"), player="hand")
+    env.reset(seed=2)
+    for step in range(STEPS):
+        env.step([int(step >= 10), int(step < 10), 0, 0, 0])
+    episode = env.episode
+    env.close()
+    assert set(episode.states.tolist()) == {0, 1}
+    return episode
+
+
+@pytest.fixture(name="recorded")
+def _recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, episode: Episode) -> Path:
+    """The current folder, with the file in it."""
+    monkeypatch.chdir(tmp_path)
+    write_episode(FILE, episode)
+    return tmp_path
+
+
+def test_a_summary(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("replay", FILE)
+    lines = found.out.splitlines()
+    assert (found.status, found.err, lines[0]) == (0, "", FILE)
+    assert lines[1] == "  level    branching v0, spec branching"
+    assert lines[2].startswith("  player   hand, seed ")
+    assert lines[3] == "  end      stopped, pending, after 20 of 600 steps, 3.00 s"
+    changes = lines[lines.index("    time  state  progress  what remains") + 1 :]
+    assert changes[0].startswith("    0.00      0     0.000  ◇(near(s1) ∧ ")
+    assert changes[1].split()[1:3] == ["1", "0.250"] and len(changes) == 2 + 1  # and a blank line
+
+
+def test_a_summary_for_programs(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("replay", FILE, FILE, "--format", "json", "--check")
+    first, second = json.loads(found.out)
+    assert first == second and found.status == 0
+    assert (first["steps"], first["seed"], first["end"]) == (STEPS, episode.seed, "stopped")
+    assert first["follows_from_spec"] and first["plays_again"]
+    assert first["reward"] == pytest.approx(episode.rewards.sum())
+    assert [each["state"] for each in first["changes"]] == [0, 1]
+
+
+def test_a_check_that_fails(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    write_episode("bent.episode.npz", replace(episode, seed=episode.seed + 1, rewards=episode.rewards + 1e-9))
+    found: Outcome = tltlc("replay", "bent.episode.npz", "--check")
+    assert found.status == 1
+    assert "error[TLT0823]: step 1 of the recording" in found.err and "error[TLT0824]" in found.err
+    assert "the judgement does NOT follow from the signals; played again it is ANOTHER episode" in found.out
+    assert tltlc("replay", "bent.episode.npz").status == 0
+
+
+def test_messages_for_programs_are_json(recorded: Path) -> None:
+    Path("cut.episode.npz").write_bytes(Path(FILE).read_bytes()[:-9])
+    program = "import sys; from tltlc.cli.main import main; main(sys.argv[1:])"
+    arguments = [sys.executable, "-c", program, "replay", "cut.episode.npz", "--format", "json"]
+    done = subprocess.run(arguments, capture_output=True, check=False, timeout=60)
+    assert done.returncode == 1
+    assert [each["code"] for each in json.loads(done.stderr)["diagnostics"]] == ["TLT0820"]
+
+
+def test_a_plan(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("replay", FILE, "-o", "run.png").status == 0
+    picture = np.asarray(Image.open("run.png").convert("RGB"))
+    for state in (0, 1):
+        colour = [int(state_colour(state)[at : at + 2], 16) for at in (1, 3, 5)]
+        assert (picture == colour).all(axis=2).sum() > 50
+    assert draw_episode(episode) == draw_episode(episode)
+    assert tltlc("replay", FILE, "-o", "small.png", "--size", "500x400").status == 0
+    assert Image.open("small.png").size == (500, 400)
+
+
+def test_a_plan_tells_how_it_ended(episode: Episode) -> None:
+    dead = replace(episode.snapshots[-1], health=0.0)
+    died = replace(episode, snapshots=(*episode.snapshots[:-1], dead), end="violation")
+    pictures = {draw_episode(each) for each in (episode, died, replace(episode, end="success"))}
+    assert len(pictures) == 3
+    assert Image.open(BytesIO(draw_episode(replace(episode, player="$x$")))).size[0] > 500
+
+
+def test_a_gif(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("replay", FILE, "-o", "run.gif", "--view", "plan", "--size", "320x240", "--speed", "0.5").status == 0
+    with Image.open("run.gif") as gif:
+        assert (gif.size, gif.n_frames, gif.info["duration"]) == ((320, 240), STEPS + 1, 300)
+    assert tltlc("replay", FILE, "-o", "part.gif", "--from", "1", "--to", "1.5", "--size", "200x200").status == 0
+    with Image.open("part.gif") as gif:
+        assert gif.n_frames == 4  # at 1.05, 1.2, 1.35 and 1.5 s
+
+
+def test_an_mp4(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    from imageio_ffmpeg import count_frames_and_secs, read_frames
+
+    assert tltlc("replay", FILE, "-o", "run.mp4", "--view", "plan", "--size", "320x240").status == 0
+    counted, seconds = count_frames_and_secs("run.mp4")
+    assert counted == STEPS + 1 and seconds == pytest.approx(0.15 * (STEPS + 1), abs=0.02)
+    assert next(read_frames("run.mp4"))["size"] == (320, 240)
+    assert tltlc("replay", FILE, "-o", "fast.mp4", "--view", "plan", "--size", "320x240", "--speed", "10").status == 0
+    counted, seconds = count_frames_and_secs("fast.mp4")
+    assert counted == 7 and seconds == pytest.approx(7 * 0.045, abs=0.02)  # each third decision
+
+
+def test_frames_show_the_view_and_the_strip(episode: Episode) -> None:
+    for view in ("third_person", "top_down", "plan"):
+        one, other = frames(episode, [0, STEPS], view, (240, 200))  # type: ignore[arg-type]
+        assert one.shape == (200, 240, 3) and one.dtype == np.uint8
+        assert (one[:-STRIP] != other[:-STRIP]).any() and (one[-STRIP:] != other[-STRIP:]).any()
+    (again,) = frames(episode, [STEPS], "plan", (240, 200))
+    assert (again == other)[-STRIP:].all()
+
+
+def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("replay", FILE, "-o", "run.csv").status == 0
+    lines = Path("run.csv").read_bytes().splitlines(keepends=True)
+    monitor = Monitor(episode.fspa, episode.params)
+    for row, sample in enumerate(read_trace(lines, "run.csv", episode.fspa.signals), start=1):
+        step = monitor.step(sample)
+        assert (step.state, step.progress) == (episode.states[row], episode.progress[row])
+        assert step.reward == episode.rewards[row - 1]
+    assert row == STEPS
+    size = f"level_size={episode.params['level_size']!r} m"
+    judged: Outcome = tltlc("monitor", ROOT / "examples/branching.tltl:branching", "run.csv", "--param", size)
+    rows = [each for each in csv.DictReader(StringIO(judged.out)) if each["step"].isdecimal()]
+    assert [int(each["state"]) for each in rows] == episode.states[1:].tolist()
+    assert tltlc("replay", FILE, "-o", "part.csv", "--from", "2.9").status == 0
+    assert len(Path("part.csv").read_text().splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("-o", "run.avi"), "the ending of `run.avi` says no kind of output: use one of .png, .gif, .mp4, .csv"),
+        (("-o", "run.gif", FILE), "-o takes one FILE"),
+        (("-o", "run.png", "--view", "plan"), "--view is for films"),
+        (("-o", "run.mp4", "--size", "321x240"), "the width and the height of an .mp4 are even"),
+        (("--size", "9x9"), "write WIDTHxHEIGHT, each from 160 to 4096"),
+        (("--size", "big"), "write WIDTHxHEIGHT"),
+        (("-o", "run.gif", "--from", "8", "--to", "9"), "there is nothing from 8 s to 9 s: the episode ends at 3.00 s"),
+        ((), ""),
+    ],
+)
+def test_usage(tltlc, recorded: Path, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("replay", FILE, *arguments) if arguments else tltlc("replay")
+    assert found.status == 2 and said in found.err
+    assert [path.name for path in recorded.iterdir()] == [FILE]
+
+
+def test_ctrl_c_leaves_nothing(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    calls, framed = count(), film._framed
+
+    def interrupted(*arguments: object) -> object:
+        if next(calls) % 6 == 5:
+            raise KeyboardInterrupt
+        return framed(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(film, "_framed", interrupted)
+    for name in ("run.gif", "run.mp4"):
+        Path(name).write_bytes(b"older")
+        found: Outcome = tltlc("replay", FILE, "-o", name, "--view", "plan")
+        assert found.status == 130 and Path(name).read_bytes() == b"older"
+    assert sorted(path.name for path in recorded.iterdir()) == [FILE, "run.gif", "run.mp4"]
+
+
+def test_no_encoder_is_a_missing_component(tltlc, recorded: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    found: Outcome = tltlc("replay", FILE, "-o", "run.mp4", "--view", "plan")
+    assert found.status == 4 and "pip install imageio-ffmpeg" in found.err.replace("'", "")
+    assert [path.name for path in recorded.iterdir()] == [FILE]
+
+
+def test_a_place_that_cannot_be_written_is_told_before_the_work(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("replay", FILE, "-o", "nowhere/run.mp4")
+    assert found.status == 3 and "error[TLT0005]: cannot write `nowhere/run.mp4`" in found.err
