@@ -20,12 +20,17 @@ def robustness(guard: Guard, values: Sequence[float]) -> float:
 
     ▲ The paper takes the guard as it is written; over all primes the value does not depend on how that is.
     """
-    return max(prime_robustness(prime, values) for prime in guard.primes)
+    return max([prime_robustness(prime, values) for prime in guard.primes])
 
 
 def prime_robustness(prime: Implicant, values: Sequence[float]) -> float:
     """The least value of a literal, which is the atom's or its negative; of no literals, 1."""
-    return min((values[atom] if polarity else -values[atom] for atom, polarity in prime), default=1.0)
+    least = 1.0
+    for atom, polarity in prime:
+        value = values[atom] if polarity else -values[atom]
+        if value < least:
+            least = value
+    return least
 
 
 def bounding_atom(guards: Sequence[Guard], values: Sequence[float]) -> int:

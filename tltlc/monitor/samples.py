@@ -64,15 +64,15 @@ class Samples:
         return nearest
 
     def _value(self, index: int, sample: Sequence[float], step: int) -> float:
-        name = self._fspa.atoms[index].name
         try:
             return self._atoms[index](*sample)
         except ZeroDivisionError:
-            raise _error("TLT0613", step, f"the atom `{name}` divides by zero") from None
+            what = "divides by zero"
         except OverflowError:
-            raise _error("TLT0613", step, f"the atom `{name}` is too large to compute") from None
+            what = "is too large to compute"
         except ValueError:
-            raise _error("TLT0613", step, f"the atom `{name}` takes a root or power that does not exist") from None
+            what = "takes a root or power that does not exist"
+        raise _error("TLT0613", step, f"the atom `{self._fspa.atoms[index].name}` {what}")
 
     def _in_range(self, index: int, value: float, step: int) -> float:
         if -1.0 <= value <= 1.0:
@@ -145,15 +145,19 @@ def listed(names: Sequence[str]) -> str:
 
 
 def _finite(signal: Signal, given: SupportsFloat, step: int) -> float:
-    if isinstance(given, str) or not hasattr(given, "__float__"):
-        raise _error("TLT0612", step, f"the signal `{signal.name}` is no number")
-    try:
-        value = float(given)
-    except OverflowError:
-        raise _error("TLT0612", step, f"the signal `{signal.name}` is too large for a number") from None
+    value = given if type(given) is float else _as_float(signal, given, step)
     if not isfinite(value):
         raise _error("TLT0612", step, f"the signal `{signal.name}` is {value}, not a finite number")
     return value
+
+
+def _as_float(signal: Signal, given: SupportsFloat, step: int) -> float:
+    if isinstance(given, str) or not hasattr(given, "__float__"):
+        raise _error("TLT0612", step, f"the signal `{signal.name}` is no number")
+    try:
+        return float(given)
+    except OverflowError:
+        raise _error("TLT0612", step, f"the signal `{signal.name}` is too large for a number") from None
 
 
 WAYS_OUT: Final = {

@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 
 from tltl_runtime.stealth.enemy import CROUCHED_HEAD, STANDING_HEAD, Enemies, PlayerView
-from tltl_runtime.stealth.level import Box, Level, Mover, Point
+from tltl_runtime.stealth.geometry import around
+from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.physics import World
 from tltl_runtime.stealth.player import DECISION, PlayerState
 from tltl_runtime.stealth.signals import Signals, readers
@@ -57,6 +58,7 @@ class Game:
         self.enemies = Enemies(level)
         self.readers = readers(level)
         self._unlocks = {unlock.switch: unlock.barriers for unlock in level.unlocks}
+        self._sizes = [mover.size for mover in level.movers]
         self._barriers = {barrier.name: index for index, barrier in enumerate(level.barriers)}
         self.reset(0)
 
@@ -74,11 +76,13 @@ class Game:
         self.health = 1.0
         self.active = [False] * len(self.level.switches)
         self.open = [False] * len(self.level.barriers)
+        self._mover_boxes = self._boxes_of_movers()
 
     def step(self, action: Sequence[int]) -> None:
         """Play one decision of :data:`~tltl_runtime.stealth.player.DECISION` seconds: one number per branch."""
         self.world.step(action)
-        self.enemies.step(DECISION, self._player_view(), self.mover_boxes())
+        self._mover_boxes = self._boxes_of_movers()
+        self.enemies.step(DECISION, self._player_view(), self._mover_boxes)
         self.steps += 1
         self.health = max(0.0, self.health - self.enemies.damage - self._burns() * DECISION)
         self._press_switches()
@@ -94,7 +98,7 @@ class Game:
 
     def mover_boxes(self) -> list[Box]:
         """Where the moving obstacles are now."""
-        return [_box(*each) for each in zip(self.level.movers, self.world.mover_positions(), strict=True)]
+        return self._mover_boxes
 
     def snapshot(self) -> Snapshot:
         """What there is to see now."""
@@ -112,6 +116,10 @@ class Game:
             open=tuple(self.open),
         )
 
+    def _boxes_of_movers(self) -> list[Box]:
+        positions = self.world.mover_positions()
+        return [Box(*around(centre, size)) for centre, size in zip(positions, self._sizes, strict=True)]
+
     def _player_view(self) -> PlayerView:
         player = self.world.player
         head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
@@ -120,15 +128,21 @@ class Game:
     def _press_switches(self) -> None:
         """Activate the switches that the player has come to, and open what they open."""
         feet = self.world.player.position
+        pressed = False
         for index, switch in enumerate(self.level.switches):
             if not self.active[index] and _distance(feet, switch.position) <= switch.radius:
-                self.active[index] = True
+                self.active[index] = pressed = True
                 choices = self._unlocks.get(switch.name)
                 if choices:
                     self._open(self._barriers[choices[int(self._rng.integers(len(choices)))]])
-        pressed = {switch.name for switch, active in zip(self.level.switches, self.active, strict=True) if active}
+        if pressed:
+            self._open_what_is_bound()
+
+    def _open_what_is_bound(self) -> None:
+        """Open the barriers all of whose switches are active."""
+        active = {switch.name for switch, is_active in zip(self.level.switches, self.active, strict=True) if is_active}
         for index, barrier in enumerate(self.level.barriers):
-            if not self.open[index] and barrier.opened_by and pressed.issuperset(barrier.opened_by):
+            if not self.open[index] and barrier.opened_by and active.issuperset(barrier.opened_by):
                 self._open(index)
 
     def _open(self, barrier: int) -> None:
@@ -145,11 +159,6 @@ class Game:
             for barrier, is_open in zip(self.level.barriers, self.open, strict=True)
             if barrier.kind == "laser" and not is_open and _touches(player.position, kind.radius, height, barrier.box)
         )
-
-
-def _box(mover: Mover, centre: Point) -> Box:
-    x, y, z = (side / 2 for side in mover.size)
-    return Box((centre[0] - x, centre[1] - y, centre[2] - z), (centre[0] + x, centre[1] + y, centre[2] + z))
 
 
 def _distance(a: Point, b: Point) -> float:

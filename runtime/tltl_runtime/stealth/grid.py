@@ -105,6 +105,7 @@ class Floor:
         self.neighbours = self._neighbours(rows, columns)
         self._next: Any = self.neighbours.tolist()
         self._last: tuple[int, bytes] = (-1, b"")
+        self._gaps: dict[int, tuple[Place, ...]] = {}
 
     def is_free(self, x: float, y: float) -> bool:
         """Whether an enemy can stand at x, y: inside the bounds, and clear of all obstacles by its radius."""
@@ -176,6 +177,11 @@ class Floor:
 
     def gaps(self, area: int = 0) -> tuple[Place, ...]:
         """Narrow places of an area: middles of passages at most 2 m wide, at least 2 m from each other."""
+        if area not in self._gaps:
+            self._gaps[area] = self._find_gaps(area)
+        return self._gaps[area]
+
+    def _find_gaps(self, area: int) -> tuple[Place, ...]:
         mine = np.zeros((self._rows, self._columns), dtype=bool)
         for cell, (x, y) in enumerate(self.centres):
             column, row = self._cell(x, y)

@@ -272,7 +272,19 @@ class World:
         if velocity == (0.0, 0.0):
             return 0.0
         x, y, z = self._state.position
-        boxes = [box for box in self._near((x, y, z)) if z + _ROOM < box[1][2] and box[0][2] < z + kind.radius]
+        ahead = (x + velocity[0] * DECISION, y + velocity[1] * DECISION)
+        west, east = min(x, ahead[0]) - kind.radius, max(x, ahead[0]) + kind.radius
+        south, north = min(y, ahead[1]) - kind.radius, max(y, ahead[1]) + kind.radius
+        boxes = [
+            (low, high)
+            for low, high in self._near((x, y, z))
+            if low[2] < z + kind.radius
+            and z + _ROOM < high[2]
+            and low[0] < east
+            and west < high[0]
+            and low[1] < north
+            and south < high[1]
+        ]
         if not boxes:
             return 0.0
         # A wall beside the stairs must not stop who goes up along it, so each direction counts by itself as well.

@@ -34,6 +34,9 @@ class Signals(Mapping[str, float]):
     def __getitem__(self, name: str) -> float:
         return float(self._readers[name](self._game))
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._readers
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._readers)
 
