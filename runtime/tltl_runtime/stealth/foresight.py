@@ -6,7 +6,8 @@ move, played to its end before it is judged.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from math import inf
 from typing import Final
 
 import numpy as np
@@ -46,27 +47,38 @@ class Plan:
 
 @record
 class _Bodies:
-    """Bodies on the ground at one time, how they came there, and the seconds they are judged by beside the time."""
+    """Bodies [n] on the ground at one time, what they are judged by beside the time, and how they came there."""
 
     poses: Poses
-    parents: NDArray[np.int64]
-    moves: NDArray[np.int64]
     costs: Floats
+    """Seconds that what they touched is reckoned as."""
     left: Floats
+    """Seconds of the way to the goal."""
+    began: NDArray[np.int64]
+    """The time, in decisions from now, at which their last move began."""
+    parents: NDArray[np.int64]
+    """Which of the bodies of that time they were."""
+    moves: NDArray[np.int64]
+    """Which move they made."""
     trails: Floats
-    """[n, LONGEST_FALL + 1, 3]: where the feet were after each decision of the last move."""
+    """Where the feet were after each decision of that move, [n, LONGEST_FALL, 3]."""
 
     def take(self, which: NDArray[np.intp]) -> _Bodies:
-        return _Bodies(self.poses.take(which), *(getattr(self, name)[which] for name in _OTHERS))
+        """Those of some indices."""
+        return _Bodies(self.poses.take(which), *(getattr(self, name)[which] for name in _COLUMNS))
+
+    def judged(self) -> Floats:
+        """Less is better, among bodies of one time."""
+        return self.costs + self.left - _STAMINA * self.poses.stamina
 
 
-_OTHERS: Final = ("parents", "moves", "costs", "left", "trails")
+_COLUMNS: Final = ("costs", "left", "began", "parents", "moves", "trails")
 
 
 class Foresight:
     """The search for the next ``ahead`` decisions, of each of which the ``kept`` best bodies go on.
 
-    ``movers`` are the boxes that moving obstacles sweep in each decision to come.
+    ``movers`` are the boxes that moving obstacles sweep in each decision to come, LONGEST_FALL more than ``ahead``.
     """
 
     def __init__(
@@ -86,35 +98,29 @@ class Foresight:
 
     def plan(self, player: PlayerState) -> Plan:
         """What to do; nothing where every move ends where there is no way on."""
-        start = poses_of(player)
-        none = np.zeros(1)
-        trail = np.zeros((1, LONGEST_FALL + 1, 3))
-        due: list[list[_Bodies]] = [[] for _ in range(self._ahead + LONGEST_FALL + 2)]
-        due[0] = [_Bodies(start, np.array([-1]), np.array([-1]), none, none, trail)]
-        best: tuple[float, int, int] | None = None
-        taken: dict[int, _Bodies] = {}
+        due: list[list[_Bodies]] = [[] for _ in range(self._ahead + LONGEST_FALL)]
+        due[0] = [_root(player)]
+        passed: dict[int, _Bodies] = {}
+        best, end = inf, (0, 0)
         for time, groups in enumerate(due):
             if not groups:
                 continue
-            bodies = self._thinned(_merged(groups))
-            taken[time] = bodies
-            judged = bodies.costs + bodies.left - _STAMINA * bodies.poses.stamina + time * DECISION
-            ends = np.flatnonzero((bodies.left < _THERE) | (time >= self._ahead)) if time else np.array([], dtype=int)
-            if ends.size:
-                row = int(ends[judged[ends].argmin()])
-                if best is None or judged[row] < best[0]:
-                    best = (float(judged[row]), time, row)
-            if time < self._ahead:
+            bodies = passed[time] = self._best(_merged(groups))
+            judged = bodies.judged() + time * DECISION
+            judged[(bodies.left > _THERE) & (time < self._ahead)] = inf
+            if time and judged.size and judged.min() < best:
+                best, end = float(judged.min()), (time, int(judged.argmin()))
+            if time < self._ahead and bodies.left.size:
                 for later, landed in self._moved(bodies, time):
                     due[time + later].append(landed)
-        return self._traced(taken, best)
+        return self._traced(passed, *end)
 
     def _moved(self, bodies: _Bodies, time: int) -> list[tuple[int, _Bodies]]:
         """Every body after every move, grouped by the number of decisions that the move took."""
         count, choices = bodies.costs.size, len(self._moves)
         parents, moves = np.repeat(np.arange(count), choices), np.tile(np.arange(choices), count)
         poses, costs = bodies.poses.take(parents), bodies.costs[parents]
-        trails = np.zeros((parents.size, LONGEST_FALL + 1, 3))
+        trails = np.zeros((parents.size, LONGEST_FALL, 3))
         landed = []
         for step in range(LONGEST_FALL):
             actions = self._actions[moves]
@@ -128,8 +134,9 @@ class Foresight:
             if down.size:
                 here = poses.take(down)
                 left = self._field.at(here.x, here.y, here.z)
-                ends = _Bodies(here, parents[down] + (time << 16), moves[down], costs[down], left, trails[down])
-                landed.append((step + 1, self._thinned(ends.take(np.flatnonzero(np.isfinite(left))))))
+                began = np.full(down.size, time)
+                ends = _Bodies(here, costs[down], left, began, parents[down], moves[down], trails[down])
+                landed.append((step + 1, self._best(ends.take(np.flatnonzero(np.isfinite(left))))))
             up = np.flatnonzero(~poses.grounded)
             if not up.size:
                 break
@@ -137,35 +144,37 @@ class Foresight:
             parents, moves = parents[up], moves[up]
         return landed
 
-    def _thinned(self, bodies: _Bodies) -> _Bodies:
+    def _best(self, bodies: _Bodies) -> _Bodies:
         """The best body of each quarter of a metre, and of those the best."""
         poses = bodies.poses
-        judged = bodies.costs + bodies.left - _STAMINA * poses.stamina
-        order = judged.argsort(kind="stable")
+        order = bodies.judged().argsort(kind="stable")
         cells = np.floor(np.stack([poses.x * 4, poses.y * 4, poses.z * 4 + 0.5, poses.crouching], axis=1))[order]
         _, first = np.unique(cells, axis=0, return_index=True)
         return bodies.take(order[np.sort(first)[: self._kept]])
 
-    def _traced(self, taken: dict[int, _Bodies], best: tuple[float, int, int] | None) -> Plan:
-        """The actions that lead to the best end, from the first on."""
-        if best is None:
-            return Plan((), ())
-        _, time, row = best
+    def _traced(self, passed: Mapping[int, _Bodies], time: int, row: int) -> Plan:
+        """What led to a body of a time."""
         actions: list[Action] = []
         places: list[Point] = []
         while time:
-            bodies = taken[time]
-            parent, move = int(bodies.parents[row]), self._moves[int(bodies.moves[row])]
-            began, row_before = parent >> 16, parent & 0xFFFF
+            bodies = passed[time]
+            began, move = int(bodies.began[row]), self._moves[int(bodies.moves[row])]
+            x, y, jump, crouch, sprint = move.action
             for step in reversed(range(time - began)):
-                x, y, sprint = (move.action[0], move.action[1], move.action[4]) if step < move.hold else (0, 0, 0)
-                crouch = move.action[3] if step < move.hold else 0
-                actions.append((x, y, move.action[2] if step == 0 else 0, crouch, sprint))
-                places.append(tuple(bodies.trails[row, step].tolist()))
-            time, row = began, row_before
+                held = step < move.hold
+                actions.append((x, y, jump * (step == 0), crouch, sprint) if held else (0, 0, 0, 0, 0))
+                place = bodies.trails[row, step]
+                places.append((float(place[0]), float(place[1]), float(place[2])))
+            time, row = began, int(bodies.parents[row])
         return Plan(tuple(reversed(actions)), tuple(reversed(places)))
+
+
+def _root(player: PlayerState) -> _Bodies:
+    """The body from which all others come."""
+    none, zero = np.array([-1]), np.zeros(1)
+    return _Bodies(poses_of(player), zero, np.array([inf]), none, none, none, np.zeros((1, LONGEST_FALL, 3)))
 
 
 def _merged(groups: Sequence[_Bodies]) -> _Bodies:
     poses = joined([group.poses for group in groups])
-    return _Bodies(poses, *(np.concatenate([getattr(group, name) for group in groups]) for name in _OTHERS))
+    return _Bodies(poses, *(np.concatenate([getattr(group, name) for group in groups]) for name in _COLUMNS))

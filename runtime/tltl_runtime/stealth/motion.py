@@ -60,13 +60,21 @@ def joined(parts: Sequence[Poses]) -> Poses:
     return Poses(*(np.concatenate([getattr(part, name) for part in parts]) for name in _FIELDS))
 
 
+@record
+class _Boxes:
+    """The corners of boxes, [3, boxes] each."""
+
+    low: Floats
+    high: Floats
+
+
 class Motion:
     """Bodies among boxes that stand still."""
 
     def __init__(self, kind: PlayerKind, boxes: Sequence[Box]) -> None:
         self.kind = kind
         corners = np.array([[*box.low, *box.high] for box in boxes], dtype=np.float64).reshape(-1, 6)
-        self._low, self._high = corners[:, :3].T.copy(), corners[:, 3:].T.copy()
+        self._boxes = _Boxes(corners[:, :3].T, corners[:, 3:].T)
 
     def step(self, poses: Poses, actions: NDArray[np.int64], movers: Sequence[Box] = ()) -> tuple[Poses, Truths]:
         """The bodies after one decision with these actions [n, 5], and which of them met one of ``movers``.
@@ -74,12 +82,13 @@ class Motion:
         ``movers`` are the boxes that moving obstacles sweep in this decision.
         """
         kind = self.kind
-        crouching = (actions[:, 3] > 0) | (poses.crouching & ~self._room(poses, kind.height))
+        boxes = self._reached(poses)
+        crouching = (actions[:, 3] > 0) | (poses.crouching & ~self._room(poses, boxes))
         vx, vy, stamina = self._wish(poses, actions, crouching)
         jumps = (actions[:, 2] > 0) & poses.grounded & ~crouching
         height = np.where(crouching, kind.crouched_height, kind.height)
         x, y, z = poses.x.copy(), poses.y.copy(), poses.z.copy()
-        lift = np.where(jumps | ~poses.grounded, 0.0, self._stairs(poses, vx, vy, height))
+        lift = np.where(jumps | ~poses.grounded, 0.0, self._stairs(poses, vx, vy, height, boxes))
         z += lift
         vz = np.where(jumps, kind.jump_speed, np.maximum(poses.vz, -kind.fall_speed))
         vz[lift > 0.0] = 0.0
@@ -93,8 +102,8 @@ class Motion:
             z += vz * seconds
             for box in movers:
                 met |= _meets(x, y, z, height, kind.radius + _BERTH, box)
-            self._push_out(x, y, z, vx, vy, vz, height)
-        depth, normal = self._contacts(x, y, z, height)
+            self._push_out(x, y, z, vx, vy, vz, height, boxes)
+        depth, normal = self._contacts(x, y, z, height, boxes)
         grounded = ((depth > -_TOUCH) & (normal[2] > 0.5)).any(axis=1)
         return Poses(x, y, z, vz, crouching, grounded, stamina), met
 
@@ -110,11 +119,19 @@ class Motion:
         refilled = np.minimum(1.0, poses.stamina + DECISION / kind.refill_time)
         return dx * speed, dy * speed, np.where(sprints, np.maximum(0.0, poses.stamina - spent), refilled)
 
-    def _stairs(self, poses: Poses, vx: Floats, vy: Floats, height: Floats) -> Floats:
+    def _reached(self, poses: Poses) -> _Boxes:
+        """The boxes that any of the bodies may meet in one decision."""
+        reach = self.kind.radius + self.kind.sprint_speed * DECISION + _TOUCH
+        low, high = self._boxes.low, self._boxes.high
+        near = (low[0] < poses.x.max() + reach) & (high[0] > poses.x.min() - reach)
+        near &= (low[1] < poses.y.max() + reach) & (high[1] > poses.y.min() - reach)
+        return _Boxes(low[:, near], high[:, near])
+
+    def _stairs(self, poses: Poses, vx: Floats, vy: Floats, height: Floats, boxes: _Boxes) -> Floats:
         """How high each body is lifted by a stair in its way; 0 where there is none."""
         lift = np.zeros(poses.x.shape)
         kind = self.kind
-        low, high = self._low, self._high
+        low, high = boxes.low, boxes.high
         stairs = (high[2] > poses.z[:, None] + _TOUCH) & (high[2] <= poses.z[:, None] + kind.step_height + _TOUCH)
         reach = kind.radius + kind.sprint_speed * DECISION
         stairs &= (np.maximum(low[0] - poses.x[:, None], poses.x[:, None] - high[0]) < reach) & (
@@ -129,7 +146,7 @@ class Motion:
             undecided = np.ones(some.size, dtype=np.bool_)
             for share in (1 / 3, 2 / 3, 1.0):
                 ahead_x, ahead_y = here.x + wx[some] * DECISION * share, here.y + wy[some] * DECISION * share
-                depth, _ = self._contacts(ahead_x, ahead_y, here.z, height[some])
+                depth, _ = self._contacts(ahead_x, ahead_y, here.z, height[some], boxes)
                 tops = np.where(in_way & (depth > _TOUCH), high[2], -np.inf).max(axis=1)
                 step = tops - here.z + 0.005
                 first = undecided & np.isfinite(tops)
@@ -139,21 +156,24 @@ class Motion:
                 undecided &= ~first
         return lift
 
-    def _room(self, poses: Poses, height: float) -> Truths:
-        depth, _ = self._contacts(poses.x, poses.y, poses.z, np.full(poses.x.shape, height))
+    def _room(self, poses: Poses, boxes: _Boxes) -> Truths:
+        """Whether there is room to stand."""
+        depth, _ = self._contacts(poses.x, poses.y, poses.z, np.full(poses.x.shape, self.kind.height), boxes)
         free: Truths = np.logical_and.reduce(depth <= _TOUCH, axis=1)
         return free
 
-    def _push_out(self, x: Floats, y: Floats, z: Floats, vx: Floats, vy: Floats, vz: Floats, height: Floats) -> None:
-        """Move bodies out of the boxes, and take away the speed into them; changes all in place but ``height``."""
-        depth, normal = self._contacts(x, y, z, height)
+    def _push_out(
+        self, x: Floats, y: Floats, z: Floats, vx: Floats, vy: Floats, vz: Floats, height: Floats, boxes: _Boxes
+    ) -> None:
+        """Move bodies out of the boxes, and take away the speed into them: all in place."""
+        depth, normal = self._contacts(x, y, z, height, boxes)
         touched = np.flatnonzero((depth > 0.0).any(axis=1))
         if not touched.size:
             return
         deep, normal = np.maximum(depth[touched], 0.0), normal[:, touched]
         for axis, place in enumerate((x, y, z)):
             push = deep * normal[axis]
-            place[touched] += push.max(axis=1) + push.min(axis=1)
+            place[touched] += push.max(axis=1, initial=0.0) + push.min(axis=1, initial=0.0)
         # The speed into what is met: the deepest first, then what is left of it against the others.
         speed = np.stack([vx[touched], vy[touched], vz[touched]])
         rows = np.arange(touched.size)
@@ -164,13 +184,13 @@ class Motion:
             speed -= lost * normal[:, rows, worst]
         vx[touched], vy[touched], vz[touched] = speed
 
-    def _contacts(self, x: Floats, y: Floats, z: Floats, height: Floats) -> tuple[Floats, Floats]:
+    def _contacts(self, x: Floats, y: Floats, z: Floats, height: Floats, boxes: _Boxes) -> tuple[Floats, Floats]:
         """How far each capsule reaches into each box [n, boxes], and the directions out of them [3, n, boxes]."""
         radius = self.kind.radius
-        low, high = self._low, self._high
+        low, high = boxes.low, boxes.high
         away = np.empty((3, x.size, low.shape[1]))
         for axis, place in enumerate((x, y)):
-            away[axis] = place[:, None] - np.clip(place[:, None], low[axis], high[axis])
+            away[axis] = place[:, None] - np.minimum(np.maximum(place[:, None], low[axis]), high[axis])
         bottom, top = (z + radius)[:, None], (z + height - radius)[:, None]
         away[2] = np.where(top < low[2], top - low[2], np.maximum(bottom - high[2], 0.0))
         distance = np.sqrt((away * away).sum(axis=0))

@@ -86,7 +86,7 @@ class Field:
         for layer in np.flatnonzero(near.any(axis=1)):
             for dy in (-1, 0, 1):
                 for dx in (-1, 0, 1):
-                    r, c = np.clip(row + dy, 0, rows - 1), np.clip(column + dx, 0, columns - 1)
+                    r, c = _within(row + dy, rows), _within(column + dx, columns)
                     away = np.hypot(surfaces.xs[c] - x, surfaces.ys[r] - y) / speed
                     seconds = np.where(near[layer], self.seconds[layer, r, c] + away, np.inf)
                     best = np.minimum(best, seconds)
@@ -255,6 +255,11 @@ def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[t
     length = CELL * hypot(*direction)
     for steps in range(least, int(reach / length + 1e-6) + 1):
         yield steps, steps * length
+
+
+def _within(index: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    """Indices out of range, moved to its ends."""
+    return np.minimum(np.maximum(index, 0), count - 1)
 
 
 def _shifted(cells: Cells, direction: tuple[int, int], steps: int) -> Cells:
