@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import click
 from gymnasium import spaces
 
 from tltl_runtime.commands.senses import senses_options
+from tltl_runtime.stealth.feasible import check_reach
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.level_file import level_names, read_level, variants
 from tltl_runtime.stealth.observation import Senses
+from tltl_runtime.stealth.reach import reachable
 from tltl_runtime.stealth.spec_places import SpecPlaces
 from tltl_runtime.stealth.supply import check_supply, given_params, used_entities
 from tltlc.automaton.fspa import Fspa
+from tltlc.cli.exits import CLEAN, status_of
 from tltlc.cli.inputs import Input, open_input
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings
@@ -50,9 +54,12 @@ def _check(
         level, warnings = read_level(path, each)
         _add(report, warnings, said)
         senses = Senses(level, sensors)
+        reach = reachable(level)
         for opened in inputs or _own(level, settings, report, said):
             for fspa, places in _specs(opened):
                 found = check_supply(level, fspa, places)
+                if status_of(found) == CLEAN:
+                    found += check_reach(level, reach, fspa, places)
                 _add(report, found, said)
                 if not found:
                     several = f" to `{fspa.name}`" if len(inputs) > 1 or len(opened.automata) > 1 else ""
@@ -71,9 +78,17 @@ def _own(level: Level, settings: Settings, report: Report, said: set[object]) ->
                 f'{level.name}: made for no spec; name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
             )
         return []
-    opened = open_input(level.spec, settings)
+    opened = open_input(_shown(level.spec), settings)
     _add(report, opened.diagnostics, said)
     return [opened]
+
+
+def _shown(spec: str) -> str:
+    """A path with a name, relative to the current folder where it lies inside."""
+    try:
+        return str(Path(spec).relative_to(Path.cwd()))
+    except ValueError:
+        return spec
 
 
 def _add(report: Report, diagnostics: Iterable[Diagnostic], said: set[object]) -> None:

@@ -25,7 +25,7 @@ class PlayerKind:
     """The numbers of the player: metres, seconds, metres a second.
 
     ``jump_speed`` and ``gravity`` lift the feet by 0.97 m and the round foot of the capsule slides up the rest of an
-    edge: platforms of 1.0 m are reached from a walk and a sprint, those of 1.2 m are not (1.1 m at times).
+    edge: platforms of 1.0 m are reached from a walk and a sprint, those of 1.2 m hardly ever, higher ones never.
     """
 
     radius: float = 0.3

@@ -24,8 +24,15 @@ def test_every_signal_has_a_type_and_a_range(name: str, variant: str) -> None:
 
 def test_shipped_levels_supply_their_specs(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     found: Outcome = tltlc("check", "--level", "all")
+    # Nobody can finish one of them, as it is meant.
+    assert found.status == 1
     for name, variant in SHIPPED:
-        assert f"{name}:{variant} supplies " in found.err
+        assert (f"{name}:{variant} supplies " in found.err) == ((name, variant) != ("navigation", "v2"))
+    assert found.err.count("error[") == 2
+    assert (
+        "error[TLT0814]: nobody reaches `exit` in `navigation:v2`, so nobody can do what `navigation` asks" in found.err
+    )
+    assert "help: the way ends at `corridor_block_2`, which is 2.2 m high" in found.err
     assert "navigation:v0 supplies s1, s2, exit, level_size = 27.39 m (nothing to report)" in found.err
     assert found.err.count("navigation: the agent senses entities 9 (s1, s2, exit); map 4 x 15 x 15 (") == 1
 
