@@ -81,3 +81,14 @@ def test_the_way_to_start_is_the_way_to_start(tltlc, inside: Path) -> None:  # t
     assert len(commands) == 3
     for program, *arguments in commands:
         assert (program, tltlc(*arguments).status) == ("tltlc", 0)
+
+
+def test_list_levels(tltlc) -> None:  # type: ignore[no-untyped-def]
+    pytest.importorskip("gymnasium")
+    rows = {(row["name"], row["variant"]): row["doc"] for row in json.loads(tltlc("list", "levels", "--json").out)}
+    assert rows["navigation", "v2"].startswith("The middle block of the corridor is stretched")
+    assert (
+        rows["branching", "v1"].startswith("The bars also rise and sink")
+        and "The guard sees" in rows["branching", "v1"]
+    )
+    assert rows["cover_and_hide", "v0"].startswith("Press the button on the left")

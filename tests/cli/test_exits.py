@@ -149,7 +149,8 @@ def test_nothing_asked_for_shows_the_help(process) -> None:  # type: ignore[no-u
 
 def test_choices_stand_on_one_line(tltlc) -> None:  # type: ignore[no-untyped-def]
     assert (
-        "missing argument '{predicates|targets|codes}'. Choose from: predicates, targets, codes\n" in tltlc("list").err
+        "missing argument '{predicates|targets|levels|codes}'. Choose from: predicates, targets, levels, codes\n"
+        in tltlc("list").err
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,24 @@ def test_a_missing_component_is_4(process, installed: str) -> None:  # type: ign
         "error[TLT0730]: `tltlc waltz` needs `a_module_that_nobody_has`, which is not installed\n"
         "  help: pip install 'dancer[rl]'\n"
     )
+
+
+def test_an_archive_has_plugins_too(process, installed: str, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    archive = tmp_path / "dancer.zip"
+    with zipfile.ZipFile(archive, "w") as file:
+        for path in sorted(tmp_path.rglob("*.*")):
+            if path.is_file() and path != archive:
+                file.write(path, path.relative_to(tmp_path))
+    assert process("dance", PYTHONPATH=f"{ROOT}:{archive}").out == "dancing\n"
+
+
+def test_the_first_of_two_distributions_of_one_name_counts(process, installed: str, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    older = tmp_path / "older"
+    info = older / "dancer-0.1.dist-info"
+    info.mkdir(parents=True)
+    (info / "entry_points.txt").write_text("[tltlc.commands]\ndance = nothing:command\njig = nothing:command\n")
+    assert process("dance", PYTHONPATH=f"{installed}:{older}").out == "dancing\n"
+    assert "jig" not in process("--help", PYTHONPATH=f"{installed}:{older}").out
 
 
 LEVELS = """import click

@@ -21,11 +21,17 @@ BUILT_IN: Final = {
     "render": "Draw the automaton of a spec.",
     "monitor": "Run a spec over a recorded trace and judge it.",
     "test": "Run the test blocks of source files.",
-    "list": "List the predicates, targets or error codes there are.",
+    "list": "List the predicates, targets, levels or error codes there are.",
     "explain": "Say what an error code means and how to mend it.",
     "new": "Create a starter project that compiles.",
     "completion": "Print the completion script of a shell.",
 }
+
+OF_THE_RUNTIME: Final = {
+    "play": "Play a level with the keyboard, and record it.",
+    "replay": "Show recorded episodes: how they went, plans, films, signals.",
+}
+"""Commands that come with tltlc and need an extra; they are entry points like those of others."""
 
 ENTRY_POINTS: Final = "tltlc.commands"
 """The group of commands of other distributions."""
@@ -111,9 +117,9 @@ class CommandLine(click.Group):
         rows = list(BUILT_IN.items())
         for plugin in sorted(plugins.find(ENTRY_POINTS), key=lambda plugin: plugin.name):
             if plugin.name not in BUILT_IN:
-                origin = f", from {plugin.dist.name}" if plugin.dist else ""
+                said = OF_THE_RUNTIME.get(plugin.name, f"A command of {plugin.module}, from {plugin.distribution}.")
                 extra = f" (needs the extra {', '.join(plugin.extras)})" if plugin.extras else ""
-                rows.append((plugin.name, f"A command of {plugin.module}{origin}{extra}."))
+                rows.append((plugin.name, f"{said[:-1]}{extra}."))
         with formatter.section("Commands"):
             formatter.write_dl(rows)
 

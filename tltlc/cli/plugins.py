@@ -3,43 +3,86 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, Final
 
 from tltlc.cli import exits
+from tltlc.record import record
+
+_ENTRY: Final = re.compile(r"([^=\s]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[(.*)\])?")
 
 
-def find(group: str) -> Any:
-    """The entry points of a group, none of them loaded."""
-    if not any(_may_have(group, folder) for folder in sys.path):
-        return ()
-    from importlib.metadata import entry_points
+@record
+class Plugin:
+    """An entry point: ``attribute`` of ``module``, which needs the ``extras`` of its distribution."""
 
-    return entry_points(group=group)
+    name: str
+    module: str
+    attribute: str
+    extras: tuple[str, ...]
+    distribution: str
 
 
-def load(plugin: Any, wanted_by: str) -> Any:
+def find(group: str) -> tuple[Plugin, ...]:
+    """The entry points of a group, none of them loaded; of distributions of one name, those of the first count."""
+    found: dict[tuple[str, str], Plugin] = {}
+    first: dict[str, int] = {}
+    for index, folder in enumerate(sys.path):
+        for plugin in _in_folder(group, folder):
+            if first.setdefault(plugin.distribution, index) == index:
+                found.setdefault((plugin.distribution, plugin.name), plugin)
+    return tuple(found.values())
+
+
+def load(plugin: Plugin, wanted_by: str) -> Any:
     """What an entry point stands for; error TLT0730, with the way to install it, where it lacks a component."""
+    from functools import reduce
+    from importlib import import_module
+
     try:
-        return plugin.load()
+        return reduce(getattr, plugin.attribute.split("."), import_module(plugin.module))
     except ModuleNotFoundError as error:
-        package = plugin.dist.name if plugin.dist else "tltlc"
+        package = plugin.distribution
         wanted = f"{package}[{','.join(plugin.extras)}]" if plugin.extras else error.name or package
         raise exits.missing_component(wanted_by, error.name or package, wanted) from error
 
 
-def _may_have(group: str, folder: str) -> bool:
-    """Whether a distribution in the folder names the group: asking importlib.metadata costs 16 ms."""
+def _in_folder(group: str, folder: str) -> Iterator[Plugin]:
+    """The entry points that installed distributions have there: asking importlib.metadata costs 16 ms."""
     try:
         names = os.listdir(folder or ".")  # noqa: PTH208 (no pathlib while only help is asked for)
     except OSError:
-        return os.path.isfile(folder)  # noqa: PTH113 (what is inside an archive, only importlib.metadata can say)
-    for name in names:
+        if os.path.isfile(folder):  # noqa: PTH113
+            yield from _in_archive(group, folder)
+        return
+    for name in sorted(names):
         if name.endswith((".dist-info", ".egg-info")):
             try:
-                with open(f"{folder or '.'}/{name}/entry_points.txt", "rb") as file:  # noqa: PTH123
-                    if f"[{group}]".encode() in file.read():
-                        return True
-            except OSError:
+                with open(f"{folder or '.'}/{name}/entry_points.txt", encoding="utf-8") as file:  # noqa: PTH123
+                    text = file.read()
+            except (OSError, UnicodeDecodeError):
                 continue
-    return False
+            if f"[{group}]" in text:
+                yield from _in_text(group, text, name.rpartition(".")[0].partition("-")[0])
+
+
+def _in_text(group: str, text: str, distribution: str) -> Iterator[Plugin]:
+    section = ""
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith("["):
+            section = line.strip("[]").strip()
+        elif section == group and (entry := _ENTRY.fullmatch(line)):
+            name, module, attribute, extras = entry.groups()
+            yield Plugin(name, module, attribute, tuple(re.findall(r"[\w.-]+", extras or "")), distribution)
+
+
+def _in_archive(group: str, path: str) -> Iterator[Plugin]:
+    """What is inside an archive, only importlib.metadata can say."""
+    from importlib.metadata import distributions
+
+    for distribution in distributions(path=[path]):
+        text = distribution.read_text("entry_points.txt")
+        if text:
+            yield from _in_text(group, text, distribution.metadata["Name"])

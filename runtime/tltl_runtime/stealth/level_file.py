@@ -39,6 +39,13 @@ def variants(name_or_path: str) -> tuple[str, ...]:
     return tuple(loading.variants)
 
 
+def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
+    """What the overlays of a variant say that they change, in their order; errors as :func:`load_level` has them."""
+    loading = _Loading(_level_path(name_or_path))
+    loading.level(variant)
+    return tuple(loading.changes)
+
+
 def load_level(name_or_path: str, variant: str = "v0") -> Level:
     """A level that comes with the package, by name, or one in a ``.toml`` file, in one of its variants.
 
@@ -74,6 +81,7 @@ class _Loading:
         self.path = path
         self.log: list[Diagnostic] = []
         self.files: list[tuple[str, str]] = []
+        self.changes: list[str] = []
         self.places = parts.Places({}, {}, [])
         self.root = self._read(path, path.name)
         self.table = Table(self.root, f"the level `{path.stem}`", self.log)
@@ -196,6 +204,7 @@ class _Loading:
             label = self.table.entries["variants"].value[variant].label
             if path := self._shared("overlays", name, label):
                 change = self._read(path, f"overlays/{name}.toml")
+                self.changes.append(str(change.value["doc"].value) if "doc" in change.value else name)
                 trees = overlay.apply(change.value, trees, self.log)
         self._raise()
         assets = {

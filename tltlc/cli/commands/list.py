@@ -1,4 +1,4 @@
-"""``tltlc list``: what there is to use: predicates, targets, error codes."""
+"""``tltlc list``: what there is to use: predicates, targets, levels, error codes."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ from tltlc.diagnostics.diagnostic import TltlError
 
 Row = dict[str, str]
 
+LISTS = "tltlc.lists"
+"""The group of entry points that list what the compiler knows nothing of: functions that return rows."""
+
 
 @click.command(
     epilog="""\b
@@ -20,10 +23,11 @@ Examples:
   tltlc list predicates                   those of the standard library
   tltlc list predicates --library mine    and those of a folder of yours
   tltlc list targets --json
+  tltlc list levels                       those of the stealth game, and what their variants change
   tltlc list codes
 """
 )
-@click.argument("what", type=click.Choice(("predicates", "targets", "codes")))
+@click.argument("what", type=click.Choice(("predicates", "targets", "levels", "codes")))
 @click.option(
     "--library",
     "-L",
@@ -35,7 +39,7 @@ Examples:
 )
 @click.option("--json", "as_json", is_flag=True, help="A JSON list, for programs.")
 def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
-    """List the predicates, targets or error codes there are, each with a line on what it is."""
+    """List the predicates, targets, levels or error codes there are, each with a line on what it is."""
     from tltlc.cli.report import Report
 
     with Report() as report:
@@ -97,7 +101,19 @@ def _codes() -> Iterator[Row]:
         yield {"name": code, "doc": codes.title(code)}
 
 
-_LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "codes": _codes}
+def _levels() -> Iterator[Row]:
+    """Those of the runtime; error TLT0730 where it is not installed."""
+    from tltlc.cli import plugins
+    from tltlc.cli.exits import missing_component
+
+    for plugin in plugins.find(LISTS):
+        if plugin.name == "levels":
+            listed: Callable[[], Iterator[Row]] = plugins.load(plugin, "`tltlc list levels`")
+            return listed()
+    raise missing_component("`tltlc list levels`", "tltl_runtime", "tltlc[rl]")
+
+
+_LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "levels": _levels, "codes": _codes}
 
 
 def _lines(rows: list[Row]) -> None:
