@@ -138,6 +138,15 @@ class World:
             pybullet.stepSimulation(physicsClientId=self._client)
         self._observe(crouching, wish.yaw, wish.stamina)
 
+    def put(self, state: PlayerState) -> None:
+        """Make ``state``, one that ``player`` had, that of the player: for searches that try many ways on from it.
+
+        Everything else stays as it is.  What Bullet remembers of contacts does not come back, so that the next decision
+        may end some millimetres from where it did.
+        """
+        self._stance(state.crouching, state.position, state.velocity)
+        self._state = state
+
     @property
     def player(self) -> PlayerState:
         """The player after the last decision."""
