@@ -1,0 +1,41 @@
+"""``tltlc demonstrate``: episodes of the scripted expert."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tltl_runtime.stealth.episode_check import check
+from tltl_runtime.stealth.episode_file import read_episode
+
+
+def test_it_records_what_it_plays(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    folder = tmp_path / "new" / "runs"
+    found: Outcome = tltlc("demonstrate", "cover_and_hide:v0", "--seed", "5", "--episodes", "2", "-o", str(folder))
+    assert (found.status, found.err) == (0, "")
+    assert found.out.splitlines()[-1] == "2 of 2 succeeded"
+    names = [f"cover_and_hide-v0-{seed}" for seed in (5, 6)]
+    assert sorted(path.name for path in folder.iterdir()) == sorted(
+        name + ending for name in names for ending in (".episode.npz", ".png")
+    )
+    episode = read_episode(folder / f"{names[0]}.episode.npz")
+    assert (episode.player, episode.success, episode.end) == ("expert", True, "success")
+    assert not check(episode)
+    assert (folder / f"{names[0]}.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_failing_is_a_finding(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    (tmp_path / "never.tltl").write_text("import stealth\nspec never { limit 5 steps\n reach seen }")
+    spec = f"{tmp_path / 'never.tltl'}"
+    found: Outcome = tltlc("demonstrate", "cover_and_hide", "--careless", "--spec", spec, "-o", str(tmp_path))
+    assert found.status == 1
+    assert found.out.startswith("seed 0: limit after 5 steps, 0.75 s, progress ")
+
+
+@pytest.mark.parametrize(("level", "status"), [("nowhere", 2), ("cover_and_hide:v9", 2)])
+def test_a_level_that_is_not_there(tltlc, tmp_path: Path, level: str, status: int) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("demonstrate", level, "-o", str(tmp_path))
+    assert (found.status, found.out) == (status, "")
+    assert "error[TLT08" in found.err
