@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from benchmarks import batch, compile_table, monitors, process, summary
+from benchmarks import batch, compile_table, game, game_report, monitors, process, safety, summary
+from benchmarks.markdown import MISSED, met_or_missed, spread, table
 from benchmarks.reference import references
 from benchmarks.store import Record, Store
 
@@ -19,7 +20,6 @@ PROCESS_FACTOR = 15.0
 MONITOR_FACTOR = 0.5
 BATCH_STEPS_PER_S = 10e6
 BATCH_GPU_MS = 1.0
-MISSED = "**missed**"
 
 
 def render(store: Store) -> str:
@@ -30,7 +30,7 @@ def render(store: Store) -> str:
     goals = list(_goals(store, rows))
     parts = [
         _head(store),
-        "## Goals\n\n" + _table(("goal", "figure", ""), goals),
+        "## Goals\n\n" + table(("goal", "figure", ""), goals),
         *(
             ["### Why some are missed\n\n" + CAUSES.read_text(encoding="utf-8")]
             if any(verdict == MISSED for *_, verdict in goals)
@@ -42,6 +42,8 @@ def render(store: Store) -> str:
         _process(store.section(process.SECTION)),
         _monitors(store.section(monitors.SECTION)),
         _batch(store.section(batch.SECTION)),
+        game_report.speed(store.section(game.SECTION)),
+        game_report.safe(store.section(safety.SECTION)),
     ]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
@@ -66,7 +68,7 @@ and MONA (Debian package `mona`) installed. A run that was stopped resumes; `--f
 times and medians of several runs unless said otherwise; what stands in one row was measured one after the other in the
 same run. Absolute figures are those of this machine; the ratios are what to compare.
 {changed}
-{_table(("", ""), store.section("machine")["facts"].items())}
+{table(("", ""), store.section("machine")["facts"].items())}
 """
 
 
@@ -80,7 +82,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         f"worst family {worst:.1f}"
         + (f"; over 3: {', '.join(slow)}" if slow else "")
         + (f"; over 3 with Spot's times as recorded: {', '.join(slow_recorded)}" if slow_recorded else ""),
-        _verdict(bool(rows) and not slow),
+        met_or_missed(bool(rows) and not slow),
     )
     for field, what in (
         ("ltlf2dfa_over_minimal", "formula to minimal automaton"),
@@ -93,7 +95,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         yield (
             f"{what} at least 20 times faster than LTLf2DFA, on every family",
             f"worst family {least:.0f}" + (f"; under 20: {', '.join(low)}" if low else ""),
-            _verdict(bool(ratios) and not low),
+            met_or_missed(bool(ratios) and not low),
         )
     small = [record for record in compiled.values() if (record["states_expected"] or 601) <= summary.SOLVED_STATES]
     unsolved = summary.unsolved(compiled)
@@ -103,7 +105,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         "every formula with at most 600 states built completely in under 5 s and 2 GB",
         f"{len(small) - len(unsolved)} of {len(small)}; slowest {slowest / 1e3:.2f} s, most {memory:.0f} MB"
         + (f"; not: {', '.join(unsolved)}" if unsolved else ""),
-        _verdict(bool(small) and not unsolved),
+        met_or_missed(bool(small) and not unsolved),
     )
     whole = store.section(process.SECTION).get("tltlc compile cover_and_hide.tltl", {})
     if "cpu_ratio" in whole:
@@ -111,7 +113,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         yield (
             "`tltlc compile` of one spec at most 15 times a bare `python -c pass`",
             f"{cpu:.1f} of CPU time, {wall:.1f} of wall time",
-            _verdict(max(cpu, wall) <= PROCESS_FACTOR),
+            met_or_missed(max(cpu, wall) <= PROCESS_FACTOR),
         )
     ratios_by_hand = [
         record["generated_to_hand_written"][1]
@@ -122,9 +124,10 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         yield (
             "the generated Python monitor at least 0.5 of the speed of one written by hand, on the paper's specs",
             f"least {min(ratios_by_hand):.2f}",
-            _verdict(min(ratios_by_hand) >= MONITOR_FACTOR),
+            met_or_missed(min(ratios_by_hand) >= MONITOR_FACTOR),
         )
     yield from _batch_goals(store.section(batch.SECTION))
+    yield from game_report.goals(store)
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:
@@ -134,14 +137,14 @@ def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:
         yield (
             f"batched monitor and reward at least 10 million steps per second on one core, N = {record['count']}",
             f"{rate / 1e6:.1f} million on cover_and_hide",
-            _verdict(rate >= BATCH_STEPS_PER_S),
+            met_or_missed(rate >= BATCH_STEPS_PER_S),
         )
     if "gpu_ms" in record:
         middle = record["gpu_ms"][1]
         yield (
             f"batched monitor and reward of {record['gpu_count']:,} environments in under 1 ms on a GPU",
             f"{middle:.2f} ms on cover_and_hide",
-            _verdict(middle < BATCH_GPU_MS),
+            met_or_missed(middle < BATCH_GPU_MS),
         )
 
 
@@ -195,7 +198,7 @@ of the ratios of its time to ours, formula by formula.
 Peers are stopped after {timeout_s:g} s on a formula, which counts as that time (`≥`). After
 {compile_table.LTLF2DFA_FAILURES} such formulas LTLf2DFA is spared the rest of a family.
 
-{_table(header, body)}
+{table(header, body)}
 """
 
 
@@ -241,7 +244,7 @@ def _large(compiled: dict[str, Record]) -> str:
 Formulas with more than 600 states or an unknown number of them, and any smaller one that missed its goal. A code is
 that of the error which ends a blow-up: TLT0501 the state budget of 50,000, TLT0502 a guard with too many primes.
 
-{_table(("formula", "states", "minimal", "build", "MB", "MONA", "LTLf2DFA"), body)}
+{table(("formula", "states", "minimal", "build", "MB", "MONA", "LTLf2DFA"), body)}
 """
 
 
@@ -252,8 +255,8 @@ def _process(records: dict[str, Record]) -> str:
             _ms(record["cpu_ms"]),
             _ms(record["wall_ms"]),
             _ms(record["bare_cpu_ms"]),
-            _spread(record["cpu_ratio"]),
-            _spread(record["wall_ratio"]),
+            spread(record["cpu_ratio"]),
+            spread(record["wall_ratio"]),
         )
         for name, record in records.items()
         if "cpu_ratio" in record
@@ -266,7 +269,7 @@ def _process(records: dict[str, Record]) -> str:
 Each command and a bare `python -c pass` in turns, {process.ROUNDS} pairs; compiled modules are kept, as they are of
 an installed package. Ratios are those of pairs: median and, in brackets, quartiles.
 
-{_table(("command", "CPU ms", "wall ms", "bare CPU ms", "CPU ratio", "wall ratio"), body)}
+{table(("command", "CPU ms", "wall ms", "bare CPU ms", "CPU ratio", "wall ratio"), body)}
 
 The slowest imports of the first one, in milliseconds of their own (with Python's tracing on): {imports or "–"}.
 """
@@ -279,7 +282,7 @@ def _monitors(records: dict[str, Record]) -> str:
             name,
             record["samples"],
             *(f"{record['steps_per_s'][who]:,}" if who in record["steps_per_s"] else "–" for who in whos),
-            _spread(record["generated_to_hand_written"], 2),
+            spread(record["generated_to_hand_written"], 2),
         )
         for name, record in records.items()
         if "steps_per_s" in record
@@ -296,7 +299,7 @@ gives no notices of clamped values. *tltlc.monitor*: the monitor behind `tltlc m
 (`benchmarks/peer_monitors.py`) and nothing else, and are given the values of the predicates ready-made; the sign of
 their answers was checked against acceptance at each step.
 
-{_table(("spec", "samples", *whos, "generated / hand_written"), body)}
+{table(("spec", "samples", *whos, "generated / hand_written"), body)}
 """
 
 
@@ -306,8 +309,8 @@ def _batch(records: dict[str, Record]) -> str:
             name,
             f"{record['steps_per_s']['batch']:,}",
             f"{record['steps_per_s']['scalar']:,}",
-            _spread(record["batch_to_scalar"]),
-            f"{_spread(record['gpu_ms'], 2)} ({record['gpu']})" if "gpu_ms" in record else "–",
+            spread(record["batch_to_scalar"]),
+            f"{spread(record['gpu_ms'], 2)} ({record['gpu']})" if "gpu_ms" in record else "–",
         )
         for name, record in records.items()
         if "steps_per_s" in record
@@ -322,7 +325,7 @@ def _batch(records: dict[str, Record]) -> str:
 step computes atoms, transition, progress, reward and the end of the episode from signals that are given as one tensor.
 On a GPU: wall time of one call for {batch.GPU_COUNT:,} environments.
 
-{_table(("spec", "batch", "tltlc.monitor", "batch / tltlc.monitor", "GPU, ms a call"), body)}
+{table(("spec", "batch", "tltlc.monitor", "batch / tltlc.monitor", "GPU, ms a call"), body)}
 """
 
 
@@ -338,23 +341,9 @@ def _mb(record: Record) -> str:
     return "–" if known is None else f"{known:.0f}"
 
 
-def _spread(quartiles: Sequence[float], digits: int = 1) -> str:
-    lower, middle, upper = quartiles
-    return f"{middle:.{digits}f} ({lower:.{digits}f}–{upper:.{digits}f})"
-
-
 def _ms(value: float) -> str:
     return "–" if math.isnan(value) else f"{value:.2f}" if value < 10 else f"{value:.0f}"
 
 
 def _ratio(value: float) -> str:
     return "–" if math.isnan(value) else f"{value:.1f}"
-
-
-def _verdict(met: bool) -> str:
-    return "met" if met else MISSED
-
-
-def _table(header: Sequence[str], body: Iterable[Sequence[object]]) -> str:
-    lines = [header, ["---"] * len(header), *body]
-    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)

@@ -1,0 +1,29 @@
+"""A player who holds random actions: the load of the game's benchmarks, and what tries its walls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+
+HELD = 6
+"""Decisions for which an action is held, on average."""
+
+
+def variants_of_all() -> list[tuple[str, str]]:
+    """Each shipped level in each of its variants."""
+    from tltl_runtime.stealth.level_file import level_names, variants
+
+    return [(level, variant) for level in level_names() for variant in variants(level)]
+
+
+def actions(rng: np.random.Generator) -> Iterator[tuple[int, ...]]:
+    """Actions without end, each held for a while."""
+    from tltl_runtime.stealth.game import BRANCHES
+
+    while True:
+        action = tuple(int(rng.integers(size)) for size in BRANCHES)
+        for _ in range(int(rng.geometric(1 / HELD))):
+            yield action

@@ -1,0 +1,43 @@
+"""Random steps in every variant; ``benchmarks/safety.py`` takes a million."""
+
+from __future__ import annotations
+
+import pytest
+
+from benchmarks import safety
+from benchmarks.wander import variants_of_all
+from tltl_runtime.stealth.env import GameEnv
+from tltl_runtime.stealth.physics import WorldError
+from tltlc.record import replace
+
+STEPS = 2_300
+
+
+@pytest.mark.parametrize("level, variant", variants_of_all())
+def test_nothing_passes_a_wall_or_leaves_its_bounds(level: str, variant: str) -> None:
+    record = safety.tried(level, variant, STEPS)
+    assert (record["steps"], record["episodes"], record["checks"]) == (STEPS, 6, 11)
+    assert 0.0 < record["deepest_m"] < safety.DEEPEST
+
+
+def test_a_wall_that_is_missing_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The world is built without one of the walls that its level has."""
+    env = GameEnv("navigation")
+    whole = env.level
+    missing = replace(whole, solids=tuple(solid for solid in whole.solids if solid.kind != "wall"))
+    env.close()
+    monkeypatch.setattr("tltl_runtime.stealth.env.load_level", lambda *_: missing)
+    begin = safety._begin
+
+    def with_the_whole_level(env: GameEnv, _: object, rng: object, *, anywhere: bool) -> None:
+        begin(env, whole, rng, anywhere=anywhere)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(safety, "_begin", with_the_whole_level)
+    with pytest.raises(WorldError, match="nothing is hit on its side"):
+        safety.tried("navigation", "v0", 10)
+
+
+def test_a_body_inside_a_box_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(safety, "DEEPEST", -1.0)
+    with pytest.raises(safety.Violation, match=r"navigation v0, seed \d+, step 0: the player at .* m inside a box"):
+        safety.tried("navigation", "v0", 10)
