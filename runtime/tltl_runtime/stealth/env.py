@@ -8,12 +8,15 @@ from typing import Any, ClassVar
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from numpy.typing import NDArray
 
+from tltl_runtime.stealth.camera import View
 from tltl_runtime.stealth.game import BRANCHES, Game
 from tltl_runtime.stealth.level_file import load_level
 from tltl_runtime.stealth.observation import Senses
 from tltl_runtime.stealth.offer import params
 from tltl_runtime.stealth.player import DECISION
+from tltl_runtime.stealth.screen import MODES, Screen
 from tltl_runtime.stealth.sensors import SensorChoice
 from tltl_runtime.stealth.signals import Signals
 from tltl_runtime.wrapper import TltlEnv
@@ -29,15 +32,29 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     ``sensors`` what :func:`~tltl_runtime.stealth.sensors.chosen` takes.
     ``reset(seed=...)`` reproduces an episode bit for bit.
 
+    ``render_mode`` ``rgb_array`` makes :meth:`render` return pictures of ``render_size`` (width, height), ``human``
+    shows them in a window as the episode goes on, a decision taking its time; ``render_view`` is one of
+    ``third_person top_down overview``.
+
     Raises:
         TltlError: what :func:`~tltl_runtime.stealth.level_file.load_level` finds; TLT0815, where ``sensors`` say what
             the level does not have.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "render_fps": round(1 / DECISION)}  # type: ignore[misc]
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(MODES), "render_fps": round(1 / DECISION)}  # type: ignore[misc]
 
-    def __init__(self, level: str, variant: str = "v0", sensors: SensorChoice | None = None) -> None:
+    def __init__(
+        self,
+        level: str,
+        variant: str = "v0",
+        sensors: SensorChoice | None = None,
+        render_mode: str | None = None,
+        render_view: View = "third_person",
+        render_size: tuple[int, int] = (640, 480),
+    ) -> None:
         self.level = load_level(level, variant)
+        self._screen = Screen(self.level, render_mode, render_view, render_size)
+        self.render_mode = render_mode
         self.game = Game(self.level)
         self._senses = Senses(self.level, sensors)
         self.action_space = spaces.MultiDiscrete(list(BRANCHES))
@@ -58,16 +75,32 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         """Begin an episode; without a seed, one drawn from the seed before."""
         super().reset(seed=seed)
         self.game.reset(int(self.np_random.integers(2**63)))
+        self._show()
         return self._senses.look(self.game), {}
 
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Play one decision."""
         self.game.step(np.asarray(action).tolist())
+        self._show()
         return self._senses.look(self.game), 0.0, False, False, {}
 
+    def render(self) -> NDArray[np.uint8] | None:
+        """The picture of this moment, (height, width, 3), or None where it is shown in a window.
+
+        Without a screen for the window, one warning is given.  Raises TltlError: TLT0730, without pygame.
+        """
+        if self.render_mode is None:
+            gymnasium.logger.warn("there are no pictures without a render mode: make(..., render_mode='rgb_array')")
+        return self._screen.render(self.game.snapshot())
+
     def close(self) -> None:
-        """Free the physics."""
+        """Free the physics and the pictures, and close the window."""
+        self._screen.close()
         self.game.close()
+
+    def _show(self) -> None:
+        if self.render_mode == "human":
+            self._screen.render(self.game.snapshot())
 
 
 def make_env(
@@ -77,9 +110,13 @@ def make_env(
     *,
     sensors: SensorChoice | None = None,
     reward: RewardOptions | None = None,
+    **render: Any,
 ) -> TltlEnv:
-    """A level with a spec, by default the one it was made for; errors as of :class:`GameEnv` and :class:`TltlEnv`."""
-    game = GameEnv(level, variant, sensors)
+    """A level with a spec, by default the one it was made for; options and errors of the two envs that it is made of.
+
+    ``render`` takes the ``render_mode``, ``render_view`` and ``render_size`` of :class:`GameEnv`.
+    """
+    game = GameEnv(level, variant, sensors, **render)
     try:
         return TltlEnv(game, game.level.spec if spec is None else spec, _signals, reward=reward)
     except BaseException:
@@ -106,3 +143,8 @@ def cover_and_hide(**options: Any) -> TltlEnv:
 def branching(**options: Any) -> TltlEnv:
     """``tltl/Branching-v0``."""
     return make_env("branching", **options)
+
+
+# Gymnasium looks here for the render modes of what makes an environment.
+for _maker in (navigation, cover_and_hide, branching):
+    _maker.metadata = GameEnv.metadata  # type: ignore[attr-defined]

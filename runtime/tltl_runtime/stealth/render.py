@@ -113,10 +113,10 @@ class Renderer:
             canvas.glass(box.low, box.high, colour, strength)
 
     def _is_glass(self, box: Box, eye: Camera, view: View, snapshot: Snapshot) -> bool:
-        """Whether a box hides the player, or in the views of all the level whole parts of it."""
+        """Whether a box hides the player, or at all times much of the level."""
         if view == "top_down" and box.low[2] > _OVERHEAD:
             return True
-        if view == "overview" and _is_front(box, self.level.bounds):
+        if view != "top_down" and _is_front(box, self.level.bounds):
             return True
         x, y, z = snapshot.player.position
         height = self._kind.crouched_height if snapshot.player.crouching else self._kind.height

@@ -1,0 +1,107 @@
+"""What a player reads on the screen: health and stamina, whether it is seen, what is still to be done, and the end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from textwrap import wrap
+from typing import Any, Final, Literal
+
+from tltl_runtime.stealth.game import Snapshot
+from tltl_runtime.stealth.level import Level
+from tltlc.automaton.fspa import Fspa
+from tltlc.record import record
+
+Tone = Literal["plain", "quiet", "good", "bad", "warn"]
+"""How something is to be taken, which a screen shows by colour."""
+
+KEYS: Final = ("WASD or arrows: walk   shift: sprint   C: crouch   space: jump", "V: view   R: again   Esc: stop")
+
+_WIDTH: Final = 36
+_LONG: Final = 72
+_MOST_LINES: Final = 10
+
+
+@record
+class Bar:
+    """A named number in [0, 1]."""
+
+    name: str
+    value: float
+    tone: Tone
+
+
+@record
+class Line:
+    """A line of text."""
+
+    text: str
+    tone: Tone = "plain"
+
+
+@record
+class Hud:
+    """The head-up display: bars and lines, and where the game stands still a title with lines below it."""
+
+    bars: tuple[Bar, ...]
+    lines: tuple[Line, ...]
+    title: str = ""
+    tone: Tone = "plain"
+    below: tuple[str, ...] = ()
+
+
+def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
+    """What there is to read while the game runs; ``info`` is that of the environment's last step or reset."""
+    bars = (
+        Bar("health", snapshot.health, "good" if snapshot.health > 0.5 else "bad"),
+        Bar("stamina", snapshot.player.stamina, "plain"),
+        Bar("progress", info["progress"], "warn"),
+    )
+    lines = [Line(f"{snapshot.time:.1f} s   {info['verdict']}", "quiet")]
+    if snapshot.enemies:
+        lines.append(_seen(snapshot))
+    lines += [Line(text) for text in _shortened(fspa.states[info["state"]].label.english)]
+    return Hud(bars, tuple(lines))
+
+
+def beginning(shown: Hud, level: Level, fspa: Fspa) -> Hud:
+    """The screen before the first key."""
+    goal = wrap(fspa.formula.english, _LONG)
+    return _with_title(
+        shown,
+        f"{level.name} {level.variant}",
+        "plain",
+        (*wrap(level.doc, _LONG), "", *goal, "", *KEYS, "", "Move to begin."),
+    )
+
+
+def ending(shown: Hud, said: str, success: bool, file: str) -> Hud:
+    """The screen after the last step: ``said`` is how it ended, ``file`` where it was recorded."""
+    return _with_title(shown, said, "good" if success else "bad", (f"recorded: {file}", "R: again   Esc: close"))
+
+
+def how_it_ended(fspa: Fspa, end: str, seconds: float, states: tuple[int, int]) -> str:
+    """``success after 43.2 s``, ``violated after 3.0 s: !alive``; ``states``: before and after the last step."""
+    if end == "violation":
+        guards = [edge.guard.text for edge in fspa.edges if (edge.source, edge.target) == states]
+        return f"violated after {seconds:.1f} s: {guards[0]}" if guards else f"violated after {seconds:.1f} s"
+    words = {"success": "success", "limit": "time is up", "stopped": "stopped"}
+    return f"{words[end]} after {seconds:.1f} s"
+
+
+def _seen(snapshot: Snapshot) -> Line:
+    if "chase" in snapshot.modes:
+        return Line("you are chased", "bad")
+    if any(snapshot.sees):
+        return Line("you are in sight", "warn")
+    return Line("they search for you", "warn") if "search" in snapshot.modes else Line("nobody sees you", "good")
+
+
+def _shortened(text: str) -> list[str]:
+    lines = wrap(text, _WIDTH)
+    return (
+        lines if len(lines) <= _MOST_LINES else [*lines[: _MOST_LINES - 1], f"{lines[_MOST_LINES - 1][: _WIDTH - 2]} …"]
+    )
+
+
+def _with_title(shown: Hud, title: str, tone: Tone, below: tuple[str, ...]) -> Hud:
+    return Hud(shown.bars, shown.lines, title, tone, below)

@@ -1,0 +1,113 @@
+"""A person plays a level in a window, in real time, and every episode is recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from time import monotonic
+from typing import Any, Final
+
+from tltl_runtime.stealth.camera import VIEWS, View
+from tltl_runtime.stealth.env import GameEnv
+from tltl_runtime.stealth.episode import Episode
+from tltl_runtime.stealth.game import Snapshot
+from tltl_runtime.stealth.hud import Hud, beginning, ending, how_it_ended, hud
+from tltl_runtime.stealth.interpolation import between
+from tltl_runtime.stealth.player import DECISION
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.render import Renderer
+from tltl_runtime.stealth.window import Keys, Window
+
+Save = Callable[[Episode], str]
+"""Writes an episode and returns the name of its file."""
+
+_IDLE: Final = (0, 0, 0, 0, 0)
+_STANDING: Final = 0.05
+"""Seconds between two looks at the keys while the game stands still."""
+
+
+class KeyboardPlayer:
+    """Plays episodes of ``env`` in ``window``, drawn by ``renderer``; what was played is handed to ``save``.
+
+    Each episode is saved once: at its end, when it is begun again, and when it is stopped in whatever way, an
+    exception such as KeyboardInterrupt included.
+    """
+
+    def __init__(self, env: RecordEpisode, window: Window, renderer: Renderer, view: View, save: Save) -> None:
+        game = env.unwrapped
+        assert isinstance(game, GameEnv)
+        self._env, self._game, self._window, self._renderer, self._save = env, game.game, window, renderer, save
+        self._view = view
+        self._unsaved = False
+
+    def play(self, seed: int | None) -> None:
+        """Play until the player stops; the first episode begins with ``seed``."""
+        going = True
+        try:
+            while going:
+                going = self._episode(seed)
+                seed = None
+        finally:
+            self._saved()
+
+    def _episode(self, seed: int | None) -> bool:
+        """Play one episode and tell whether another is wanted."""
+        _, info = self._env.reset(seed=seed)
+        snapshot, fspa = self._game.snapshot(), self._env.episode.fspa
+        keys = self._still(snapshot, beginning(hud(snapshot, info, fspa), self._game.level, fspa), begins=True)
+        over = False
+        while not (keys.stop or keys.restart or over):
+            began = monotonic()
+            _, _, terminated, truncated, info = self._env.step(list(keys.action))
+            self._unsaved, over = True, terminated or truncated
+            before, snapshot = snapshot, self._game.snapshot()
+            keys = self._move(before, snapshot, hud(snapshot, info, fspa), began)
+        if over:
+            keys = self._end(snapshot, info)
+        self._saved()
+        return keys.restart and not keys.stop
+
+    def _move(self, before: Snapshot, after: Snapshot, shown: Hud, began: float) -> Keys:
+        """Show the way from one snapshot to the next for as long as a decision takes, and return the keys then.
+
+        Where pictures take longer than that, one is shown and the game goes slower.
+        """
+        while (share := (monotonic() - began) / DECISION) < 1.0:
+            self._show(between(before, after, share), shown)
+            self._window.wait(_STANDING / 2)
+        return self._keys()
+
+    def _end(self, snapshot: Snapshot, info: dict[str, Any]) -> Keys:
+        """The end screen, until the player stops or plays again."""
+        episode = self._env.episode
+        states = int(episode.states[-2]), int(episode.states[-1])
+        said = how_it_ended(episode.fspa, episode.end, snapshot.time, states)
+        file = self._saved() or ""
+        return self._still(snapshot, ending(hud(snapshot, info, episode.fspa), said, episode.success, file))
+
+    def _still(self, snapshot: Snapshot, shown: Hud, begins: bool = False) -> Keys:
+        """Stand still until the player stops or begins again; where it ``begins``, until any key is held."""
+        view = None
+        while True:
+            if view != self._view:
+                self._show(snapshot, shown)
+                view = self._view
+            keys = self._keys()
+            if keys.stop or keys.restart or (begins and keys.action != _IDLE):
+                return Keys(keys.action, keys.restart and not begins, keys.stop)
+            self._window.wait(_STANDING)
+
+    def _keys(self) -> Keys:
+        keys = self._window.keys()
+        if keys.view:
+            self._view = VIEWS[(VIEWS.index(self._view) + 1) % len(VIEWS)]
+        return keys
+
+    def _show(self, snapshot: Snapshot, shown: Hud) -> None:
+        self._window.show(self._renderer.frame(snapshot, self._view), shown)
+
+    def _saved(self) -> str | None:
+        """Save what was played and is not saved yet."""
+        if not self._unsaved:
+            return None
+        self._unsaved = False
+        return self._save(self._env.episode)

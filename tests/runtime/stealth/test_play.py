@@ -1,0 +1,133 @@
+"""``tltlc play`` as a process on a real X server, played with real key events."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.runtime.stealth.xvfb import MISSING, keys, screen
+from tltl_runtime.stealth.episode import Episode
+from tltl_runtime.stealth.episode_check import check, resimulate
+from tltl_runtime.stealth.episode_file import read_episode
+
+needs_screen = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
+
+
+@pytest.fixture(scope="module")
+def display() -> Iterator[dict[str, str]]:
+    with screen() as environment:
+        yield environment
+
+
+@pytest.fixture(autouse=True)
+def _no_leftovers() -> Iterator[None]:
+    yield
+    while PLAYERS:
+        PLAYERS.pop().kill()
+
+
+PLAYERS: list[subprocess.Popen[str]] = []
+
+
+def started(display: dict[str, str], folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    """A running ``tltlc play`` whose window is open."""
+    command = [sys.executable, "-m", "tltlc", "play", *arguments]
+    player = subprocess.Popen(
+        command, env=display, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    PLAYERS.append(player)
+    # A window of its own: the root has no class.
+    search = ["xdotool", "search", "--sync", "--onlyvisible", "--class", "."]
+    subprocess.run(search, env=display, check=True, timeout=30, capture_output=True)
+    time.sleep(0.5)
+    return player
+
+
+def ended(player: subprocess.Popen[str], status: int = 0) -> str:
+    said, complaint = player.communicate(timeout=20)
+    assert player.returncode == status, complaint
+    return said
+
+
+def judged(path: Path) -> Episode:
+    """A recorded episode, which its own spec judges the same and its own game plays the same."""
+    episode = read_episode(path)
+    assert episode.player == "keyboard"
+    assert check(episode) == ()
+    assert resimulate(episode) is None
+    return episode
+
+
+def way(episode: Episode) -> np.ndarray:
+    return np.subtract(episode.snapshots[-1].player.position, episode.snapshots[0].player.position)
+
+
+@needs_screen
+def test_keys_move_the_player_and_escape_records(display: dict[str, str], tmp_path: Path) -> None:
+    player = started(display, tmp_path, "branching", "--seed", "3", "-o", "mine.episode.npz")
+    keys(display, "keydown", "d")
+    time.sleep(1.0)
+    keys(display, "keyup", "d", "keydown", "Up", "keydown", "shift")
+    time.sleep(0.8)
+    keys(display, "keyup", "Up", "keyup", "shift", "keydown", "c")
+    time.sleep(0.5)
+    keys(display, "keyup", "c", "key", "space", "key", "v", "sleep", "0.6", "key", "Escape")
+    said = ended(player)
+    assert "mine.episode.npz: stopped after" in said
+    episode = judged(tmp_path / "mine.episode.npz")
+    assert episode.end == "stopped" and not episode.success
+    x, y, _ = way(episode)
+    assert x > 1.0 and y > 1.0
+    assert all(episode.actions[:, branch].any() for branch in range(5))
+    assert any(snapshot.player.crouching for snapshot in episode.snapshots)
+    # Nothing but towards greater x and y was asked for.
+    assert episode.actions[:, :2].max() == 1
+
+
+@needs_screen
+def test_playing_again_and_ctrl_c_lose_nothing(display: dict[str, str], tmp_path: Path) -> None:
+    player = started(display, tmp_path, "cover_and_hide", "--view", "top_down")
+    keys(display, "keydown", "a", "sleep", "0.6", "keyup", "a", "key", "r", "sleep", "0.6")
+    keys(display, "keydown", "Right", "sleep", "0.6")
+    player.send_signal(signal.SIGINT)
+    ended(player, 130)
+    first, second = (judged(tmp_path / f"cover_and_hide-v0{number}.episode.npz") for number in ("", "-2"))
+    assert way(first)[0] < -0.5 and way(second)[0] > 0.5
+    assert first.seed != second.seed
+    keys(display, "keyup", "Right")
+
+
+@needs_screen
+def test_an_end_is_recorded_once_and_a_request_to_end_is_heard(display: dict[str, str], tmp_path: Path) -> None:
+    spec = tmp_path / "soon.tltl"
+    spec.write_text(
+        "signal health: number in [0, 1]\npredicate alive in [-1, 1] = health\n"
+        "spec soon { limit 4 steps require next next alive }\n",
+        encoding="utf-8",
+    )
+    player = started(display, tmp_path, "navigation", "--spec", "soon.tltl:soon")
+    keys(display, "keydown", "w", "sleep", "1.2", "keyup", "w")
+    (path,) = tmp_path.glob("*.npz")
+    assert judged(path).end == "success"
+    player.send_signal(signal.SIGTERM)
+    said = ended(player, 130)
+    assert said.count("success after") == 1
+
+
+def test_without_a_screen_there_is_a_way_out(tmp_path: Path) -> None:
+    environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    command = [sys.executable, "-m", "tltlc", "play", "navigation"]
+    done = subprocess.run(
+        command, env={**environment, "SDL_VIDEODRIVER": "x11"}, cwd=tmp_path, capture_output=True, text=True, timeout=30
+    )
+    assert done.returncode == 1
+    assert "error[TLT0830]: no window can be opened here" in done.stderr
+    assert not list(tmp_path.iterdir())

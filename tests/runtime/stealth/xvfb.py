@@ -1,0 +1,37 @@
+"""A screen for tests that need one, and keys that are really pressed on it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+
+MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
+MISSING += [name for name in ("pygame",) if find_spec(name) is None]
+
+
+@contextmanager
+def screen() -> Iterator[dict[str, str]]:
+    """An environment for processes, with the DISPLAY of an X server that ends with the block."""
+    reading, writing = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x700x24", "-nolisten", "tcp"],
+        pass_fds=(writing,),
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as told:
+            number = told.readline().strip()
+        yield {**os.environ, "DISPLAY": f":{number}", "SDL_VIDEODRIVER": "x11", "OMP_NUM_THREADS": "1"}
+    finally:
+        server.terminate()
+        server.wait(10)
+
+
+def keys(environment: dict[str, str], *what: str) -> None:
+    """Say to xdotool what to press: ``key Escape``, ``keydown d``."""
+    subprocess.run(["xdotool", *what], env=environment, check=True, timeout=10, capture_output=True)
