@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.episode import End, Episode
 from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.reach import Reach
+from tltl_runtime.stealth.space import CELL
 
 _SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
 BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
@@ -45,16 +47,19 @@ _LETTERS_PER_INCH: Final = 12
 """Of a line of the legend; what is longer is cut."""
 
 
-def draw(level: Level, path: Sequence[Point] = (), states: Sequence[int] = ()) -> bytes:
+def draw(level: Level, path: Sequence[Point] = (), states: Sequence[int] = (), *, reach: Reach | None = None) -> bytes:
     """The plan of a level as a PNG; ``path`` holds the player's feet, decision by decision, ``states`` the automaton's.
 
-    Without ``states`` the whole path has one colour.  Raises ValueError where there is not one state for each point.
+    Without ``states`` the whole path has one colour; with ``reach``, red lies over all that nobody can stand on.
+    Raises ValueError where there is not one state for each point.
     """
     if states and len(states) != len(path):
         raise ValueError(f"{len(path)} points need as many states, not {len(states)}")
     figure = Figure(figsize=_natural_size(level), dpi=_DPI, layout="constrained")
     axes = _level_axes(figure, level)
     _add_way(axes, path, states or [0] * len(path))
+    if reach is not None:
+        _add_reach(axes, reach)
     return _png(figure)
 
 
@@ -110,6 +115,16 @@ def backdrop(level: Level, size: tuple[int, int]) -> tuple[NDArray[np.uint8], Ca
 def state_colour(state: int) -> str:
     """The colour of a state of the automaton, as ``#rrggbb``."""
     return _STATES[state % len(_STATES)]
+
+
+def _add_reach(axes: Any, reach: Reach) -> None:
+    """Red over the cells without ground that can be reached."""
+    rows, columns = reach.ground.shape
+    west, south = reach.origin
+    red = np.zeros((rows, columns, 4))
+    red[..., 0], red[..., 3] = 0.86, np.where(reach.ground, 0.0, 0.3)
+    extent = (west, west + columns * CELL, south, south + rows * CELL)
+    axes.imshow(red, origin="lower", extent=extent, interpolation="nearest", zorder=2)
 
 
 def _natural_size(level: Level) -> tuple[float, float]:

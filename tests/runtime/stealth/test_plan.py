@@ -10,6 +10,7 @@ from PIL import Image
 
 from tltl_runtime.stealth.level_file import level_names, load_level
 from tltl_runtime.stealth.plan import draw
+from tltl_runtime.stealth.reach import reachable
 
 
 def pixels(png: bytes) -> np.ndarray:
@@ -31,6 +32,17 @@ def test_a_plan_shows_walls_and_the_path_by_state(name: str) -> None:
     for colour in ((0x25, 0x63, 0xEB), (0x93, 0x33, 0xEA)):  # states 0 and 1
         assert has(drawn, colour) and not has(plain, colour)
     assert draw(level, path) == draw(level, path)
+
+
+def test_a_plan_shows_what_nobody_reaches() -> None:
+    pictures = {}
+    for variant in ("v0", "v2"):
+        level = load_level("navigation", variant)
+        drawn = pixels(draw(level, reach=reachable(level))).astype(int)
+        assert drawn.shape == pixels(draw(level)).shape
+        pictures[variant] = float((drawn[..., 0] - drawn[..., 2] > 40).mean())
+    # The outer walls alone, and all that lies behind the block.
+    assert pictures["v0"] < 0.15 < 0.4 < pictures["v2"]
 
 
 def test_each_point_needs_a_state() -> None:
