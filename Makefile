@@ -6,8 +6,8 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 .PHONY: demo test lint format generate bench clean
 
-# Compile and draw the Cover and Hide spec, then run its generated monitor over a recorded trace.
-demo: $(VENV)/.installed
+# Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
+demo: $(VENV)/.installed-game
 	$(BIN)/tltlc compile examples/cover_and_hide.tltl -o demo -t json,dot,python,svg
 	$(BIN)/python demo/cover_and_hide_monitor.py examples/cover_and_hide.csv > demo/cover_and_hide_run.csv
 	@echo "The last step of the recorded trace, as the generated monitor saw it:"
@@ -15,6 +15,12 @@ demo: $(VENV)/.installed
 	@tail -n 1 demo/cover_and_hide_run.csv
 	@echo "Written: the artefact demo/cover_and_hide.fspa.json, its picture demo/cover_and_hide.svg,"
 	@echo "the monitor demo/cover_and_hide_monitor.py and every step of the trace, demo/cover_and_hide_run.csv."
+	@if $(BIN)/python -c "import pybullet" 2> /dev/null; then \
+		echo "The scripted expert plays the level; its recording, and beside it the plan of its way (.png):"; \
+		$(BIN)/tltlc demonstrate cover_and_hide -o demo; \
+	else \
+		echo "The game is not played: its physics, pybullet, needs Python 3.10 or 3.11 (make demo PYTHON=python3.11)."; \
+	fi
 
 test: lint
 	$(BIN)/python -m pytest -q -rs -n 2
@@ -49,9 +55,13 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(PIP) install -c constraints.txt -e .
 	@touch $@
 
+$(VENV)/.installed-game: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(PIP) install -c constraints.txt -e '.[game]'
+	@touch $@ $(VENV)/.installed
+
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(PIP) install -c constraints.txt -e '.[dev,rl]'
-	@touch $@ $(VENV)/.installed
+	@touch $@ $(VENV)/.installed $(VENV)/.installed-game
 
 $(VENV)/.installed-bench: benchmarks/requirements.txt | $(VENV)/.installed-dev
 	$(PIP) install -c constraints.txt -r benchmarks/requirements.txt
