@@ -14,7 +14,7 @@ from tltl_runtime.stealth.feasible import check_reach
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.level_file import level_names, read_level, variants
 from tltl_runtime.stealth.observation import Senses
-from tltl_runtime.stealth.reach import reachable
+from tltl_runtime.stealth.reach import Reach, reachable
 from tltl_runtime.stealth.spec_places import SpecPlaces
 from tltl_runtime.stealth.supply import check_supply, given_params, used_entities
 from tltlc.automaton.fspa import Fspa
@@ -24,63 +24,93 @@ from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.spec_file import split
+from tltlc.writing import write_file
 
 
 @click.command()
 @senses_options
+@click.option(
+    "--plan",
+    metavar="FILE.png",
+    type=click.Path(path_type=Path),
+    help="Draw the level from above, red where nobody can stand (for one level and variant).",
+)
 def command(
     levels: tuple[str, ...],
     inputs: Sequence[Input],
     settings: Settings,
     report: Report,
     sensors: Mapping[str, Any],
+    plan: Path | None,
 ) -> None:
     """Hold levels against compiled specs, or where there are none against the spec that each is made for."""
-    for argument in levels:
-        for name in level_names() if argument == "all" else (argument,):
+    check = _Check(inputs, settings, report, sensors)
+    seen: list[tuple[Level, Reach]] = []
+    for path, variant in map(split, levels):
+        for name in level_names() if path == "all" else (path,):
             try:
-                _check(name, inputs, settings, report, sensors)
+                seen += [check(name, each) for each in ((variant,) if variant else variants(name))]
             except TltlError as error:
                 report.add(error.diagnostics)
+    if plan is not None and seen:
+        _draw(plan, seen)
 
 
-def _check(
-    argument: str, inputs: Sequence[Input], settings: Settings, report: Report, sensors: Mapping[str, Any]
-) -> None:
-    """All that is to be said of one level; what holds of several of its variants is said once."""
-    path, variant = split(argument)
-    said: set[object] = set()
-    for each in (variant,) if variant else variants(path):
-        level, warnings = read_level(path, each)
-        _add(report, warnings, said)
-        senses = Senses(level, sensors)
-        reach = reachable(level)
-        for opened in inputs or _own(level, settings, report, said):
+class _Check:
+    """What there is to be said of levels; what holds of several variants is said once."""
+
+    def __init__(self, inputs: Sequence[Input], settings: Settings, report: Report, sensors: Mapping[str, Any]) -> None:
+        self._inputs, self._settings, self._report, self._sensors = inputs, settings, report, sensors
+        self._said: set[object] = set()
+
+    def __call__(self, path: str, variant: str) -> tuple[Level, Reach]:
+        """Report all that is to be said of one variant of a level."""
+        level, warnings = read_level(path, variant)
+        self._add(warnings)
+        senses, reach = Senses(level, self._sensors), reachable(level)
+        inputs = self._inputs or self._own(level)
+        several = len(inputs) > 1 or any(len(opened.automata) > 1 for opened in inputs)
+        for opened in inputs:
             for fspa, places in _specs(opened):
                 found = check_supply(level, fspa, places)
                 if status_of(found) == CLEAN:
                     found += check_reach(level, reach, fspa, places)
-                _add(report, found, said)
+                self._add(found)
                 if not found:
-                    several = f" to `{fspa.name}`" if len(inputs) > 1 or len(opened.automata) > 1 else ""
-                    report.say(f"{level.name}:{each} supplies {_supplied(level, fspa)}{several} (nothing to report)")
-        if (line := f"{level.name}: the agent senses {_sensed(senses)}") not in said:
-            said.add(line)
-            report.say(line)
+                    receiver = f" to `{fspa.name}`" if several else ""
+                    self._say(f"{level.name}:{variant} supplies {_supplied(level, fspa)}{receiver} (nothing to report)")
+        self._say(f"{level.name}: the agent senses {_sensed(senses)}")
+        return level, reach
+
+    def _own(self, level: Level) -> list[Input]:
+        """The spec that a level is made for, compiled."""
+        if not level.spec:
+            way_out = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
+            self._say(f"{level.name}: made for no spec; {way_out}")
+            return []
+        opened = open_input(_shown(level.spec), self._settings)
+        self._add(opened.diagnostics)
+        return [opened]
+
+    def _add(self, diagnostics: Iterable[Diagnostic]) -> None:
+        new = [diagnostic for diagnostic in diagnostics if diagnostic not in self._said]
+        self._said.update(new)
+        self._report.add(new)
+
+    def _say(self, line: str) -> None:
+        if line not in self._said:
+            self._said.add(line)
+            self._report.say(line)
 
 
-def _own(level: Level, settings: Settings, report: Report, said: set[object]) -> list[Input]:
-    """The spec that a level is made for, compiled."""
-    if not level.spec:
-        if "no spec" not in said:
-            said.add("no spec")
-            report.say(
-                f'{level.name}: made for no spec; name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
-            )
-        return []
-    opened = open_input(_shown(level.spec), settings)
-    _add(report, opened.diagnostics, said)
-    return [opened]
+def _draw(path: Path, seen: list[tuple[Level, Reach]]) -> None:
+    if len(seen) != 1:
+        wanted = "one level and variant, e.g. `--level navigation:v2`"
+        raise click.UsageError(f"--plan is for {wanted}; there are {len(seen)}", click.get_current_context())
+    from tltl_runtime.stealth.plan import draw
+
+    level, reach = seen[0]
+    write_file(path, draw(level, reach=reach))
 
 
 def _shown(spec: str) -> str:
@@ -89,13 +119,6 @@ def _shown(spec: str) -> str:
         return str(Path(spec).relative_to(Path.cwd()))
     except ValueError:
         return spec
-
-
-def _add(report: Report, diagnostics: Iterable[Diagnostic], said: set[object]) -> None:
-    """Report what has not been said."""
-    new = [diagnostic for diagnostic in diagnostics if diagnostic not in said]
-    said.update(new)
-    report.add(new)
 
 
 def _specs(opened: Input) -> Iterator[tuple[Fspa, SpecPlaces]]:

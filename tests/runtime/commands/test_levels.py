@@ -67,6 +67,21 @@ def test_the_formats_of_machines(tltlc) -> None:  # type: ignore[no-untyped-def]
     assert "::error file=" in tltlc(*arguments, "github").out
 
 
+def test_a_plan_of_what_is_reached(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("check", "--level", "navigation:v2", "--plan", "plan.png").status == 1
+    assert Path("plan.png").read_bytes().startswith(b"\x89PNG")
+    several: Outcome = tltlc("check", "--level", "cover_and_hide", "--plan", "several.png")
+    assert several.status == 2 and not Path("several.png").exists()
+    assert "--plan is for one level and variant, e.g. `--level navigation:v2`; there are 3" in several.err
+
+
+def test_one_variant_of_all_levels(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("check", "--level", "all:v0", "--no-map", "--no-variables", "--no-entities")
+    assert found.status == 0
+    assert found.err.count("(nothing to report)") == 3
+    assert "navigation: the agent senses nothing of the level" in found.err
+
+
 def test_wrong_usage(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     assert tltlc("check").status == 2
     assert tltlc("check", "--level", "navigation:v7").status == 2
