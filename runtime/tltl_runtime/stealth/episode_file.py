@@ -16,6 +16,7 @@ from tltl_runtime.stealth.episode import End, Episode
 from tltl_runtime.stealth.episode_arrays import ARRAYS, Array, Arrays, shape_of, sizes, snapshots, to_arrays
 from tltl_runtime.stealth.game import BRANCHES
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level_fault import fault
 from tltl_runtime.stealth.numpy_archive import ArchiveError, read_array, read_members
 from tltl_runtime.stealth.record_json import RecordJsonError, from_json, to_json
 from tltlc.automaton.fspa import Fspa
@@ -195,9 +196,12 @@ def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
         title = f"`{name}` has version {version!r:.20}, and only version {VERSION} can be read"
         raise TltlError([Diagnostic("TLT0821", title, help=help_)])
     try:
-        return from_json(Meta, document, "meta")
+        meta = from_json(Meta, document, "meta")
     except (RecordJsonError, RecursionError) as error:
         raise _broken(name, str(error)) from None
+    if wrong := fault(meta.level):
+        raise _broken(name, f"its level is unfit: {wrong}")
+    return meta
 
 
 def _text(members: Mapping[str, bytes], array: str, name: str) -> str:

@@ -237,6 +237,15 @@ BROKEN: dict[str, Change] = {
     "level_kind": lambda _, meta: meta["level"]["solids"][0].update({"kind": "lava"}),
     "level_list": in_level("solids", 3),
     "level_pair": in_level("files", [["a", "b", "c"]]),
+    "level_flat": in_level("bounds", {"low": [0, 0, 0], "high": [9, 0, 3]}),
+    "level_far": lambda _, meta: meta["level"]["exits"][0].update({"position": [1e6, 0, 0]}),
+    "level_route": lambda _, meta: meta["level"]["enemies"][0].update({"route": []}),
+    "level_branch": lambda _, meta: meta["level"]["enemies"][0]["kind"].update({"branches": ["fly"]}),
+    "level_path": lambda _, meta: meta["level"]["movers"][0].update({"path": []}),
+    "level_switch": lambda _, meta: meta["level"]["barriers"][0].update({"opened_by": ["s9"]}),
+    "level_barrier": lambda _, meta: meta["level"]["unlocks"][0].update({"barriers": ["up"]}),
+    "level_unlock": lambda _, meta: meta["level"]["unlocks"][0].update({"barriers": []}),
+    "level_signal": in_level("signals", [["open_up", "open(up)"]]),
     "level_number": in_level("exits", [{"name": "exit", "position": [1e999, 0, 0]}]),
 }
 
