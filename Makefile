@@ -40,6 +40,7 @@ generate: $(VENV)/.installed-dev
 	$(BIN)/python -m tltlc.grammar.tables
 	$(BIN)/python -m tltlc.backends.artefact.generate
 	$(BIN)/tltlc render examples/cover_and_hide.tltl -o docs/images/cover_and_hide.svg
+	$(BIN)/python docs/images/frames.py docs/images
 
 # Measure beside the peers and write benchmarks/RESULTS.md; a run that was stopped goes on. MONA: Debian package `mona`.
 bench: $(VENV)/.installed-bench

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan, degrees, hypot, tan
+from math import cos, hypot, sin, tan
 from typing import Literal
 
 import numpy as np
@@ -22,6 +22,9 @@ _FIELD = 50.0
 _TOP_FIELD = 8.0
 """A narrow field from far away: walls hardly lean outwards."""
 _MARGIN = 1.03
+_OVERVIEW_FIELD = 40.0
+_EDGE = 0.015
+"""The part of the overview that stays free at each side."""
 _OBLIQUE = 1.05
 """How much higher than it is far back the eye of the overview is."""
 
@@ -90,18 +93,18 @@ def _overview(level: Level, aspect: float) -> Camera:
     """From the south and above, as near as all corners of the level still fit."""
     low, high = level.bounds.low, level.bounds.high
     x, y = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
-    corners = np.array([(a, b, c) for a in (low[0], high[0]) for b in (low[1], high[1]) for c in (0.0, high[2] * 0.6)])
+    corners = np.array([(a, b, c) for a in (low[0], high[0]) for b in (low[1], high[1]) for c in (0.0, high[2])])
     size = hypot(high[0] - low[0], high[1] - low[1])
-    for distance in np.arange(size * 0.4, size * 3, size * 0.02):
-        eye = (x, y - float(distance), float(distance) * _OBLIQUE)
-        seen = Camera(eye, (x, y, 0.0), 40.0, far=float(distance) * 4)
+    for away in np.arange(size * 0.4, size * 4, size * 0.02).tolist():
+        eye = (x, y - away, away * _OBLIQUE)
+        # How high in the picture a corner is follows from its angle alone: half of them lie above the middle one.
+        angles = np.arctan2(corners[:, 2] - eye[2], corners[:, 1] - eye[1])
+        ahead = float(angles.min() + angles.max()) / 2
+        seen = Camera(eye, (x, eye[1] + cos(ahead), eye[2] + sin(ahead)), _OVERVIEW_FIELD, far=away * 4)
         where = pixels(seen, corners, 1000, round(1000 / aspect)) / (1000, 1000 / aspect)
-        if where.min() >= 0.01 and where.max() <= 0.99:
+        if where.min() >= _EDGE and where.max() <= 1 - _EDGE:
             break
-    # The picture's middle is that of what it shows: the near side of a level is wider than the far one.
-    shift = (where[:, 1].min() + where[:, 1].max() - 1) / 2
-    turn = degrees(atan(2 * shift * tan(np.radians(seen.field) / 2)))
-    return Camera(eye, (x, y - turn * size * 0.01, 0.0), seen.field, far=seen.far)
+    return seen
 
 
 def _axes(camera: Camera) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

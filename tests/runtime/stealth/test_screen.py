@@ -10,6 +10,7 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from PIL import Image
 
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tests.runtime.stealth.xvfb import MISSING, screen
@@ -75,6 +76,7 @@ def test_no_picture_without_a_mode() -> None:
 CHECK = """
 import gymnasium, tltl_runtime, warnings
 from gymnasium.utils.env_checker import check_env
+from PIL import Image
 env = gymnasium.make("tltl/CoverAndHide-v0", render_mode="human", render_size=(96, 64))
 with warnings.catch_warnings(record=True) as told:
     check_env(env.unwrapped, skip_render_check=False)
@@ -101,3 +103,16 @@ def test_gymnasiums_own_checks_without_a_screen(name: str, monkeypatch: pytest.M
     with pytest.warns(UserWarning, match="TLT0830: no window can be opened here"):
         check_env(env.unwrapped, skip_render_check=False)
     env.close()
+
+
+def test_the_pictures_of_the_readme_are_those_that_are_made(tmp_path: Path) -> None:
+    images = Path(__file__).parents[3] / "docs" / "images"
+    subprocess.run([sys.executable, images / "frames.py", tmp_path], check=True, timeout=60, capture_output=True)
+    made = sorted(tmp_path.iterdir())
+    assert [path.name for path in made] == ["branching.png", "cover_and_hide.png", "navigation.png"]
+    for path in made:
+        kept = images / path.name
+        assert kept.stat().st_size < 150_000
+        pictures = [np.asarray(Image.open(each).convert("RGB"), float) for each in (path, kept)]
+        # Another processor may round another way.
+        assert np.abs(pictures[0] - pictures[1]).mean() < 1.0, f"{path.name} is old: make generate"
