@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Box, Level, Point
-from tltl_runtime.stealth.player import DECISION, PlayerKind
+from tltl_runtime.stealth.player import DECISION, Action, PlayerKind
 from tltl_runtime.stealth.segments import Rectangle
 
 SPACING: Final = 0.4
@@ -24,7 +24,6 @@ MARGIN: Final = 0.03
 FAR: Final = np.float32(1e6)
 """The value of what cannot be."""
 
-Action = tuple[int, int, int, int, int]
 Floats = NDArray[np.float32]
 
 STAND, WALK, SPRINT, DUCK, CRAWL = range(5)
@@ -121,10 +120,10 @@ class Lattice:
     def way_to(self, goal: Point, within: float) -> Floats:
         """Decisions that a walk takes from each place to within a distance of the goal, FAR where there is none."""
         there = np.hypot(*(self.places - goal[:2]).T) <= within
-        found = np.where(there, np.float32(0), FAR)
+        found: Floats = np.where(there, np.float32(0), FAR)
         extra = np.where(SPRINTS, FAR, np.float32(1))
         for _ in range(10_000):
-            better = np.where(there, np.float32(0), np.minimum(found, self.best(found, found, extra)))
+            better: Floats = np.where(there, np.float32(0), np.minimum(found, self.best(found, found, extra)))
             if np.abs(better - found).max() < 0.01:
                 break
             found = better
@@ -158,13 +157,16 @@ def _grown(boxes: list[Box], grow: float, step: float, height: float) -> list[Re
 
 def _crossed(starts: NDArray[Any], ends: NDArray[Any], rectangles: list[Rectangle]) -> NDArray[np.bool_]:
     """Whether the segments between points [m, 2] go through the inside of a rectangle."""
-    crossed = np.zeros(len(starts), dtype=bool)
+    crossed: NDArray[np.bool_] = np.zeros(len(starts), dtype=bool)
+    enter: Any
+    leave: Any
     delta = ends - starts
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = 1.0 / np.where(delta == 0.0, 1e-12, delta)
         for x0, y0, x1, y1 in rectangles:
-            a, b = (np.array((x0, y0)) - starts) * inverse, (np.array((x1, y1)) - starts) * inverse
-            enter = np.minimum(a, b).max(-1)
-            leave = np.maximum(a, b).min(-1)
-            crossed |= (enter < leave) & (leave > 0.0) & (enter < 1.0)
+            enter, leave = 0.0, 1.0
+            for axis, low, high in ((0, x0, x1), (1, y0, y1)):
+                a, b = (low - starts[:, axis]) * inverse[:, axis], (high - starts[:, axis]) * inverse[:, axis]
+                enter, leave = np.maximum(enter, np.minimum(a, b)), np.minimum(leave, np.maximum(a, b))
+            crossed |= enter < leave
     return crossed

@@ -33,8 +33,8 @@ class Lines:
         self.lattice: Lattice = lattice_of(level, shut)
         boxes = [each.box for each in level.solids if each.box.high[2] > 0.0]
         boxes += [level.barriers[each].box for each in sorted(shut) if level.barriers[each].kind == "solid"]
-        self._low = np.array([box.low for box in boxes], dtype=np.float32)[:, :, None]
-        self._high = np.array([box.high for box in boxes], dtype=np.float32)[:, :, None]
+        self._low = np.array([box.low for box in boxes], dtype=np.float32).reshape(-1, 3, 1)
+        self._high = np.array([box.high for box in boxes], dtype=np.float32).reshape(-1, 3, 1)
         steps = np.array(((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))) * _ASIDE
         self._targets = (self.lattice.places[None] + steps[:, None]).astype(np.float32).reshape(-1, 2)
         self._kept: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
@@ -53,10 +53,12 @@ class Lines:
         eye = np.array((x, y), dtype=np.float32)
         delta = (self._targets - eye).T
         inverse = 1.0 / np.where(np.abs(delta) < 1e-6, np.float32(1e-6), delta)
-        a: NDArray[Any] = (self._low[:, :2] - eye[:, None]) * inverse
-        b: NDArray[Any] = (self._high[:, :2] - eye[:, None]) * inverse
-        enter = np.maximum(np.minimum(a, b).max(1), 0.0)
-        leave = np.minimum(np.maximum(a, b).min(1), 1.0)
+        enter: Any = np.float32(0)
+        leave: Any = np.float32(1)
+        for axis in (0, 1):
+            a = (self._low[:, axis] - eye[axis]) * inverse[axis]
+            b = (self._high[:, axis] - eye[axis]) * inverse[axis]
+            enter, leave = np.maximum(enter, np.minimum(a, b)), np.minimum(leave, np.maximum(a, b))
         meets = enter < leave
         low, high = self._low[:, 2], self._high[:, 2]
         seen = np.zeros((2, len(self._targets)), dtype=bool)
@@ -65,4 +67,5 @@ class Lines:
                 fall = height - EYES
                 over = (EYES + fall * leave < high) & (EYES + fall * enter > low)
                 seen[stance] |= ~(meets & over).any(0)
-        return seen.reshape(2, 5, -1).mean(1, dtype=np.float32)
+        share: NDArray[np.float32] = seen.reshape(2, 5, -1).mean(1, dtype=np.float32)
+        return share

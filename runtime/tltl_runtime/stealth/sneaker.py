@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.game import Snapshot
-from tltl_runtime.stealth.lattice import ACTIONS, CROUCHED, FAR, SPRINTS, WAYS, Action, Floats, Lattice, lattice_of
+from tltl_runtime.stealth.lattice import ACTIONS, CROUCHED, FAR, SPRINTS, WAYS, Floats, Lattice, lattice_of
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.lines import Lines, lines_of
-from tltl_runtime.stealth.player import DECISION, PlayerKind
+from tltl_runtime.stealth.player import DECISION, Action, PlayerKind
 from tltl_runtime.stealth.watch import Outlook, Watch
 
 HORIZON: Final = 80
@@ -101,11 +101,12 @@ class Sneaker:
         x, y = lattice.places.T.astype(np.float32)
         for outlook, angle, reach in zip(outlooks, self._angles, self._ranges, strict=True):
             for poses, share in zip(outlook.poses, outlook.shares, strict=True):
-                px, py, yaw = poses.T[:, :, None].astype(np.float32)
+                px, py, yaw, knows = poses.T[:, :, None].astype(np.float32)
                 dx, dy = x - px, y - py
                 flat = np.hypot(dx, dy)
-                cone = (dx * np.cos(yaw) + dy * np.sin(yaw) >= flat * np.float32(cos(angle))) & (flat <= reach)
-                free = np.stack([lines.seen_from(a, b) for a, b, _ in poses])
+                aside = np.where(knows > 0, np.float32(-1), np.float32(cos(angle)))
+                cone = (dx * np.cos(yaw) + dy * np.sin(yaw) >= flat * aside) & (flat <= reach)
+                free = np.stack([lines.seen_from(a, b) for a, b, *_ in poses])
                 danger = free * cone[:, None]
                 danger += (flat < _NEAR)[:, None]
                 price += danger * np.float32(share * self.price)

@@ -28,12 +28,16 @@ MODELS: Final = 12
 """Of each enemy."""
 _SAME: Final = 0.02
 """Metres and radians by which a model and its enemy may differ."""
-_NOBODY: Final = PlayerView((0.0, 0.0, -1000.0))
+_BURIED: Final = -1000.0
+"""Where a player's feet are whom nobody sees."""
 
 
 @record
 class Outlook:
-    """How an enemy may go on: ``poses`` float64 [models, decisions, 3] of x, y and yaw, each as likely as its share."""
+    """How an enemy may go on: ``poses`` float64 [models, decisions, 4], each model as likely as its share.
+
+    A pose is x, y, yaw, and 1 while the enemy knows of the player, for it sees to all sides then.
+    """
 
     poses: NDArray[np.float64]
     shares: NDArray[np.float64]
@@ -54,6 +58,7 @@ class Watch:
         self.floor = self._changed()
         self.models = [[Guard(enemy, self.floor, self._rng) for _ in range(MODELS)] for enemy in self.level.enemies]
         self._time = 0.0
+        self._player = self.level.start.position
 
     def see(self, snapshot: Snapshot) -> bool:
         """Take in what there is to see now; returns whether an enemy did what no model had foreseen."""
@@ -63,7 +68,7 @@ class Watch:
             for models in self.models:
                 for model in models:
                     model.step(DECISION, player, self.boxes)
-        self._time = snapshot.time
+        self._time, self._player = snapshot.time, snapshot.player.position
         if snapshot.open != self._open:
             self._open = snapshot.open
             self.floor = self._changed()
@@ -82,21 +87,23 @@ class Watch:
         return surprised
 
     def outlook(self, decisions: int) -> list[Outlook]:
-        """How each enemy may go on from now if it does not notice the player."""
-        return [self._outlook(models, decisions) for models in self.models]
+        """How each enemy may go on from now if it does not see the player from now on."""
+        x, y, _ = self._player
+        nobody = PlayerView((x, y, _BURIED))
+        return [self._outlook(models, decisions, nobody) for models in self.models]
 
-    def _outlook(self, models: Sequence[Guard], decisions: int) -> Outlook:
+    def _outlook(self, models: Sequence[Guard], decisions: int, nobody: PlayerView) -> Outlook:
         different: dict[tuple[object, ...], tuple[Guard, int]] = {}
         for model in models:
             key = model.state if not (model.kind.branches or model.mode == "search") else (id(model),)
             first, count = different.get(key, (model, 0))
             different[key] = (first, count + 1)
-        poses = np.empty((len(different), decisions, 3))
+        poses = np.empty((len(different), decisions, 4))
         for row, (model, _) in enumerate(different.values()):
             ahead = model.fork(self._rng)
             for step in range(decisions):
-                ahead.step(DECISION, _NOBODY, ())
-                poses[row, step] = ahead.x, ahead.y, ahead.yaw
+                ahead.step(DECISION, nobody, ())
+                poses[row, step] = ahead.x, ahead.y, ahead.yaw, ahead.knows
         shares = np.array([count for _, count in different.values()], dtype=np.float64)
         return Outlook(poses, shares / shares.sum())
 
