@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from math import ceil
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -15,6 +15,8 @@ from tltl_runtime.commands.quiet import load_pybullet
 from tltl_runtime.stealth.player import DECISION
 from tltlc.cli import exits
 from tltlc.cli.report import Report
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episode import Episode
@@ -30,7 +32,17 @@ _SIZES: Final = (160, 4096)
 
 _FILM_SIZE: Final = (640, 480)
 _MOST_FRAMES_A_SECOND: Final = 30.0
-"""A faster film leaves decisions out."""
+"""Unless asked for, a faster film leaves decisions out."""
+
+
+@record
+class Film:
+    """How a film is made: ``rate`` in pictures a second, None for one each decision; ``size`` in pixels."""
+
+    view: View
+    speed: float
+    rate: float | None
+    size: tuple[int, int] | None
 
 
 def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int, int] | None:
@@ -43,13 +55,19 @@ def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int,
     raise click.BadParameter(f"write WIDTHxHEIGHT, each from {low} to {high}, e.g. 640x480")
 
 
+def _finite(_: click.Context, __: click.Parameter, number: float | None) -> float | None:
+    if number is None or isfinite(number):
+        return number
+    raise click.BadParameter("write a number")
+
+
 @click.command(
     epilog="""\b
 Examples:
   tltlc replay run.episode.npz                          how it went
   tltlc replay runs/*.episode.npz --check               whether the recordings are true
   tltlc replay run.episode.npz -o run.png               the way, coloured by the automaton's state
-  tltlc replay run.episode.npz -o run.mp4 --view top_down --speed 2
+  tltlc replay run.episode.npz -o run.mp4 --view top_down --speed 2 --fps 20
   tltlc replay run.episode.npz -o run.gif --view plan --from 4 --to 9.5
   tltlc replay run.episode.npz -o run.csv               then: tltlc monitor SPEC run.csv
 """
@@ -67,13 +85,35 @@ Examples:
 @click.option(
     "--speed",
     type=click.FloatRange(0.05, 100.0),
+    callback=_finite,
     default=1.0,
     show_default=True,
     help="Of a film: 2 is twice as fast as the game.",
 )
+@click.option(
+    "--fps",
+    "rate",
+    type=click.FloatRange(1.0, 60.0),
+    callback=_finite,
+    help="Pictures a second (default: one for each decision).",
+)
 @click.option("--size", metavar="WxH", callback=_size, help="Of a film (default: 640x480) or a plan, in pixels.")
-@click.option("--from", "start", metavar="SECONDS", type=float, help="Begin a film or the signals here.")
-@click.option("--to", "stop", metavar="SECONDS", type=float, help="End a film or the signals here.")
+@click.option(
+    "--from",
+    "start",
+    metavar="SECONDS",
+    type=click.FloatRange(min=0.0),
+    callback=_finite,
+    help="Begin a film or the signals here.",
+)
+@click.option(
+    "--to",
+    "stop",
+    metavar="SECONDS",
+    type=click.FloatRange(min=0.0),
+    callback=_finite,
+    help="End a film or the signals here.",
+)
 @click.option("--check", "checked", is_flag=True, help="Judge the episode again, and play it again.")
 @click.option(
     "--format",
@@ -87,6 +127,7 @@ def command(
     path: Path | None,
     view: View | None,
     speed: float,
+    rate: float | None,
     size: tuple[int, int] | None,
     start: float | None,
     stop: float | None,
@@ -98,25 +139,28 @@ def command(
     --check says whether the atoms, states and rewards of the recording follow from its signals by the spec, and
     whether the level, played again from the seed with the same actions, gives the same episode.
     """
-    ending = path.suffix.lower() if path else ""
-    _check_usage(files, path, ending, view, size)
+    _check_usage(files, path, view, size)
     load_pybullet()
     from tltl_runtime.stealth.episode_check import check, check_replay
     from tltl_runtime.stealth.episode_file import read_episode
     from tltl_runtime.stealth.summary import summary, summary_text
 
+    film = Film(view or "third_person", speed, rate, size)
     summaries: list[dict[str, Any]] = []
     with Report(format, results=True) as report:
         for name in files:
-            episode = read_episode(name)
+            try:
+                episode = read_episode(name)
+            except TltlError as error:
+                report.add(error.diagnostics)
+                continue
             said = {"file": name, **summary(episode)}
             if checked:
                 judged, played = check(episode), check_replay(episode)
                 report.add((*judged, *played))
                 said |= {"follows_from_spec": not judged, "plays_again": not played}
             if path is not None:
-                rows = _rows(episode, start, stop)
-                _write(path, ending, episode, rows, view or "third_person", speed, size)
+                _write(path, episode, _span(episode, start, stop), film)
                 report.say(f"wrote {path}")
             elif format == "text":
                 print(f"{name}\n{summary_text(said)}{_checked_text(said)}")
@@ -126,11 +170,10 @@ def command(
     return report.status
 
 
-def _check_usage(
-    files: tuple[str, ...], path: Path | None, ending: str, view: str | None, size: tuple[int, int] | None
-) -> None:
+def _check_usage(files: tuple[str, ...], path: Path | None, view: str | None, size: tuple[int, int] | None) -> None:
     if path is None:
         return
+    ending = path.suffix.lower()
     if ending not in _ENDINGS:
         raise click.UsageError(f"the ending of `{path}` says no kind of output: use one of {', '.join(_ENDINGS)}")
     if len(files) > 1:
@@ -149,48 +192,46 @@ def _checked_text(said: dict[str, Any]) -> str:
     return f"\n  checked  the judgement {follows} from the signals; played again it is {same} episode\n"
 
 
-def _rows(episode: Episode, start: float | None, stop: float | None) -> list[int]:
-    """The rows from ``start`` to ``stop`` seconds."""
-    first = 0.0 if start is None else start
-    last = episode.snapshots[-1].time if stop is None else stop
-    rows = [row for row, shot in enumerate(episode.snapshots) if first - 1e-9 <= shot.time <= last + 1e-9]
-    if not rows:
-        end = episode.snapshots[-1].time
+def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[float, float]:
+    """From where to where a film or a trace goes, in seconds."""
+    end = episode.snapshots[-1].time
+    first, last = start or 0.0, end if stop is None else stop
+    if first > min(last, end):
         raise click.UsageError(f"there is nothing from {first:g} s to {last:g} s: the episode ends at {end:.2f} s")
-    return rows
+    return first, min(last, end)
 
 
-def _write(
-    path: Path, ending: str, episode: Episode, rows: list[int], view: View, speed: float, size: tuple[int, int] | None
-) -> None:
+def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film) -> None:
+    """Write what the ending of the path asks for."""
     from tltlc.writing import write_file
 
+    ending = path.suffix.lower()
     if ending == ".csv":
         from tltl_runtime.stealth.summary import trace_csv
 
-        write_file(path, trace_csv(episode, rows))
+        write_file(path, trace_csv(episode, *span))
     elif ending == ".png":
         from tltl_runtime.stealth.plan import draw_episode
 
-        write_file(path, draw_episode(episode, size))
+        write_file(path, draw_episode(episode, film.size))
     else:
-        _write_film(path, ending, episode, rows, view, speed, size or _FILM_SIZE)
+        _write_film(path, episode, span, film)
 
 
-def _write_film(
-    path: Path, ending: str, episode: Episode, rows: list[int], view: View, speed: float, size: tuple[int, int]
-) -> None:
+def _write_film(path: Path, episode: Episode, span: tuple[float, float], film: Film) -> None:
     from tltl_runtime.stealth.film import frames
     from tltl_runtime.stealth.film_file import NoEncoderError, write_gif, write_mp4
     from tltlc.writing import replaced
 
-    stride = ceil(speed / DECISION / _MOST_FRAMES_A_SECOND)
-    shown = rows[::stride]
-    pictures = _counted(frames(episode, shown, view, size), len(shown))
-    write: Callable[..., None] = write_gif if ending == ".gif" else write_mp4
+    rate = film.rate or min(film.speed / DECISION, _MOST_FRAMES_A_SECOND)
+    start, stop = span
+    count = int((stop - start) / film.speed * rate + 1e-6) + 1
+    times = [start + number * film.speed / rate for number in range(count)]
+    pictures = _counted(frames(episode, times, film.view, film.size or _FILM_SIZE), count)
+    write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
     try:
         with replaced(path) as temporary:
-            write(temporary, pictures, DECISION * stride / speed)
+            write(temporary, pictures, 1 / rate)
     except NoEncoderError as error:
         raise exits.missing_component("an .mp4", "imageio-ffmpeg", "imageio-ffmpeg") from error
 

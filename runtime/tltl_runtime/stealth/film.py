@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from math import cos, sin
 from pathlib import Path
@@ -16,6 +17,7 @@ from tltl_runtime.stealth.camera import VIEWS
 from tltl_runtime.stealth.camera import View as Rendered
 from tltl_runtime.stealth.episode import Episode
 from tltl_runtime.stealth.game import Snapshot
+from tltl_runtime.stealth.interpolation import between
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.plan import BARRIERS, backdrop, state_colour
 from tltl_runtime.stealth.render import Renderer
@@ -24,10 +26,14 @@ View = Literal["third_person", "top_down", "overview", "plan"]
 FILM_VIEWS: Final[tuple[View, ...]] = (*VIEWS, "plan")
 
 Picture = NDArray[np.uint8]
+Moment = tuple[int, Snapshot]
 Pixel = Callable[[Point], tuple[float, float]]
 
 STRIP: Final = 44
 """Height of the strip below the view, in pixels."""
+
+_INSTANT: Final = 1e-6
+"""Seconds that count as none."""
 
 _TEXT: Final = 12
 _BAR: Final = 90
@@ -42,21 +48,35 @@ _MODES: Final = {"patrol": "#7f1d1d", "chase": "#ff0000", "search": "#f97316", "
 _FONT: Final = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
 
 
-def frames(episode: Episode, rows: Sequence[int], view: View, size: tuple[int, int]) -> Iterator[Picture]:
-    """One picture for each of ``rows`` (0 is the moment of the reset), ``size`` pixels wide and high, RGB."""
+def frames(episode: Episode, times: Sequence[float], view: View, size: tuple[int, int]) -> Iterator[Picture]:
+    """One picture for each of ``times``, in seconds from the reset and rising, ``size`` pixels wide and high, RGB.
+
+    Between two decisions bodies are on their ways, and the automaton is where the earlier one left it.
+    """
     width, height = size
     font = ImageFont.truetype(str(_FONT), _TEXT)
+    moments = [_moment(episode, time) for time in times]
     inner = (width, height - STRIP)
-    pictures = _plans(episode, rows, inner) if view == "plan" else _rendered(episode, rows, view, inner)
-    for row, picture in zip(rows, pictures, strict=True):
-        yield _framed(picture, episode, row, font)
+    pictures = _plans(episode, moments, inner) if view == "plan" else _rendered(episode, moments, view, inner)
+    for moment, picture in zip(moments, pictures, strict=True):
+        yield _framed(picture, episode, moment, font)
 
 
-def _rendered(episode: Episode, rows: Sequence[int], view: Rendered, size: tuple[int, int]) -> Iterator[Picture]:
+def _moment(episode: Episode, time: float) -> Moment:
+    """The number of the last decision before a time, and what there is to see then."""
+    shots = episode.snapshots
+    row = min(max(0, bisect_right(shots, time + _INSTANT, key=lambda shot: shot.time) - 1), len(shots) - 1)
+    since = time - shots[row].time
+    if since <= _INSTANT or row == len(shots) - 1:
+        return row, shots[row]
+    return row, between(shots[row], shots[row + 1], since / (shots[row + 1].time - shots[row].time))
+
+
+def _rendered(episode: Episode, moments: Sequence[Moment], view: Rendered, size: tuple[int, int]) -> Iterator[Picture]:
     renderer = Renderer(episode.level, *size)
     try:
-        for row in rows:
-            yield renderer.frame(episode.snapshots[row], view)
+        for _, shot in moments:
+            yield renderer.frame(shot, view)
     finally:
         renderer.close()
 
@@ -64,19 +84,19 @@ def _rendered(episode: Episode, rows: Sequence[int], view: Rendered, size: tuple
 # --- the plan with what moves -----------------------------------------------------------------------
 
 
-def _plans(episode: Episode, rows: Sequence[int], size: tuple[int, int]) -> Iterator[Picture]:
+def _plans(episode: Episode, moments: Sequence[Moment], size: tuple[int, int]) -> Iterator[Picture]:
     """The level's plan with the way so far and everybody on it."""
     empty, pixel = backdrop(episode.level, size)
     way = Image.fromarray(empty)
     draw = ImageDraw.Draw(way)
     places = [pixel(shot.player.position) for shot in episode.snapshots]
-    drawn = rows[0]
-    for row in rows:
+    drawn = moments[0][0]
+    for row, shot in moments:
         for before in range(drawn, row):
             draw.line(places[before : before + 2], fill=state_colour(int(episode.states[before])), width=2)
         drawn = row
         picture = way.copy()
-        _populate(picture, pixel, episode.level, episode.snapshots[row], state_colour(int(episode.states[row])))
+        _populate(picture, pixel, episode.level, shot, state_colour(int(episode.states[row])))
         yield np.asarray(picture)
 
 
@@ -112,16 +132,17 @@ def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radi
 # --- the strip --------------------------------------------------------------------------------------
 
 
-def _framed(view: Picture, episode: Episode, row: int, font: ImageFont.FreeTypeFont) -> Picture:
+def _framed(view: Picture, episode: Episode, moment: Moment, font: ImageFont.FreeTypeFont) -> Picture:
     """The view with the strip below it: time, bars of progress and health, and what remains to be satisfied."""
     height, width, _ = view.shape
     picture = Image.new("RGB", (width, height + STRIP), _PAPER)
     picture.paste(Image.fromarray(view), (0, 0))
     draw = ImageDraw.Draw(picture)
-    shot, state = episode.snapshots[row], episode.fspa.states[int(episode.states[row])]
+    row, shot = moment
+    state = episode.fspa.states[int(episode.states[row])]
     top, bottom = height + 5, height + 25
     draw.text((8, top), f"{shot.time:6.2f} s", _PALE, font)
-    bars = (("progress", float(episode.progress[row]), _GREEN), ("health", shot.health, _RED))
+    bars = (("progress", float(episode.progress[row]), _GREEN), ("health", episode.snapshots[row].health, _RED))
     x = 80
     for name, share, colour in bars:
         draw.text((x, top), name, _PALE, font)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
 from io import StringIO
-from typing import Any
+from math import inf
+from typing import Any, Final
 
 from tltl_runtime.stealth.episode import Episode
+
+_INSTANT: Final = 1e-6
+"""Seconds that count as none."""
 
 
 def summary(episode: Episode) -> dict[str, Any]:
@@ -64,15 +67,16 @@ def summary_text(said: dict[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def trace_csv(episode: Episode, rows: Sequence[int]) -> str:
-    """The signals of the spec at these rows, as ``tltlc monitor`` reads them; ``step`` is the row's number.
+def trace_csv(episode: Episode, start: float = 0.0, stop: float = inf) -> str:
+    """The signals of the spec from ``start`` to ``stop`` seconds, as ``tltlc monitor`` reads them.
 
-    Row 0, the moment of the reset, is no sample of the trace.  Numbers are written so that they come back bit for bit.
+    The column ``step`` counts decisions from 1: the moment of the reset is no sample of the trace.  Numbers are written
+    so that they come back bit for bit.
     """
     written = StringIO()
     writer = csv.writer(written, lineterminator="\n")
     writer.writerow(["step", *(signal.name for signal in episode.fspa.signals)])
-    for row in rows:
-        if row:
+    for row, shot in enumerate(episode.snapshots):
+        if row and start - _INSTANT <= shot.time <= stop + _INSTANT:
             writer.writerow([row, *map(repr, episode.signals[row].tolist())])
     return written.getvalue()

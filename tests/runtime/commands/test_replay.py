@@ -16,6 +16,7 @@ from PIL import Image
 
 import tltl_runtime.stealth.film as film
 from tests.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
+from tltl_runtime.commands.replay import _VIEWS
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode import Episode
 from tltl_runtime.stealth.episode_file import write_episode
@@ -82,6 +83,17 @@ def test_a_check_that_fails(tltlc, recorded: Path, episode: Episode) -> None:  #
     assert tltlc("replay", "bent.episode.npz").status == 0
 
 
+def test_a_file_that_is_broken_hides_no_other(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    Path("cut.episode.npz").write_bytes(b"")
+    found: Outcome = tltlc("replay", "cut.episode.npz", "gone.episode.npz", FILE)
+    assert found.status == 1 and found.out.startswith(FILE)
+    assert "TLT0820" in found.err and "TLT0001" in found.err
+
+
+def test_the_views_are_those_that_there_are() -> None:
+    assert _VIEWS == film.FILM_VIEWS
+
+
 def test_messages_for_programs_are_json(recorded: Path) -> None:
     Path("cut.episode.npz").write_bytes(Path(FILE).read_bytes()[:-9])
     program = "import sys; from tltlc.cli.main import main; main(sys.argv[1:])"
@@ -116,7 +128,7 @@ def test_a_gif(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] #
         assert (gif.size, gif.n_frames, gif.info["duration"]) == ((320, 240), STEPS + 1, 300)
     assert tltlc("replay", FILE, "-o", "part.gif", "--from", "1", "--to", "1.5", "--size", "200x200").status == 0
     with Image.open("part.gif") as gif:
-        assert gif.n_frames == 4  # at 1.05, 1.2, 1.35 and 1.5 s
+        assert gif.n_frames == 4  # at 1, 1.15, 1.3 and 1.45 s
 
 
 def test_an_mp4(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
@@ -128,16 +140,27 @@ def test_an_mp4(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] 
     assert next(read_frames("run.mp4"))["size"] == (320, 240)
     assert tltlc("replay", FILE, "-o", "fast.mp4", "--view", "plan", "--size", "320x240", "--speed", "10").status == 0
     counted, seconds = count_frames_and_secs("fast.mp4")
-    assert counted == 7 and seconds == pytest.approx(7 * 0.045, abs=0.02)  # each third decision
+    assert counted == 10 and seconds == pytest.approx(10 / 30, abs=0.02)
+    assert tltlc("replay", FILE, "-o", "slow.mp4", "--view", "plan", "--size", "320x240", "--fps", "20").status == 0
+    counted, seconds = count_frames_and_secs("slow.mp4")
+    assert counted == 61 and seconds == pytest.approx(61 / 20, abs=0.02)
 
 
 def test_frames_show_the_view_and_the_strip(episode: Episode) -> None:
     for view in ("third_person", "top_down", "plan"):
-        one, other = frames(episode, [0, STEPS], view, (240, 200))  # type: ignore[arg-type]
+        one, other = frames(episode, [0.0, 3.0], view, (240, 200))  # type: ignore[arg-type]
         assert one.shape == (200, 240, 3) and one.dtype == np.uint8
         assert (one[:-STRIP] != other[:-STRIP]).any() and (one[-STRIP:] != other[-STRIP:]).any()
-    (again,) = frames(episode, [STEPS], "plan", (240, 200))
+    (again,) = frames(episode, [3.5], "plan", (240, 200))
     assert (again == other)[-STRIP:].all()
+
+
+def test_between_decisions_bodies_are_on_their_ways(episode: Episode) -> None:
+    moments = [film._moment(episode, time) for time in (0.0, 0.149, 0.15, 0.225, 3.0, 9.0)]
+    assert [row for row, _ in moments] == [0, 0, 1, 1, STEPS, STEPS]
+    assert moments[2][1] is episode.snapshots[1] and moments[-1][1] is episode.snapshots[-1]
+    y = [episode.snapshots[row].player.position[1] for row in (1, 2)]
+    assert moments[3][1].player.position[1] == pytest.approx(sum(y) / 2)
 
 
 def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
@@ -166,6 +189,9 @@ def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Epis
         (("-o", "run.mp4", "--size", "321x240"), "the width and the height of an .mp4 are even"),
         (("--size", "9x9"), "write WIDTHxHEIGHT, each from 160 to 4096"),
         (("--size", "big"), "write WIDTHxHEIGHT"),
+        (("-o", "run.gif", "--speed", "nan"), "write a number"),
+        (("-o", "run.gif", "--to", "inf"), "write a number"),
+        (("-o", "run.gif", "--from", "-1"), "range"),
         (("-o", "run.gif", "--from", "8", "--to", "9"), "there is nothing from 8 s to 9 s: the episode ends at 3.00 s"),
         ((), ""),
     ],
