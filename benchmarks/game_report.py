@@ -71,8 +71,9 @@ def speed(records: dict[str, Record]) -> str:
 
 CPU time of one process, a random action held for {HELD} decisions on average; bare, env and with spec in turns in each
 of {game.ROUNDS} rounds of {game.DECISIONS} decisions. *Bare*: Bullet with the bodies of the level, the player's
-velocity set and nine physics steps made. *Env*: all of the game, and the observation. *With spec*: the automaton and its reward
-too, and the resets of the episodes that it ends. *Map*: a look at the semantic map, and with its layers made.
+velocity set and nine physics steps made. *Env*: all of the game, and the observation. *With spec*: the automaton and
+its reward too, and the resets of the episodes that it ends. *Map*: a look at the semantic map, and one with its
+layers made.
 
 {table(header, body)}
 {_workers(records.get(game.WORKERS, {}))}
