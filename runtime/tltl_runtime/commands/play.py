@@ -61,7 +61,7 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
     env = RecordEpisode(make_env(path, variant or "v0", spec), "keyboard")
     try:
         shown = env.unwrapped.level  # type: ignore[attr-defined]
-        files = _Files(out, f"{shown.name}-{shown.variant}")
+        files = Files(out, f"{shown.name}-{shown.variant}")
         window = Window(f"{shown.name} {shown.variant}", _SIZE, side=True)
         renderer = Renderer(shown, *_SIZE)
         try:
@@ -73,8 +73,8 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
         env.close()
 
 
-class _Files:
-    """Where episodes are written: a file that is named, or new ones in a folder."""
+class Files:
+    """Where episodes are written: a file that is named, or new ones in a folder that is, else in the current one."""
 
     def __init__(self, out: Path | None, name: str) -> None:
         self._folder, self._name, self._replace = Path(), name, False
@@ -83,7 +83,7 @@ class _Files:
         elif out is not None:
             if not out.name.endswith(SUFFIX):
                 raise click.UsageError(
-                    f"--out is a folder or a name with {SUFFIX}, not `{out}`", click.get_current_context()
+                    f"--out is a folder or a name with {SUFFIX}, not `{out}`", click.get_current_context(silent=True)
                 )
             self._folder, self._name, self._replace = out.parent, out.name.removesuffix(SUFFIX), True
         if not os.access(self._folder, os.W_OK):

@@ -23,6 +23,8 @@ Save = Callable[[Episode], str]
 _IDLE: Final = (0, 0, 0, 0, 0)
 _STANDING: Final = 0.05
 """Seconds between two looks at the keys while the game stands still."""
+_SOON: Final = 1 / 60
+"""Seconds between two pictures, at least."""
 
 
 class KeyboardPlayer:
@@ -55,26 +57,29 @@ class KeyboardPlayer:
         snapshot, fspa = self._game.snapshot(), self._env.episode.fspa
         keys = self._still(snapshot, beginning(hud(snapshot, info, fspa), self._game.level, fspa), begins=True)
         over = False
+        due = monotonic()
         while not (keys.stop or keys.restart or over):
-            began = monotonic()
             _, _, terminated, truncated, info = self._env.step(list(keys.action))
             self._unsaved, over = True, terminated or truncated
             before, snapshot = snapshot, self._game.snapshot()
-            keys = self._move(before, snapshot, hud(snapshot, info, fspa), began)
+            keys = self._move(before, snapshot, hud(snapshot, info, fspa), due)
+            # A picture too many is made up for; a machine that is too slow for the game is not waited for.
+            due = max(due + DECISION, monotonic() - DECISION)
         if over:
             keys = self._end(snapshot, info)
         self._saved()
         return keys.restart and not keys.stop
 
     def _move(self, before: Snapshot, after: Snapshot, shown: Hud, began: float) -> Keys:
-        """Show the way from one snapshot to the next for as long as a decision takes, and return the keys then.
+        """Show the way from one snapshot to the next until the decision that ``began`` then is over; the keys then.
 
-        Where pictures take longer than that, one is shown and the game goes slower.
+        At least one picture is shown, however long it takes.
         """
-        while (share := (monotonic() - began) / DECISION) < 1.0:
-            self._show(between(before, after, share), shown)
-            self._window.wait(_STANDING / 2)
-        return self._keys()
+        while True:
+            self._show(between(before, after, min(1.0, (monotonic() - began) / DECISION)), shown)
+            self._window.wait(_SOON)
+            if monotonic() - began >= DECISION:
+                return self._keys()
 
     def _end(self, snapshot: Snapshot, info: dict[str, Any]) -> Keys:
         """The end screen, until the player stops or plays again."""

@@ -10,13 +10,18 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
+from tltl_runtime.commands.play import Files
+from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episode import Episode
 from tltl_runtime.stealth.episode_check import check, resimulate
 from tltl_runtime.stealth.episode_file import read_episode
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltlc.diagnostics.diagnostic import TltlError
 
 needs_screen = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 
@@ -131,3 +136,29 @@ def test_without_a_screen_there_is_a_way_out(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert "error[TLT0830]: no window can be opened here" in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_a_recording_finds_a_place_where_its_own_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    env = RecordEpisode(make_env("navigation"), "keyboard")
+    env.reset(seed=1)
+    env.step([1, 0, 0, 0, 0])
+    wanted, spare = tmp_path / "wanted", tmp_path / "spare"
+    wanted.mkdir()
+    spare.mkdir()
+    monkeypatch.setattr("tltl_runtime.commands.play.gettempdir", lambda: str(spare))
+    files = Files(wanted, "navigation-v0")
+    wanted.rmdir()
+    assert files.save(env.episode) == str(spare / "navigation-v0.episode.npz")
+    assert files.save(env.episode) == str(spare / "navigation-v0-2.episode.npz")
+    assert "TLT0005" in capsys.readouterr().err
+    assert len(read_episode(spare / "navigation-v0.episode.npz").actions) == 1
+    env.close()
+
+
+def test_where_to_record(tmp_path: Path) -> None:
+    with pytest.raises(click.UsageError, match=r"a folder or a name with \.episode\.npz"):
+        Files(tmp_path / "mine.txt", "x")
+    with pytest.raises(TltlError, match="TLT0005"):
+        Files(tmp_path / "nowhere" / "mine.episode.npz", "x")
