@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.level_file import load_level
+from tltl_runtime.stealth.sensors import SensorChoice
 from tltl_runtime.task import load_task
 from tltl_runtime.vector.env import WorkerVectorEnv
 from tltlc.automaton.fspa import Fspa
@@ -22,7 +22,7 @@ def make_vec(
     workers: int | None = None,
     *,
     spec: str | Path | Fspa | None = None,
-    sensors: Sensors | None = None,
+    sensors: SensorChoice | None = None,
     reward: RewardOptions | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
