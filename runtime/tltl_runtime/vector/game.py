@@ -24,6 +24,7 @@ def make_vec(
     spec: str | Path | Fspa | None = None,
     sensors: SensorChoice | None = None,
     reward: RewardOptions | None = None,
+    render_mode: str | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
     """``num_envs`` of what :func:`~tltl_runtime.stealth.env.make_env` makes, in ``workers`` processes.
@@ -32,7 +33,7 @@ def make_vec(
     """
     # Compiled once, and not by each worker for each of its environments.
     fspa = spec if isinstance(spec, Fspa) else load_task(load_level(level, variant).spec if spec is None else spec).fspa
-    make = partial(make_env, level, variant, fspa, sensors=sensors, reward=reward)
+    make = partial(make_env, level, variant, fspa, sensors=sensors, reward=reward, render_mode=render_mode)
     return WorkerVectorEnv([make] * num_envs, workers, names=[f"{level} {variant}"] * num_envs, **options)
 
 

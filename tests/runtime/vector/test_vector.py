@@ -110,7 +110,12 @@ def test_autoreset_in_the_next_step() -> None:
 
 def test_gymnasium_makes_them_by_their_ids() -> None:
     env = gymnasium.make_vec(
-        "tltl/Branching-v0", num_envs=3, vectorization_mode="vector_entry_point", variant="v1", workers=2
+        "tltl/Branching-v0",
+        num_envs=3,
+        vectorization_mode="vector_entry_point",
+        variant="v1",
+        workers=2,
+        render_mode="rgb_array",
     )
     assert isinstance(env, WorkerVectorEnv)
     observations, infos = env.reset(seed=3)
@@ -120,6 +125,8 @@ def test_gymnasium_makes_them_by_their_ids() -> None:
     assert env.observation_space.contains(observations)
     assert (rewards.shape, terminated.dtype, truncated.dtype) == ((3,), np.bool_, np.bool_)
     assert set(infos) == {each for key in SHARED for each in (key, f"_{key}")}
+    frames = env.render()
+    assert frames is not None and [frame.ndim for frame in frames] == [3, 3, 3]
     env.close()
     with pytest.raises(ClosedEnvironmentError):
         env.reset()
