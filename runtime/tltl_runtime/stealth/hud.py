@@ -11,7 +11,7 @@ from tltl_runtime.stealth.level import Level
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record
 
-Tone = Literal["plain", "quiet", "good", "bad", "warn"]
+Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
 """How something is to be taken, which a screen shows by colour."""
 
 KEYS: Final = ("WASD or arrows: walk   shift: sprint   C: crouch   space: jump", "V: view   R: again   Esc: stop")

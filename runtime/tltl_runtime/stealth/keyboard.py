@@ -108,7 +108,8 @@ class KeyboardPlayer:
         return keys
 
     def _show(self, snapshot: Snapshot, shown: Hud) -> None:
-        self._window.show(self._renderer.frame(snapshot, self._view), shown)
+        names = self._renderer.names(snapshot, self._view)
+        self._window.show(self._renderer.frame(snapshot, self._view), shown, names)
 
     def _saved(self) -> str | None:
         """Save what was played and is not saved yet."""

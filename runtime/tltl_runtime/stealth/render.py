@@ -12,7 +12,7 @@ import numpy as np
 import pybullet
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.camera import Camera, View, camera
+from tltl_runtime.stealth.camera import Camera, View, camera, pixels
 from tltl_runtime.stealth.cone import Field
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
@@ -66,6 +66,27 @@ class Renderer:
         if self.samples > 1:
             picture = picture.reshape(self.height, self.samples, self.width, self.samples, 3).mean(axis=(1, 3))
         return (picture.clip(0.0, 1.0) * 255 + 0.5).astype(np.uint8)
+
+    def names(self, snapshot: Snapshot, view: View = "third_person") -> list[tuple[str, float, float]]:
+        """The names of switches, exits, shut barriers and enemies, and where in the picture each is, in pixels."""
+        eye = camera(self.level, view, snapshot.player.position, self.width / self.height)
+        named = [(each.name, each.position, 0.3) for each in self.level.switches]
+        named += [(each.name, each.position, 2.7) for each in self.level.exits]
+        named += [
+            (barrier.name, _top(barrier.box), 0.1)
+            for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True)
+            if not is_open
+        ]
+        named += [(each.name, at, 2.0) for each, at in zip(self.level.enemies, snapshot.enemies, strict=True)]
+        if not named:
+            return []
+        places = np.array([(x, y, z + above) for _, (x, y, z), above in named])
+        where = pixels(eye, places, self.width, self.height)
+        shown = (where >= 0).all(axis=1) & (where < (self.width, self.height)).all(axis=1)
+        shown &= (places - np.array(eye.eye)) @ (np.array(eye.target) - np.array(eye.eye)) > 0
+        return [
+            (name, float(x), float(y)) for (name, *_), (x, y), seen in zip(named, where, shown, strict=True) if seen
+        ]
 
     def _shot(self, eye: Camera) -> Canvas:
         """The bodies alone, with floor and background."""
@@ -121,6 +142,11 @@ class Renderer:
         x, y, z = snapshot.player.position
         height = self._kind.crouched_height if snapshot.player.crouching else self._kind.height
         return any(blocked(eye.eye, (x, y, z + share * height), (corners(box),)) for share in (0.5, 0.95))
+
+
+def _top(box: Box) -> Point:
+    """The middle of the upper side."""
+    return (box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, box.high[2]
 
 
 def _is_front(box: Box, bounds: Box) -> bool:

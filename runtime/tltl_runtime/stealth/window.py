@@ -6,6 +6,7 @@ No other module imports pygame; docs/adr/0010-pictures-and-windows.md says why i
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -28,14 +29,19 @@ _TONES: Final[dict[Tone, tuple[int, int, int]]] = {
     "good": (88, 214, 141),
     "bad": (255, 99, 99),
     "warn": (255, 201, 71),
+    "dark": (16, 20, 30),
 }
 _PANEL: Final = (16, 20, 30)
 _TITLE_STRENGTH: Final = 215
 _LINE: Final = 20
 """The height of a line, in pixels."""
+_SMALL: Final = 20
 _SIDE: Final = 330
 """The width of what stands beside the picture."""
 _TRACK: Final = (60, 68, 84)
+
+
+Names = Sequence[tuple[str, float, float]]
 
 
 @record
@@ -114,11 +120,13 @@ class Window:
         )
         return Keys(action, restart, stop, view)
 
-    def show(self, frame: NDArray[np.uint8], hud: Hud | None = None) -> None:
-        """Show a picture, (height, width, 3), with the head-up display over it."""
+    def show(self, frame: NDArray[np.uint8], hud: Hud | None = None, names: Names = ()) -> None:
+        """Show a picture, (height, width, 3), names at their places in its pixels, and the head-up display."""
         pygame = self._pygame
         picture = pygame.image.frombuffer(np.ascontiguousarray(frame).tobytes(), frame.shape[1::-1], "RGB")
         self._surface.blit(pygame.transform.smoothscale(picture, self.size), (self._side, 0))
+        for name, x, y in names:
+            self._draw_name(name, x * self.size[0] / frame.shape[1], y * self.size[1] / frame.shape[0])
         if hud is not None:
             self._draw_side(hud)
             if hud.title:
@@ -129,6 +137,15 @@ class Window:
         """Wait until this long after the last call, and let the window live meanwhile."""
         self._pygame.event.pump()
         self._clock.tick(1 / seconds)
+
+    def _draw_name(self, name: str, x: float, y: float) -> None:
+        """A name above a place in the picture, light with a dark edge, to be read on anything."""
+        light, dark = (self._text(name, tone, _SMALL) for tone in ("plain", "dark"))
+        left = self._side + round(x) - light.get_width() // 2
+        top = round(y) - light.get_height()
+        for across, down in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            self._surface.blit(dark, (left + across, top + down))
+        self._surface.blit(light, (left, top))
 
     # The head-up display
 

@@ -51,8 +51,9 @@ def test_it_tells_who_sees_the_player(played: Any, modes: tuple[str, ...], sees:
 
 def test_a_long_formula_is_cut(played: Any) -> None:
     _, snapshot, info = played
-    text = "".join(f"signal s{n}: bool\n" for n in range(40))
-    (fspa,) = compile_text(text + "spec long { keep " + " & ".join(f"s{n}" for n in range(40)) + " }")
+    names = [f"seen_by_{number}" for number in range(40)]
+    text = "".join(f"signal {name}: bool\n" for name in names)
+    (fspa,) = compile_text(f"{text}spec long {{ keep {' & '.join(names)} }}")
     shown = hud(snapshot, info, fspa)
     assert len(shown.lines) == 12 and shown.lines[-1].text.endswith(" …")
 

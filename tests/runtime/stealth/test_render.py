@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -135,6 +136,23 @@ def test_pixels_and_sight_lines_agree() -> None:
         lines = sight_lines(eye, 30, 20)
         places = np.array(eye.eye) + (eye.near + 7.0) * lines[[3, 11], [4, 25]]
         assert pixels(eye, places, 30, 20) == pytest.approx(np.array([[4.5, 3.5], [25.5, 11.5]]), abs=1e-3)
+
+
+def test_names_are_where_things_are(drawn: tuple[Snapshot, Renderer]) -> None:
+    snapshot, renderer = drawn
+    level = renderer.level
+    shown = {name: (x, y) for name, x, y in renderer.names(snapshot, "top_down")}
+    things = (*level.switches, *level.exits, *level.barriers, *level.enemies)
+    assert shown.keys() == {thing.name for thing in things}
+    # North is up and east is right.
+    for axis, sign in ((0, 1), (1, -1)):
+        order = sorted(level.switches, key=lambda switch: sign * switch.position[axis])
+        found = [shown[switch.name][axis] for switch in order]
+        assert all(a < b + 0.5 for a, b in pairwise(found))
+    opened = renderer.names(changed(snapshot, open=(True,) * len(snapshot.open)), "top_down")
+    assert not {name for name, *_ in opened} & {barrier.name for barrier in level.barriers}
+    near = renderer.names(snapshot)
+    assert all(0 <= x < SIZE[0] and 0 <= y < SIZE[1] for _, x, y in near)
 
 
 def test_finer_samples_leave_the_size() -> None:
