@@ -8,11 +8,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-from benchmarks import batch, compile_table, game, monitors, process, report, safety
+from benchmarks import batch, compile_table, expert, game, monitors, process, report, safety
 from benchmarks.machine import facts
 from benchmarks.store import Store
 
-SECTIONS = {module.SECTION: module for module in (process, monitors, batch, game, safety, compile_table)}
+SECTIONS = {module.SECTION: module for module in (process, monitors, batch, game, safety, expert, compile_table)}
 
 
 def main() -> None:

@@ -6,7 +6,18 @@ import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from benchmarks import batch, compile_table, game, game_report, monitors, process, safety, summary
+from benchmarks import (
+    batch,
+    compile_table,
+    expert,
+    expert_report,
+    game,
+    game_report,
+    monitors,
+    process,
+    safety,
+    summary,
+)
 from benchmarks.markdown import MISSED, met_or_missed, spread, table
 from benchmarks.reference import references
 from benchmarks.store import Record, Store
@@ -44,6 +55,7 @@ def render(store: Store) -> str:
         _batch(store.section(batch.SECTION)),
         game_report.speed(store.section(game.SECTION)),
         game_report.safe(store.section(safety.SECTION)),
+        expert_report.section(store.section(expert.SECTION)),
     ]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
@@ -128,6 +140,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
         )
     yield from _batch_goals(store.section(batch.SECTION))
     yield from game_report.goals(store)
+    yield from expert_report.goals(store)
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:
