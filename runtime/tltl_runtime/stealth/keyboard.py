@@ -115,5 +115,7 @@ class KeyboardPlayer:
         """Save what was played and is not saved yet."""
         if not self._unsaved:
             return None
+        file = self._save(self._env.episode)
+        # Not before: where saving is interrupted, it is done again.
         self._unsaved = False
-        return self._save(self._env.episode)
+        return file

@@ -36,12 +36,13 @@ _TITLE_STRENGTH: Final = 215
 _LINE: Final = 20
 """The height of a line, in pixels."""
 _SMALL: Final = 20
+"""The height of names in the picture."""
 _SIDE: Final = 330
 """The width of what stands beside the picture."""
 _TRACK: Final = (60, 68, 84)
 
-
 Names = Sequence[tuple[str, float, float]]
+"""Names, and where they stand: pixels from the left and from the top."""
 
 
 @record
