@@ -67,9 +67,11 @@ def contact(feet: Point, height: float, radius: float, low: Point, high: Point) 
 
 def reaches(feet: Point, height: float, place: Point, mover: Mover, reach: float) -> bool:
     """Whether the box of a mover is within about ``reach`` of an upright capsule."""
-    low, high = around(place, mover.size)
-    return all(low[axis] - reach <= feet[axis] <= high[axis] + reach for axis in (0, 1)) and (
-        low[2] - reach - height <= feet[2] <= high[2] + reach
+    (x, y, z), (a, b, c), (width, depth, rise) = feet, place, mover.size
+    return (
+        abs(x - a) <= width / 2 + reach
+        and abs(y - b) <= depth / 2 + reach
+        and c - rise / 2 - reach - height <= z <= c + rise / 2 + reach
     )
 
 

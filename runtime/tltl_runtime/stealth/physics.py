@@ -350,18 +350,18 @@ class World:
         """Advance one decision; physics step by physics step where the player is near a mover, else at once."""
         x, y, z = self._state.position
         reach = 1.5
-        near = any(
-            reaches((x, y, z), self.kind.height, place, mover, reach + mover.speed * DECISION)
-            for place, mover in zip(self._places, self.level.movers, strict=True)
-        )
+        near = []
+        for index, (place, mover) in enumerate(zip(self._places, self.level.movers, strict=True)):
+            if reaches((x, y, z), self.kind.height, place, mover, reach + mover.speed * DECISION):
+                near.append(index)
+            else:
+                self._place(index, self._clocks[index] + DECISION)
         if near:
             self._time(1)
             for _ in range(SUBSTEPS):
-                self._push(DECISION / SUBSTEPS)
+                self._push(near, DECISION / SUBSTEPS)
         else:
             self._time(SUBSTEPS)
-            for index in range(len(self._movers)):
-                self._place(index, self._clocks[index] + DECISION)
             pybullet.stepSimulation(physicsClientId=self._client)
 
     def _time(self, substeps: int) -> None:
@@ -378,18 +378,19 @@ class World:
         self._places[index] = place = self._ways[index].at(clock)
         pybullet.resetBasePositionAndOrientation(self._movers[index], place, UPRIGHT, physicsClientId=self._client)
 
-    def _push(self, seconds: float) -> None:
-        """One physics step with movers: each goes on and pushes; it waits where the player has no room to be pushed to.
+    def _push(self, near: Sequence[int], seconds: float) -> None:
+        """One physics step with the movers that are near: each goes on and pushes.
 
-        Bullet sees a box that is put elsewhere, not one that moves, so the push is given to the player as velocity.
-        A box that went on regardless would press the player through a wall, however slowly.
+        It waits where the player has no room to be pushed to.  Bullet sees a box that is put elsewhere,
+        not one that moves, so the push is given to the player as velocity.  A box that went on regardless would press
+        the player through a wall, however slowly.
         """
         client = self._client
         height, radius = self._height(self._body == self._bodies[True]), self.kind.radius
         (x, y, z), _ = pybullet.getBasePositionAndOrientation(self._body, physicsClientId=client)
         feet = (x, y, z - height / 2)
-        for index, mover in enumerate(self.level.movers):
-            clock, place = self._clocks[index], self._places[index]
+        for index in near:
+            mover, clock, place = self.level.movers[index], self._clocks[index], self._places[index]
             self._place(index, clock + seconds)
             deep, normal = contact(feet, height, radius, *around(self._places[index], mover.size))
             if deep <= 0.0 or deep <= contact(feet, height, radius, *around(place, mover.size))[0]:

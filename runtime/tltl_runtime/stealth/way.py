@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from itertools import pairwise
 from math import sqrt
 
@@ -22,13 +23,14 @@ class Way:
             length = sqrt(sum((b - a) ** 2 for a, b in zip(start, end, strict=True)))
             self._legs.append((self._lap, start, end, length / mover.speed))
             self._lap += mover.pause + length / mover.speed
+        self._begins = [leg[0] for leg in self._legs]
 
     def at(self, clock: float) -> Point:
         """The centre at ``clock`` seconds; each leg begins with the pause at its first point."""
         if self._lap <= 0.0:
             return self._first
         time = clock % self._lap
-        begin, start, end, duration = next(leg for leg in reversed(self._legs) if leg[0] <= time)
+        begin, start, end, duration = self._legs[bisect_right(self._begins, time) - 1]
         share = 0.0 if duration <= 0.0 else min(1.0, max(0.0, (time - begin - self._pause) / duration))
         return (
             start[0] + share * (end[0] - start[0]),
