@@ -62,6 +62,8 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
     try:
         shown = env.unwrapped.level  # type: ignore[attr-defined]
         files = Files(out, f"{shown.name}-{shown.variant}")
+        # A spec that asks for what the level does not have is told before there is a window.
+        env.reset()
         window = Window(f"{shown.name} {shown.variant}", _SIZE, side=True)
         renderer = Renderer(shown, *_SIZE)
         try:

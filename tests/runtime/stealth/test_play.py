@@ -138,6 +138,16 @@ def test_without_a_screen_there_is_a_way_out(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_a_spec_that_the_level_cannot_supply_opens_no_window(tmp_path: Path) -> None:
+    (tmp_path / "alien.tltl").write_text(
+        "signal fuel: number in [0, 1]\npredicate full in [-1, 1] = fuel\nspec alien { keep full }\n", encoding="utf-8"
+    )
+    command = [sys.executable, "-m", "tltlc", "play", "navigation", "--spec", "alien.tltl"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=30)
+    assert done.returncode == 1
+    assert "TLT0611" in done.stderr and "`fuel`" in done.stderr
+
+
 def test_a_recording_finds_a_place_where_its_own_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
