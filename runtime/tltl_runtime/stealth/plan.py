@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.episode import End, Episode
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.reach import Reach
-from tltl_runtime.stealth.space import CELL
 
 _SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
 BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
@@ -123,7 +122,7 @@ def _add_reach(axes: Any, reach: Reach) -> None:
     west, south = reach.origin
     red = np.zeros((rows, columns, 4))
     red[..., 0], red[..., 3] = 0.86, np.where(reach.ground, 0.0, 0.3)
-    extent = (west, west + columns * CELL, south, south + rows * CELL)
+    extent = (west, west + columns * reach.cell, south, south + rows * reach.cell)
     axes.imshow(red, origin="lower", extent=extent, interpolation="nearest", zorder=2)
 
 

@@ -26,7 +26,7 @@ import numpy as np
 
 from tltl_runtime.stealth.level import Box, Level, Mover, Point
 from tltl_runtime.stealth.player import PlayerKind
-from tltl_runtime.stealth.space import Field, Space, SpaceGrid, distances, flood
+from tltl_runtime.stealth.space import Field, Space, SpaceGrid, distances, flood, span
 from tltlc.record import record
 
 NEAR: Final = 1.0
@@ -47,8 +47,8 @@ class Reach:
     """What can be reached: ``switches`` and ``barriers`` (those that open) by name, and how near one gets to what.
 
     ``distances`` has, in metres, the least distance from the feet to each entity that stays where it is; to those
-    that move it is 0.  ``ground`` [rows, columns] are the cells, 0.25 m wide from ``origin`` (west, south) on, with
-    anything that one can stand on; rows go north.
+    that move it is 0.  ``ground`` [rows, columns] are the cells, ``cell`` metres wide from ``origin`` (west, south) on,
+    with anything that one can stand on; rows go north.
     """
 
     switches: tuple[str, ...]
@@ -56,6 +56,7 @@ class Reach:
     distances: Mapping[str, float]
     ground: Field
     origin: tuple[float, float]
+    cell: float
 
     def reaches(self, entity: str) -> bool:
         """Whether one gets within a metre of an entity."""
@@ -91,6 +92,7 @@ def reachable(
         },
         ground=search.ground(),
         origin=search.grid.origin,
+        cell=search.grid.cell,
     )
 
 
@@ -151,31 +153,46 @@ class _Search:
             barrier.box for barrier in self.level.barriers if barrier.kind == "solid" and barrier.name not in opened
         ]
         free = self.grid.free([*self._solids, *shut])
-        waiting = {height for height, ground in self._ground.items() if ground.any()}
+        waiting = {height: ground.copy() for height, ground in self._ground.items() if ground.any()}
         while waiting:
-            height = waiting.pop()
-            flight = self._flight(free, height)
-            self._space |= flight
+            height, fresh = waiting.popitem()
+            self._walk(free, height, fresh)
+            window, flight = self._flight(free, height, fresh)
+            self._space[: len(flight)][:, window[0], window[1]] |= flight
             for (lowest, top), near in self._tops.items():
                 if lowest > height + self.lift + _ROUNDING:
                     continue
                 known = self._ground.setdefault(top, np.zeros_like(near))
-                new = near & flight[self.grid.slabs(lowest - _EDGE_DEPTH, top + _TOUCH)].any(axis=0) & ~known
+                met = flight[self.grid.slabs(lowest - _EDGE_DEPTH, top + _TOUCH)[: len(flight)]].any(axis=0)
+                new = met & near[window] & ~known[window]
                 if new.any():
-                    known |= new
-                    waiting.add(top)
+                    known[window] |= new
+                    waiting.setdefault(top, np.zeros_like(near))[window] |= new
         return self._space
 
-    def _flight(self, free: Space, height: float) -> Space:
-        """Where a jump, a leap or a fall from the ground of one height leads."""
-        grid, ground = self.grid, self._ground[height]
-        afar = distances(ground)
-        times = np.array([self._time(height - low) for low in grid.lows])
-        allowed = free & (afar[None] <= self.kind.sprint_speed * times[:, None, None])
-        allowed &= (grid.highs <= height + self.lift + _ROUNDING)[:, None, None]
-        seeds = np.zeros(grid.shape, dtype=np.bool_)
-        seeds[grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)] = ground
-        return flood(allowed, seeds)
+    def _walk(self, free: Space, height: float, fresh: Field) -> None:
+        """Add to ground that is ``fresh`` what is side by side with it, at the same height."""
+        same = np.logical_or.reduce([near for (_, top), near in self._tops.items() if top == height] or [fresh])
+        same &= free[self.grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)].any(axis=0)
+        fresh |= flood((same | fresh)[None], fresh[None])[0] & ~self._ground[height]
+        self._ground[height] |= fresh
+
+    def _flight(self, free: Space, height: float, ground: Field) -> tuple[tuple[slice, slice], Space]:
+        """Where a jump, a leap or a fall from some ground leads: the rows and columns looked at, and the space there.
+
+        That space has the slabs from the lowest up to the greatest height of a jump.
+        """
+        grid = self.grid
+        times = np.array([self._time(height - low) for low in grid.lows[grid.highs <= height + self.lift + _ROUNDING]])
+        leaps = self.kind.sprint_speed * times / grid.cell
+        most = int(leaps[0]) + 2
+        inner = span(np.any(ground, axis=1)), span(np.any(ground, axis=0))
+        rows, columns = (slice(max(0, part.start - most), part.stop + most) for part in inner)
+        afar = distances(ground[rows, columns], most)
+        allowed = free[: len(leaps)][:, rows, columns] & (afar[None] <= leaps[:, None, None])
+        seeds = np.zeros_like(allowed)
+        seeds[grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)[: len(leaps)]] = ground[rows, columns]
+        return (rows, columns), flood(allowed, seeds)
 
     def _time(self, drop: float) -> float:
         """The longest time from ground to ``drop`` metres below it, by a jump that lifts the feet all the way up."""

@@ -18,7 +18,10 @@ from tltl_runtime.stealth.level import Box, Point
 from tltl_runtime.stealth.player import PlayerKind
 
 CELL: Final = 0.25
-"""Metres to a side of a cell."""
+"""Metres to a side of a cell; twice that, and so on, in levels so large that there would be too many."""
+
+_MOST_BOXES: Final = 30_000_000
+"""Of space, in all slabs."""
 
 _WIDTHS: Final = (0.25, 0.15)
 """How far a box may be from the middle of the body to be in its way, in metres; the radius of the body is 0.3.
@@ -39,20 +42,24 @@ Space = NDArray[np.bool_]
 class SpaceGrid:
     """The cells and slabs of a level; ``cuts`` are heights at which slabs must end, beside those of the boxes.
 
-    ``lows`` and ``highs`` [slabs] are the ends of the slabs, in metres, upwards.
+    ``cell`` is the side of a cell in metres; ``west`` [columns] and ``south`` [rows] are where they begin, ``lows`` and
+    ``highs`` [slabs] the ends of the slabs, in metres, upwards.
     """
 
     def __init__(self, bounds: Box, boxes: Iterable[Box], cuts: Iterable[float], kind: PlayerKind) -> None:
         (x0, y0, z0), (x1, y1, z1) = bounds.low, bounds.high
         self.origin = (x0, y0)
-        self.west = x0 + CELL * np.arange(int(np.ceil((x1 - x0) / CELL - 1e-6)))
-        self.south = y0 + CELL * np.arange(int(np.ceil((y1 - y0) / CELL - 1e-6)))
         self._widths = [(width, kind.radius - sqrt(kind.radius**2 - width**2)) for width in _WIDTHS]
         """Each with how much shorter the body is there, at either end."""
         self._height = kind.crouched_height
         ends = {z for box in boxes for _, shorter in self._widths for z in self._in_the_way(box, shorter)}
         inside = sorted({round(z, 6) for z in (*ends, *cuts) if z0 < z < z1})
         self.lows, self.highs = np.array([z0, *inside]), np.array([*inside, z1])
+        self.cell = CELL
+        while len(self.lows) * (x1 - x0) * (y1 - y0) > _MOST_BOXES * self.cell**2:
+            self.cell *= 2
+        self.west = x0 + self.cell * np.arange(int(np.ceil((x1 - x0) / self.cell - 1e-6)))
+        self.south = y0 + self.cell * np.arange(int(np.ceil((y1 - y0) / self.cell - 1e-6)))
         self.shape = (len(self.lows), len(self.south), len(self.west))
 
     def free(self, boxes: Iterable[Box]) -> Space:
@@ -60,20 +67,20 @@ class SpaceGrid:
         free: Space = np.ones(self.shape, dtype=np.bool_)
         for box in boxes:
             # The point of a cell that is farthest away decides: only where all of a cell is taken, none of it is free.
-            dx = np.maximum(np.maximum(box.low[0] - self.west, self.west + CELL - box.high[0]), 0.0)
-            dy = np.maximum(np.maximum(box.low[1] - self.south, self.south + CELL - box.high[1]), 0.0)
-            apart = dx[None, :] ** 2 + dy[:, None] ** 2
+            dx = np.maximum(np.maximum(box.low[0] - self.west, self.west + self.cell - box.high[0]), 0.0)
+            dy = np.maximum(np.maximum(box.low[1] - self.south, self.south + self.cell - box.high[1]), 0.0)
+            rows, columns = span(dy < max(_WIDTHS)), span(dx < max(_WIDTHS))
+            apart = dx[None, columns] ** 2 + dy[rows, None] ** 2
             for width, shorter in self._widths:
                 low, high = self._in_the_way(box, shorter)
-                slabs = np.flatnonzero((self.lows >= low - _ROUNDING) & (self.highs <= high + _ROUNDING))
-                if len(slabs):
-                    free[slabs[0] : slabs[-1] + 1] &= apart >= width * width
+                slabs = span((self.lows >= low - _ROUNDING) & (self.highs <= high + _ROUNDING))
+                free[slabs, rows, columns] &= apart >= width * width
         return free
 
     def over(self, box: Box, reach: float) -> Field:
         """The cells of which any point is within ``reach`` of a box, seen from above."""
-        dx = np.maximum(np.maximum(box.low[0] - self.west - CELL, self.west - box.high[0]), 0.0)
-        dy = np.maximum(np.maximum(box.low[1] - self.south - CELL, self.south - box.high[1]), 0.0)
+        dx = np.maximum(np.maximum(box.low[0] - self.west - self.cell, self.west - box.high[0]), 0.0)
+        dy = np.maximum(np.maximum(box.low[1] - self.south - self.cell, self.south - box.high[1]), 0.0)
         found: Field = dx[None, :] ** 2 + dy[:, None] ** 2 <= reach * reach
         return found
 
@@ -87,8 +94,8 @@ class SpaceGrid:
         if not space.any():
             return float("inf")
         slabs, rows, columns = np.nonzero(space)
-        dx = np.maximum(np.maximum(self.west[columns] - point[0], point[0] - self.west[columns] - CELL), 0.0)
-        dy = np.maximum(np.maximum(self.south[rows] - point[1], point[1] - self.south[rows] - CELL), 0.0)
+        dx = np.maximum(np.maximum(self.west[columns] - point[0], point[0] - self.west[columns] - self.cell), 0.0)
+        dy = np.maximum(np.maximum(self.south[rows] - point[1], point[1] - self.south[rows] - self.cell), 0.0)
         dz = np.maximum(np.maximum(self.lows[slabs] - point[2], point[2] - self.highs[slabs]), 0.0)
         return float(np.sqrt((dx * dx + dy * dy + dz * dz).min()))
 
@@ -122,15 +129,26 @@ def _runs(free: Space) -> tuple[NDArray[np.int32], int]:
     return ids, int(ids.flat[-1]) + 1
 
 
-def distances(field: Field) -> NDArray[np.float64]:
-    """From each cell, the distance in metres to the nearest cell of a field, between their nearest points."""
+def distances(field: Field, most: int) -> NDArray[np.float64]:
+    """From each cell, the distance in cells to the nearest one of a field, between their nearest points.
+
+    It is infinite where it is ``most`` or more.
+    """
     rows, columns = field.shape
-    across = np.full((rows, columns), np.inf)
-    for row in np.flatnonzero(field.any(axis=1)):
-        there = np.flatnonzero(field[row])
-        apart = np.abs(np.arange(columns)[:, None] - there[None, :]).min(axis=1)
-        across[row] = np.maximum(apart - 1, 0)
-    apart = np.maximum(np.abs(np.arange(rows)[:, None] - np.arange(rows)[None, :]) - 1, 0)
-    squares = (across[None, :, :] ** 2 + (apart**2)[:, :, None]).min(axis=1)
-    found: NDArray[np.float64] = CELL * np.sqrt(squares)
+    places = np.arange(columns, dtype=np.float64)
+    left = np.maximum.accumulate(np.where(field, places, -np.inf), axis=1)
+    right = np.minimum.accumulate(np.where(field, places, np.inf)[:, ::-1], axis=1)[:, ::-1]
+    across = np.maximum(np.minimum(places - left, right - places) - 1.0, 0.0) ** 2
+    squares = across.copy()
+    for offset in range(1, min(most + 1, rows)):
+        apart = float((offset - 1) ** 2)
+        np.minimum(squares[offset:], across[:-offset] + apart, out=squares[offset:])
+        np.minimum(squares[:-offset], across[offset:] + apart, out=squares[:-offset])
+    found: NDArray[np.float64] = np.where(squares < most * most, np.sqrt(squares), np.inf)
     return found
+
+
+def span(which: NDArray[np.bool_]) -> slice:
+    """From the first true element to the last."""
+    indices = np.flatnonzero(which)
+    return slice(int(indices[0]), int(indices[-1]) + 1) if len(indices) else slice(0, 0)

@@ -12,8 +12,8 @@ from tltl_runtime.stealth.level_file import level_names, load_level, variants
 from tltl_runtime.stealth.level_parts import enclosure
 from tltl_runtime.stealth.physics import World
 from tltl_runtime.stealth.player import PlayerKind
-from tltl_runtime.stealth.reach import highest_lift, reachable
-from tltl_runtime.stealth.space import CELL, distances, flood
+from tltl_runtime.stealth.reach import Reach, highest_lift, reachable
+from tltl_runtime.stealth.space import distances, flood
 from tltlc.record import replace
 
 BOUNDS = Box((0.0, 0.0, -0.5), (12.0, 5.0, 4.0))
@@ -111,7 +111,7 @@ def test_shipped_levels(name: str, variant: str) -> None:
         assert not reach.reaches("s2") and not reach.reaches("exit")
         # Nothing behind the block: it begins 11.6 m from the west.
         columns = np.flatnonzero(reach.ground.any(axis=0))
-        assert reach.origin[0] + CELL * (columns.max() + 1) < 11.6
+        assert reach.origin[0] + reach.cell * (columns.max() + 1) < 11.6
     else:
         assert all(reach.reaches(entity) for entity in reach.distances)
         assert len(reach.switches) == len(level.switches) and len(reach.barriers) == len(level.barriers)
@@ -122,7 +122,8 @@ def test_jumps_in_the_physics_stay_below_the_lift() -> None:
     rng = np.random.default_rng(1)
     for top, possible in ((1.1, True), (lift + 0.02, False)):
         level = room(Box((6.0, 0.2, 0.0), (11.8, 4.8, top)))
-        assert reachable(level, without=()).ground[:, int(8.0 / CELL)].any() == possible
+        reach = reachable(level)
+        assert reach.ground[:, int(8.0 / reach.cell)].any() == possible
         with closing(World(level)) as world:
             landed = 0
             for attempt in range(40):
@@ -136,6 +137,11 @@ def test_jumps_in_the_physics_stay_below_the_lift() -> None:
                 landed += grounded and feet > top - 0.2
                 assert world.player.position[2] <= lift + (top if possible else 0.0)
             assert bool(landed) == possible
+
+
+def stands(reach: Reach, x: float, y: float) -> bool:
+    """Whether there is ground to reach in the cell of a place."""
+    return bool(reach.ground[int((y - reach.origin[1]) / reach.cell), int((x - reach.origin[0]) / reach.cell)])
 
 
 @pytest.mark.parametrize(("name", "variant"), SHIPPED)
@@ -153,7 +159,7 @@ def test_nobody_stands_where_nobody_can(name: str, variant: str) -> None:
             world.step(action)
             x, y, _ = world.player.position
             if world.player.grounded:
-                assert reach.ground[int((y - reach.origin[1]) / CELL), int((x - reach.origin[0]) / CELL)]
+                assert stands(reach, x, y)
 
 
 def test_a_flood_goes_round_corners_and_through_nothing() -> None:
@@ -176,8 +182,9 @@ def test_a_flood_goes_round_corners_and_through_nothing() -> None:
 def test_distances_between_cells() -> None:
     field = np.zeros((6, 7), dtype=np.bool_)
     field[1, 2] = field[5, 6] = True
-    found = distances(field)
+    found = distances(field, 5)
     for row in range(6):
         for column in range(7):
             apart = [(max(abs(row - y) - 1, 0), max(abs(column - x) - 1, 0)) for y, x in ((1, 2), (5, 6))]
-            assert found[row, column] == pytest.approx(CELL * min(np.hypot(*each) for each in apart))
+            nearest = min(np.hypot(*each) for each in apart)
+            assert found[row, column] == (pytest.approx(nearest) if nearest < 5 else np.inf)

@@ -11,7 +11,6 @@ from tltl_runtime.stealth.level import Start
 from tltl_runtime.stealth.level_file import load_level
 from tltl_runtime.stealth.physics import World
 from tltl_runtime.stealth.reach import reachable
-from tltl_runtime.stealth.space import CELL
 from tltlc.record import replace
 
 BEHIND_THE_HURDLE = 16.0
@@ -40,7 +39,7 @@ def test_nobody_gets_past_the_stretched_block() -> None:
     assert BLOCK_2 - 0.35 < east < BLOCK_2
     reach = reachable(load_level("navigation", "v2"))
     for x, y, _ in found.places:
-        assert reach.ground[int((y - reach.origin[1]) / CELL), int((x - reach.origin[0]) / CELL)]
+        assert reach.ground[int((y - reach.origin[1]) / reach.cell), int((x - reach.origin[0]) / reach.cell)]
 
 
 def test_a_state_that_is_put_back_goes_on_as_it_did() -> None:
