@@ -23,8 +23,10 @@ def main() -> None:
     parser.add_argument("--timeout", type=float, default=20.0, metavar="SECONDS", help="for a peer on one formula")
     options = parser.parse_args()
     store = Store(fresh=options.fresh)
-    store.put("machine", "facts", facts())
-    store.put("machine", "options", {"peer_timeout_s": options.timeout})
+    if options.only is None or not store.section("machine"):
+        # What one section adds later, perhaps without the peers, must not describe how the others were measured.
+        store.put("machine", "facts", facts())
+        store.put("machine", "options", {"peer_timeout_s": options.timeout})
     for name, section in SECTIONS.items():
         if options.only in (None, name):
             section.measure(store, options.timeout, lambda text: print(text, file=sys.stderr, flush=True))
