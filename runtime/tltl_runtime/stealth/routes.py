@@ -27,7 +27,7 @@ _Edges = tuple[NDArray[np.intp], NDArray[np.intp], Seconds, NDArray[np.intp]]
 _DIRECTIONS: Final = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
 _CLIMB: Final = 1.0
 """The highest edge that a jump reaches."""
-_CLIMB_REACH, _DROP_REACH, _LEAP_REACH = 1.0, 1.0, 2.25
+_CLIMB_REACH, _DROP_REACH, _LEAP_REACH = 1.0, 1.0, 3.0
 """How far from where a climb, a drop and a leap begin they end at most, in metres from centre to centre."""
 _JUMP_TIME: Final = 0.3
 """Seconds that a jump costs beside its way."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,37 @@ from tltl_runtime.stealth.episode import Episode
 from tltl_runtime.stealth.expert import Expert, play_episode
 from tltl_runtime.stealth.game import BRANCHES
 from tltl_runtime.stealth.recording import RecordEpisode
+
+TOWER = """
+doc = "Two platforms, a gap of 2.5 m, and a third."
+spec = "tower.tltl:tower"
+[bounds]
+at = [8.0, 4.0, -0.5]
+size = [16.0, 8.0, 6.5]
+[start]
+at = [1.0, 2.0, 0.0]
+spread = 0.3
+[variants]
+v0 = []
+[[platform]]
+name = "low"
+at = [3.5, 4.0, 0.0]
+size = [2.0, 7.0, 1.0]
+[[platform]]
+name = "high"
+at = [5.5, 6.0, 0.0]
+size = [2.0, 3.0, 1.9]
+[[platform]]
+name = "far"
+at = [10.5, 6.0, 0.0]
+size = [3.0, 3.0, 1.9]
+[[switch]]
+name = "top"
+at = [10.8, 6.0, 1.9]
+[[exit]]
+name = "out"
+at = [14.5, 1.0, 0.0]
+"""
 
 
 @contextmanager
@@ -92,3 +124,14 @@ def test_it_stands_still_where_the_spec_sends_it_nowhere() -> None:
     env.reset(seed=0)
     assert expert.act() == (0, 0, 0, 0, 0)
     env.close()
+
+
+def test_it_plays_a_level_it_was_not_made_for(tmp_path: Path) -> None:
+    """Up two steps of a metre, over a gap that only a sprint carries across, and down again."""
+    (tmp_path / "tower.tltl").write_text(
+        "import spatial\nentity top, out\nspec tower { limit 100 steps\n reach near(top) then near(out) }\n"
+    )
+    (tmp_path / "tower.toml").write_text(TOWER)
+    with _expert(str(tmp_path / "tower.toml")) as (env, expert):
+        episode = _played(env, expert, 0)
+    assert episode.success and len(episode.actions) < 60
