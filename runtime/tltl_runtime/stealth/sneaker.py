@@ -35,6 +35,7 @@ _NEAR: Final = 1.6
 """To come so near to an enemy, in metres, is as bad as to be seen."""
 _EXTRA: Final = np.where(SPRINTS, np.float32(1.3), np.float32(1.0))
 """What a decision costs: stamina is worth something."""
+_WAYS_KEPT: Final = 32
 
 
 class Sneaker:
@@ -69,6 +70,7 @@ class Sneaker:
         return self._chosen(lattice, snapshot)
 
     def _chosen(self, lattice: Lattice, snapshot: Snapshot) -> Action:
+        """The action that the plan of this age values the most, from exactly where the player is."""
         player, kind = snapshot.player, PlayerKind()
         place = np.array([player.position[:2]])
         free = lattice.feasible(place)[:, 0]
@@ -87,10 +89,7 @@ class Sneaker:
         plan: list[tuple[Floats, Floats]] = []
         rest = way
         for decision in reversed(range(HORIZON)):
-            if seen is None:
-                standing = crouched = rest
-            else:
-                standing, crouched = (rest + seen[decision, stance] for stance in (0, 1))
+            standing, crouched = (rest, rest) if seen is None else (rest + seen[decision, 0], rest + seen[decision, 1])
             plan.append((standing, crouched))
             rest = np.where(there, np.float32(0), lattice.best(standing, crouched, _EXTRA))
         return plan[::-1]
@@ -113,7 +112,10 @@ class Sneaker:
         return price
 
     def _way(self, lattice: Lattice, shut: frozenset[int], goal: Point) -> Floats:
+        """Decisions from each place to the goal, where nobody watches."""
         key = (shut, goal)
         if key not in self._ways:
+            if len(self._ways) >= _WAYS_KEPT:
+                self._ways.clear()
             self._ways[key] = lattice.way_to(goal, ARRIVED)
         return self._ways[key]

@@ -28,6 +28,8 @@ MODELS: Final = 12
 """Of each enemy."""
 _SAME: Final = 0.02
 """Metres and radians by which a model and its enemy may differ."""
+_GUESSED: Final = 0.7
+"""The share of models that are given another guess where none was right."""
 _BURIED: Final = -1000.0
 """Where a player's feet are whom nobody sees."""
 
@@ -95,7 +97,9 @@ class Watch:
     def _outlook(self, models: Sequence[Guard], decisions: int, nobody: PlayerView) -> Outlook:
         different: dict[tuple[object, ...], tuple[Guard, int]] = {}
         for model in models:
-            key = model.state if not (model.kind.branches or model.mode == "search") else (id(model),)
+            # What draws goes another way each time; of others that are in the same state one will do.
+            draws = model.kind.branches or model.mode == "search"
+            key = (id(model),) if draws else model.state
             first, count = different.get(key, (model, 0))
             different[key] = (first, count + 1)
         poses = np.empty((len(different), decisions, 4))
@@ -113,7 +117,7 @@ class Watch:
         model.x, model.y, model.yaw = pose
         model.forget_way()
         if mode == before:
-            if mode == "patrol" and self._rng.random() < 0.7:
+            if mode == "patrol" and self._rng.random() < _GUESSED:
                 self._guess(model)
             return model
         model.mode = mode
@@ -128,8 +132,9 @@ class Watch:
         return model
 
     def _guess(self, model: Guard) -> None:
+        """Some point of the route that it may be on its way to, or some narrow place beside it."""
         model.leg = int(self._rng.integers(len(model.route)))
-        model.gap = model.next_gap() if model.kind.branches and self._rng.random() < 0.7 else None
+        model.gap = model.next_gap() if model.kind.branches and self._rng.random() < _GUESSED else None
 
     def _changed(self) -> Floor:
         """The floor as it is now, and the boxes that stop sight."""
