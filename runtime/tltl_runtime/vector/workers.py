@@ -17,6 +17,8 @@ from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
 
+_TO_START_S: Final = 120.0
+"""How long a worker may take to import what it needs and to make its environments, at the least."""
 _TO_END_S: Final = 5.0
 """How long a worker that is told to end, or was killed, may take."""
 
@@ -73,7 +75,8 @@ class Workers:
             for file in (ours.fileno(), process.sentinel):
                 self._selector.register(file, selectors.EVENT_READ, worker)
             self._asked[worker] = None
-        return [answer for answer in self.answers() if isinstance(answer, Loss)]
+        patience = max(self._timeout, _TO_START_S)
+        return [answer for answer in self.answers(patience) if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         """Tell all workers to do something, each with its own arguments, and wait for the answers."""
@@ -88,9 +91,10 @@ class Workers:
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):
             self._connections[worker].send((command, arguments))
 
-    def answers(self) -> list[Any]:
-        """Wait for what was asked."""
-        deadline = time.monotonic() + self._timeout
+    def answers(self, patience: float | None = None) -> list[Any]:
+        """Wait for what was asked, for ``timeout`` or ``patience`` seconds."""
+        patience = self._timeout if patience is None else patience
+        deadline = time.monotonic() + patience
         found: dict[int, Any] = {}
         while self._asked:
             ready = self._ready(deadline)
@@ -99,7 +103,7 @@ class Workers:
                 del self._asked[worker]
             if not ready:
                 for worker in list(self._asked):
-                    found[worker] = self._lost(worker, silent=True)
+                    found[worker] = self._lost(worker, silent=patience)
                     del self._asked[worker]
         return [found[worker] for worker in sorted(found)]
 
@@ -131,13 +135,13 @@ class Workers:
             pass
         return self._lost(worker)
 
-    def _lost(self, worker: int, *, silent: bool = False, traceback: str = "") -> Loss:
+    def _lost(self, worker: int, *, silent: float | None = None, traceback: str = "") -> Loss:
         process = self._processes[worker]
-        if not silent:
+        if silent is None:
             process.join(_TO_END_S)
         status = process.exitcode
         self._end(worker)
-        return Loss(worker, status, self._timeout if silent else None, traceback)
+        return Loss(worker, status, silent, traceback)
 
     def _end(self, worker: int) -> None:
         """Make sure that a worker is gone, and forget it."""
