@@ -54,24 +54,21 @@ class Walker:
         self._plan = Plan((), ())
         self._for: object = None
         self._followed = 0
-        self.searches = 0
 
     def act(self, snapshot: Snapshot, goal: Point) -> Action:
         """The next action on the way to ``goal``, or to the place nearest to it that there is a way to."""
         self._clocks.see(snapshot)
         purpose = (goal, snapshot.open)
-        if (
-            purpose != self._for
-            or self._followed >= min(_FOLLOWED, len(self._plan.actions))
-            or self._is_astray(snapshot)
-        ):
+        if purpose != self._for or self._is_played() or self._is_astray(snapshot):
             self._plan = self._search(snapshot, goal)
             self._for, self._followed = purpose, 0
-            self.searches += 1
         if not self._plan.actions:
             return STAY
         self._followed += 1
         return self._plan.actions[self._followed - 1]
+
+    def _is_played(self) -> bool:
+        return self._followed >= min(_FOLLOWED, len(self._plan.actions))
 
     def _is_astray(self, snapshot: Snapshot) -> bool:
         return dist(self._plan.places[self._followed - 1], snapshot.player.position) > _ASTRAY
@@ -85,8 +82,7 @@ class Walker:
         moves = self._moves(field, snapshot)
         ahead, kept = _LONG if len(moves) > len(_WALKS) else _SHORT
         swept = [self._clocks.swept(step) for step in range(ahead + LONGEST_FALL)]
-        near = [[box for box in boxes if _away(box, here) <= _BOXES] for boxes in swept]
-        return Foresight(motion, field, moves, near, ahead, kept).plan(snapshot.player)
+        return Foresight(motion, field, moves, swept, ahead, kept).plan(snapshot.player)
 
     def _moves(self, field: Field, snapshot: Snapshot) -> list[Move]:
         """The moves to choose from in this place."""
@@ -96,9 +92,8 @@ class Walker:
         moves = [Move(action) for action in _WALKS]
         if movers or player.crouching or any(leg.kind == "crouch" for leg in way):
             moves += [Move(action) for action in _CROUCHES]
-        headings = _headings(player.position, [(leg.kind in ("climb", "leap"), leg.place) for leg in way])
-        if movers:
-            headings |= _headings(player.position, [(True, leg.place) for leg in way])
+        # Past movers one may jump anywhere on the way, else where it asks for it.
+        headings = _headings(player.position, [(movers or leg.kind in ("climb", "leap"), leg.place) for leg in way])
         for x, y in sorted(headings):
             moves += [Move((x, y, 1, 0, sprint), hold) for sprint in (0, 1) for hold in _HOLDS]
         if any(leg.kind == "drop" for leg in way) or not player.grounded:
