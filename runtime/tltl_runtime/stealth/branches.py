@@ -138,7 +138,10 @@ def return_to_route() -> Node:
 
 @branch("check_gaps", rank=50, added=True)
 def check_gaps() -> Node:
-    """On patrol, visit a narrow place off the route after each of its legs; each is visited before any again."""
+    """On patrol, run to a narrow place off the route after each of its legs; each is visited before any again.
+
+    Its speed is between those of walking and chasing, for a walk there would leave the route unwatched for long.
+    """
 
     def is_due(guard: Guard) -> bool:
         return guard.gap is not None
@@ -146,7 +149,7 @@ def check_gaps() -> Node:
     def visit(guard: Guard) -> bool:
         guard.mode = "patrol"
         assert guard.gap is not None
-        guard.go(guard.gap, guard.kind.walk_speed)
+        guard.go(guard.gap, (guard.kind.walk_speed + guard.kind.chase_speed) / 2)
         if guard.arrived:
             guard.gap = None
         return False
