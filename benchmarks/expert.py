@@ -20,7 +20,7 @@ from benchmarks.store import ROOT, Record, Store, source_digest
 from benchmarks.wander import variants_of_all
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.expert import Expert
+    from tltl_runtime.stealth.expert.expert import Expert
     from tltl_runtime.stealth.game import Game
 
 SECTION = "expert"
@@ -51,7 +51,7 @@ def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
 def played(level: str, variant: str, care: str, episodes: int) -> Record:
     """Episodes of the seeds from 0 on: outcomes by the barrier that opened by chance, ``""`` where there is none."""
     from tltl_runtime.stealth.env import make_env
-    from tltl_runtime.stealth.expert import Expert
+    from tltl_runtime.stealth.expert.expert import Expert
 
     env = make_env(level, variant)
     expert = Expert(env, careful=care == "careful")
@@ -78,7 +78,7 @@ def wilson(successes: int, episodes: int) -> tuple[float, float]:
 
 def _cases() -> Iterator[tuple[str, str, str]]:
     """Each variant with each kind of care that makes a difference there."""
-    from tltl_runtime.stealth.level_file import load_level
+    from tltl_runtime.stealth.levels.file import load_level
 
     for level, variant in variants_of_all():
         for care in CARES if load_level(level, variant).enemies else CARES[:1]:

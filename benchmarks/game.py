@@ -102,8 +102,8 @@ def _bare(env: GameEnv, chosen: Sequence[Any]) -> Callable[[], None]:
     """The physics of a decision for each action, in a world like that of ``env``."""
     import pybullet
 
-    from tltl_runtime.stealth.physics import World
-    from tltl_runtime.stealth.player import control
+    from tltl_runtime.stealth.world.physics import World
+    from tltl_runtime.stealth.world.player import control
 
     class Bare(World):
         def run(self) -> None:
@@ -126,7 +126,7 @@ def _us(work: Callable[[], None]) -> float:
 
 def _map_us(env: GameEnv) -> tuple[float, float]:
     """Microseconds of a look at the semantic map where the game stands, and with the layers made of it."""
-    from tltl_runtime.stealth.semantic_map import SemanticMap
+    from tltl_runtime.stealth.senses.semantic_map import SemanticMap
 
     semantic_map, game = SemanticMap(env.level), env.game
     given = (game.world.player.position, False, game.mover_boxes(), game.enemies.positions)

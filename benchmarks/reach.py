@@ -2,7 +2,7 @@
 
 A pose is a cell of the level with a stance, whether the player stands on something, and how fast it rises or falls;
 each is explored from one state, the first that was met in it.  So what is found can be reached, and what
-is not found may still be; what is out of reach for certain is told by :mod:`tltl_runtime.stealth.reach`.
+is not found may still be; what is out of reach for certain is told by :mod:`tltl_runtime.stealth.supply.reach`.
 
 ``python -m benchmarks.reach`` shows both for ``navigation`` v0 and v2, from the start, with the gap shut until its
 switch has been pressed.  It takes a minute, and is no part of ``python -m benchmarks``.
@@ -22,8 +22,8 @@ from tltlc.record import record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.level import Point
-    from tltl_runtime.stealth.physics import World
-    from tltl_runtime.stealth.player import PlayerState
+    from tltl_runtime.stealth.world.physics import World
+    from tltl_runtime.stealth.world.player import PlayerState
 
 CELL_M = 0.2
 SPEED_BUCKET = 3.0
@@ -108,9 +108,9 @@ def main() -> None:
 
 
 def _show(variant: str) -> None:
-    from tltl_runtime.stealth.level_file import load_level
-    from tltl_runtime.stealth.physics import World
-    from tltl_runtime.stealth.reach import reachable
+    from tltl_runtime.stealth.levels.file import load_level
+    from tltl_runtime.stealth.supply.reach import reachable
+    from tltl_runtime.stealth.world.physics import World
 
     level = load_level("navigation", variant)
     switch, begin = level.switches[0], time.perf_counter()

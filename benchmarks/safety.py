@@ -139,7 +139,7 @@ def _look_over(env: GameEnv, observation: dict[str, Any]) -> float:
 
 
 def _deepest(kind: Any, player: Any, level: Level) -> float:
-    from tltl_runtime.stealth.geometry import depth
+    from tltl_runtime.stealth.world.geometry import depth
 
     x, y, z = player.position
     height = kind.crouched_height if player.crouching else kind.height
@@ -158,7 +158,7 @@ def _deepest(kind: Any, player: Any, level: Level) -> float:
 
 def main() -> None:
     """Try what the command line names; a violation is told in the record."""
-    from tltl_runtime.stealth.physics import WorldError
+    from tltl_runtime.stealth.world.physics import WorldError
 
     level, variant, steps = sys.argv[1:]
     try:

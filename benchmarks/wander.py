@@ -14,7 +14,7 @@ HELD = 6
 
 def variants_of_all() -> list[tuple[str, str]]:
     """Each shipped level in each of its variants."""
-    from tltl_runtime.stealth.level_file import level_names, variants
+    from tltl_runtime.stealth.levels.file import level_names, variants
 
     return [(level, variant) for level in level_names() for variant in variants(level)]
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from PIL import Image
 
 from tltl_runtime.stealth.game import Game
-from tltl_runtime.stealth.level_file import load_level
-from tltl_runtime.stealth.render import Renderer
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.pictures.render import Renderer
 
 SIZE = (640, 360)
 MOMENTS = {

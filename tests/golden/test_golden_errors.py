@@ -21,9 +21,9 @@ from tltlc.diagnostics.codes import codes, page, title
 ROOT = Path(__file__).parents[2]
 CASES = sorted(path for path in (Path(__file__).parent / "error").iterdir() if path.is_dir())
 LEVELS = sorted(path for path in (Path(__file__).parent / "level").iterdir() if path.is_dir())
-"""Messages of the runtime, which `tests/runtime/stealth/test_level_file.py` compares."""
+"""Messages of the runtime, which `tests/runtime/stealth/levels/test_file.py` compares."""
 EPISODES = sorted((Path(__file__).parent / "episode").iterdir())
-"""Messages on recordings, which `tests/runtime/stealth/test_episode_file.py` compares."""
+"""Messages on recordings, which `tests/runtime/stealth/episodes/test_file.py` compares."""
 CODE = re.compile(r"TLT[0-9]{4}")
 NEEDS_ANOTHER_INSTALLATION = {"TLT0712", "TLT0730", "TLT0830"}
 """Codes that no file causes; tests/backends, tests/cli and tests/runtime show their messages."""

@@ -13,7 +13,7 @@ from tltlc.cli.report import Report
 from tltlc.spec_file import split
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.episode import Episode
+    from tltl_runtime.stealth.episodes.episode import Episode
 
 
 @click.command(
@@ -56,7 +56,7 @@ def command(level: str, spec: str | None, episodes: int, seed: int, folder: Path
     """
     load_pybullet()
     from tltl_runtime.stealth.env import make_env
-    from tltl_runtime.stealth.expert import Expert, play_episode
+    from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
 
     with Report() as report:
@@ -79,8 +79,8 @@ def command(level: str, spec: str | None, episodes: int, seed: int, folder: Path
 
 def _write(folder: Path, seed: int, episode: Episode) -> Path:
     """Write the recording and the plan of an episode; the path of the recording."""
-    from tltl_runtime.stealth.episode_file import SUFFIX, write_episode
-    from tltl_runtime.stealth.plan import draw_episode
+    from tltl_runtime.stealth.episodes.file import SUFFIX, write_episode
+    from tltl_runtime.stealth.pictures.plan import draw_episode
     from tltlc.writing import write_files
 
     name = f"{episode.level.name}-{episode.level.variant}-{seed}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tltl_runtime.stealth.level_file import changes, level_names, load_level, variants
+from tltl_runtime.stealth.levels.file import changes, level_names, load_level, variants
 
 
 def rows() -> Iterator[dict[str, str]]:

@@ -10,13 +10,13 @@ import click
 from gymnasium import spaces
 
 from tltl_runtime.commands.senses import senses_options
-from tltl_runtime.stealth.feasible import check_reach
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.level_file import level_names, read_level, variants
-from tltl_runtime.stealth.observation import Senses
-from tltl_runtime.stealth.reach import Reach, reachable
-from tltl_runtime.stealth.spec_places import SpecPlaces
-from tltl_runtime.stealth.supply import check_supply, given_params, used_entities
+from tltl_runtime.stealth.levels.file import level_names, read_level, variants
+from tltl_runtime.stealth.senses.observation import Senses
+from tltl_runtime.stealth.supply.feasible import check_reach
+from tltl_runtime.stealth.supply.reach import Reach, reachable
+from tltl_runtime.stealth.supply.spec_places import SpecPlaces
+from tltl_runtime.stealth.supply.supply import check_supply, given_params, used_entities
 from tltlc.automaton.fspa import Fspa
 from tltlc.cli.exits import CLEAN, status_of
 from tltlc.cli.inputs import Input, open_input
@@ -107,7 +107,7 @@ def _draw(path: Path, seen: list[tuple[Level, Reach]]) -> None:
     if len(seen) != 1:
         wanted = "one level and variant, e.g. `--level navigation:v2`"
         raise click.UsageError(f"--plan is for {wanted}; there are {len(seen)}", click.get_current_context())
-    from tltl_runtime.stealth.plan import draw
+    from tltl_runtime.stealth.pictures.plan import draw
 
     level, reach = seen[0]
     write_file(path, draw(level, reach=reach))

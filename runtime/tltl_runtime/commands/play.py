@@ -10,15 +10,15 @@ from typing import Any
 
 import click
 
-from tltl_runtime.stealth.camera import VIEWS, View
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episode import Episode
-from tltl_runtime.stealth.episode_file import SUFFIX, write_episode
-from tltl_runtime.stealth.hud import KEYS
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.episodes.file import SUFFIX, write_episode
 from tltl_runtime.stealth.keyboard import KeyboardPlayer
+from tltl_runtime.stealth.pictures.camera import VIEWS, View
+from tltl_runtime.stealth.pictures.hud import KEYS
+from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.render import Renderer
-from tltl_runtime.stealth.window import Window
+from tltl_runtime.stealth.window.window import Window
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.spec_file import split
 

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import click
 
 from tltl_runtime.commands.quiet import load_pybullet
-from tltl_runtime.stealth.player import DECISION
+from tltl_runtime.stealth.world.player import DECISION
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import record
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.episode import Episode
-    from tltl_runtime.stealth.film import View
+    from tltl_runtime.stealth.episodes.episode import Episode
+    from tltl_runtime.stealth.pictures.film import View
 
 T = TypeVar("T")
 
@@ -141,9 +141,9 @@ def command(
     """
     _check_usage(files, path, view, size)
     load_pybullet()
-    from tltl_runtime.stealth.episode_check import check, check_replay
-    from tltl_runtime.stealth.episode_file import read_episode
-    from tltl_runtime.stealth.summary import summary, summary_text
+    from tltl_runtime.stealth.episodes.check import check, check_replay
+    from tltl_runtime.stealth.episodes.file import read_episode
+    from tltl_runtime.stealth.episodes.summary import summary, summary_text
 
     film = Film(view or "third_person", speed, rate, size)
     summaries: list[dict[str, Any]] = []
@@ -207,11 +207,11 @@ def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film) 
 
     ending = path.suffix.lower()
     if ending == ".csv":
-        from tltl_runtime.stealth.summary import trace_csv
+        from tltl_runtime.stealth.episodes.summary import trace_csv
 
         write_file(path, trace_csv(episode, *span))
     elif ending == ".png":
-        from tltl_runtime.stealth.plan import draw_episode
+        from tltl_runtime.stealth.pictures.plan import draw_episode
 
         write_file(path, draw_episode(episode, film.size))
     else:
@@ -219,8 +219,8 @@ def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film) 
 
 
 def _write_film(path: Path, episode: Episode, span: tuple[float, float], film: Film) -> None:
-    from tltl_runtime.stealth.film import frames
-    from tltl_runtime.stealth.film_file import NoEncoderError, write_gif, write_mp4
+    from tltl_runtime.stealth.pictures.film import frames
+    from tltl_runtime.stealth.pictures.film_file import NoEncoderError, write_gif, write_mp4
     from tltlc.writing import replaced
 
     rate = film.rate or min(film.speed / DECISION, _MOST_FRAMES_A_SECOND)

@@ -20,8 +20,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def senses_options(command: Function) -> Function:
     """Add ``--entities --variables --map`` and their opposites; the command takes ``sensors``.
 
-    ``sensors`` is a mapping as :func:`tltl_runtime.stealth.sensors.chosen` takes it, empty where nothing is said: the
-    level's own senses.
+    ``sensors`` is a mapping as :func:`tltl_runtime.stealth.senses.sensors.chosen` takes it, empty where nothing is
+    said: the level's own senses.
     """
 
     @wraps(command)

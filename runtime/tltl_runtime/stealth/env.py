@@ -10,15 +10,15 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.camera import View
 from tltl_runtime.stealth.game import BRANCHES, Game
-from tltl_runtime.stealth.level_file import load_level
-from tltl_runtime.stealth.observation import Senses
-from tltl_runtime.stealth.offer import params
-from tltl_runtime.stealth.player import DECISION
-from tltl_runtime.stealth.screen import MODES, Screen
-from tltl_runtime.stealth.sensors import SensorChoice
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.pictures.camera import View
+from tltl_runtime.stealth.senses.observation import Senses
+from tltl_runtime.stealth.senses.sensors import SensorChoice
 from tltl_runtime.stealth.signals import Signals
+from tltl_runtime.stealth.supply.offer import params
+from tltl_runtime.stealth.window.screen import MODES, Screen
+from tltl_runtime.stealth.world.player import DECISION
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
@@ -28,16 +28,17 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     """A level without a spec: what the agent senses, no reward and no end.
 
     Action: MultiDiscrete([3, 3, 2, 2, 2]), see :data:`~tltl_runtime.stealth.game.BRANCHES`.  Observation: that of
-    :class:`~tltl_runtime.stealth.observation.Senses`.  ``level`` is the name of a shipped level or a ``.toml`` file,
-    ``sensors`` what :func:`~tltl_runtime.stealth.sensors.chosen` takes.
-    ``reset(seed=...)`` reproduces an episode bit for bit.
+    :class:`~tltl_runtime.stealth.senses.observation.Senses`.  ``level`` is the name of a shipped level or a ``.toml``
+    file, ``sensors`` what :func:`~tltl_runtime.stealth.senses.sensors.chosen` takes.
+    ``reset(seed=...)`` reproduces an episode bit for bit; ``game.seed`` is the seed to give for that, drawn where a
+    reset was given none.
 
     ``render_mode`` ``rgb_array`` makes :meth:`render` return pictures of ``render_size`` (width, height), ``human``
     shows them in a window as the episode goes on, a decision taking its time; ``render_view`` is one of
     ``third_person top_down overview``.
 
     Raises:
-        TltlError: what :func:`~tltl_runtime.stealth.level_file.load_level` finds; TLT0815, where ``sensors`` say what
+        TltlError: what :func:`~tltl_runtime.stealth.levels.file.load_level` finds; TLT0815, where ``sensors`` say what
             the level does not have.
     """
 
@@ -62,7 +63,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self.tltl_clock_s = DECISION
 
     def tltl_params(self) -> dict[str, float]:
-        """The params of specs that the level knows, see :func:`tltl_runtime.stealth.offer.params`."""
+        """The params of specs that the level knows, see :func:`tltl_runtime.stealth.supply.offer.params`."""
         return params(self.level)
 
     def tltl_signals(self) -> Signals:
@@ -74,7 +75,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     ) -> tuple[dict[str, Any], dict[str, Any]]:
         """Begin an episode; without a seed, one drawn from the seed before."""
         super().reset(seed=seed)
-        self.game.reset(int(self.np_random.integers(2**63)))
+        self.game.reset(int(self.np_random.integers(2**31)) if seed is None else seed)
         self._show()
         return self._senses.look(self.game), {}
 

@@ -10,12 +10,12 @@ from typing import Final
 
 import numpy as np
 
-from tltl_runtime.stealth.enemy import CROUCHED_HEAD, STANDING_HEAD, Enemies, PlayerView
-from tltl_runtime.stealth.geometry import around
+from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, STANDING_HEAD, Enemies, PlayerView
 from tltl_runtime.stealth.level import Box, Level, Point
-from tltl_runtime.stealth.physics import World
-from tltl_runtime.stealth.player import DECISION, PlayerState
 from tltl_runtime.stealth.signals import Signals, readers
+from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.world.physics import World
+from tltl_runtime.stealth.world.player import DECISION, PlayerState
 from tltlc.record import record
 
 BRANCHES: Final = (3, 3, 2, 2, 2)
@@ -69,9 +69,10 @@ class Game:
     def reset(self, seed: int) -> None:
         """Begin the episode of this seed."""
         self.seed = seed
-        self._rng = np.random.default_rng(seed)
-        self.world.reset(self._rng)
-        self.enemies.reset(self._rng)
+        # Each has its own numbers: what opens does not hang on how often a guard has drawn.
+        start, patrols, self._unlocking = np.random.default_rng(seed).spawn(3)
+        self.world.reset(start)
+        self.enemies.reset(patrols)
         self.steps = 0
         self.health = 1.0
         self.active = [False] * len(self.level.switches)
@@ -79,7 +80,7 @@ class Game:
         self._mover_boxes = self._boxes_of_movers()
 
     def step(self, action: Sequence[int]) -> None:
-        """Play one decision of :data:`~tltl_runtime.stealth.player.DECISION` seconds: one number per branch."""
+        """Play one decision of :data:`~tltl_runtime.stealth.world.player.DECISION` seconds: one number per branch."""
         self.world.step(action)
         self._mover_boxes = self._boxes_of_movers()
         self.enemies.step(DECISION, self._player_view(), self._mover_boxes)
@@ -134,7 +135,7 @@ class Game:
                 self.active[index] = pressed = True
                 choices = self._unlocks.get(switch.name)
                 if choices:
-                    self._open(self._barriers[choices[int(self._rng.integers(len(choices)))]])
+                    self._open(self._barriers[choices[int(self._unlocking.integers(len(choices)))]])
         if pressed:
             self._open_what_is_bound()
 

@@ -6,16 +6,16 @@ from collections.abc import Callable
 from time import monotonic
 from typing import Any, Final
 
-from tltl_runtime.stealth.camera import VIEWS, View
 from tltl_runtime.stealth.env import GameEnv
-from tltl_runtime.stealth.episode import Episode
+from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.game import Snapshot
-from tltl_runtime.stealth.hud import Hud, beginning, ending, how_it_ended, hud
-from tltl_runtime.stealth.interpolation import between
-from tltl_runtime.stealth.player import DECISION
+from tltl_runtime.stealth.pictures.camera import VIEWS, View
+from tltl_runtime.stealth.pictures.hud import Hud, beginning, ending, how_it_ended, hud
+from tltl_runtime.stealth.pictures.interpolation import between
+from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.render import Renderer
-from tltl_runtime.stealth.window import Keys, Window
+from tltl_runtime.stealth.window.window import Keys, Window
+from tltl_runtime.stealth.world.player import DECISION
 
 Save = Callable[[Episode], str]
 """Writes an episode and returns the name of its file."""

@@ -10,10 +10,10 @@ import numpy as np
 from gymnasium.utils import RecordConstructorArgs
 
 from tltl_runtime.stealth.env import GameEnv
-from tltl_runtime.stealth.episode import End, Episode
+from tltl_runtime.stealth.episodes.episode import End, Episode
+from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.game import BRANCHES, Snapshot
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.versions import versions
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.monitor import Step
 
@@ -82,7 +82,7 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
         return [float(sample[name]) for name in self._names]
 
     def _write(self, folder: Path) -> None:
-        from tltl_runtime.stealth.episode_file import SUFFIX, write_episode
+        from tltl_runtime.stealth.episodes.file import SUFFIX, write_episode
 
         episode = self.episode
         name = f"{episode.level.name}-{episode.level.variant}-{episode.seed}"

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.level_file import load_level
-from tltl_runtime.stealth.sensors import SensorChoice
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.senses.sensors import SensorChoice
 from tltl_runtime.task import load_task
 from tltl_runtime.vector.env import WorkerVectorEnv
 from tltlc.automaton.fspa import Fspa

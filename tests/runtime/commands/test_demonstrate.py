@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
-from tltl_runtime.stealth.episode_check import check
-from tltl_runtime.stealth.episode_file import read_episode
+from tltl_runtime.stealth.episodes.check import check
+from tltl_runtime.stealth.episodes.file import read_episode
 
 
 def test_it_records_what_it_plays(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811

@@ -14,14 +14,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-import tltl_runtime.stealth.film as film
+import tltl_runtime.stealth.pictures.film as film
 from tests.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
 from tltl_runtime.commands.replay import _VIEWS
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episode import Episode
-from tltl_runtime.stealth.episode_file import write_episode
-from tltl_runtime.stealth.film import STRIP, frames
-from tltl_runtime.stealth.plan import draw_episode, state_colour
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.episodes.file import write_episode
+from tltl_runtime.stealth.pictures.film import STRIP, frames
+from tltl_runtime.stealth.pictures.plan import draw_episode, state_colour
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace

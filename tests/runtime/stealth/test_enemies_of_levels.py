@@ -7,11 +7,11 @@ from math import hypot
 import numpy as np
 import pytest
 
-from tests.runtime.stealth.test_grid import distance_to_boxes
-from tltl_runtime.stealth.enemy import Enemies, PlayerView
-from tltl_runtime.stealth.grid import RADIUS, grid_of
+from tests.runtime.stealth.enemies.test_grid import distance_to_boxes
+from tltl_runtime.stealth.enemies.enemy import Enemies, PlayerView
+from tltl_runtime.stealth.enemies.grid import RADIUS, grid_of
 from tltl_runtime.stealth.level import Solid
-from tltl_runtime.stealth.level_file import level_names, load_level, variants
+from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 
 CASES = [(name, variant) for name in level_names() for variant in variants(name) if load_level(name, variant).enemies]
 NOBODY = PlayerView((0.0, 0.0, -100.0))

@@ -12,7 +12,7 @@ import pytest
 import tltlc
 from tltl_runtime.stealth.game import BRANCHES, Game
 from tltl_runtime.stealth.level import Level, Point
-from tltl_runtime.stealth.level_file import level_names, load_level, variants
+from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 
 ROOT = Path(__file__).parents[3]
 

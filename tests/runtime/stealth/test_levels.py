@@ -8,8 +8,8 @@ from contextlib import closing, contextmanager
 
 import pytest
 
-from tltl_runtime.stealth.level_file import load_level
-from tltl_runtime.stealth.physics import World
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.world.physics import World
 
 Way = Sequence[tuple[float, float, str]]
 """Points to walk to, each with what one does on the way: words of jump, crouch, sprint."""

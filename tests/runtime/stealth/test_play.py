@@ -17,9 +17,9 @@ import pytest
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
 from tltl_runtime.commands.play import Files
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episode import Episode
-from tltl_runtime.stealth.episode_check import check, resimulate
-from tltl_runtime.stealth.episode_file import read_episode
+from tltl_runtime.stealth.episodes.check import check, resimulate
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltlc.diagnostics.diagnostic import TltlError
 

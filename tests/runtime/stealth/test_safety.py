@@ -7,7 +7,7 @@ import pytest
 from benchmarks import safety
 from benchmarks.wander import variants_of_all
 from tltl_runtime.stealth.env import GameEnv
-from tltl_runtime.stealth.physics import WorldError
+from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.record import replace
 
 STEPS = 2_300

@@ -1,0 +1,1 @@
+"""Enemies: what they see, decide and do."""

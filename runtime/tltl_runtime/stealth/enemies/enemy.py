@@ -1,0 +1,307 @@
+"""Enemies: what they see, know and do in a level, without physics.
+
+Each step an enemy looks, its behaviour tree says where to go, and it turns and walks on the floor's free straight
+lines: it cannot enter a solid or a shut barrier.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy
+from math import atan2, cos, hypot, pi, remainder, sin, sqrt
+from typing import Final, Literal
+
+import numpy as np
+
+from tltl_runtime.stealth.enemies.branches import tree
+from tltl_runtime.stealth.enemies.grid import Floor, Grid, Place, grid_of
+from tltl_runtime.stealth.enemies.segments import Corners, blocked, corners
+from tltl_runtime.stealth.level import Box, Enemy, Level, Point
+from tltlc.record import record
+
+Mode = Literal["patrol", "chase", "search", "return"]
+
+EYES: Final = 1.6
+"""An enemy's eyes above its feet."""
+STANDING_HEAD: Final = 1.5
+CROUCHED_HEAD: Final = 0.7
+"""What is looked for of the player, above its feet."""
+
+CHEST: Final = 0.7
+"""Of the height of the head."""
+_ARRIVED: Final = 0.05
+_TURNED: Final = pi / 4
+_MOST_LEGS: Final = 16
+
+
+@record
+class PlayerView:
+    """What enemies can know of the player: where its feet are, and how high its head is above them."""
+
+    position: Point
+    head: float = STANDING_HEAD
+    crouching: bool = False
+    velocity: Point = (0.0, 0.0, 0.0)
+
+
+class Enemies:
+    """All enemies of a level.  ``reset`` begins an episode, ``step`` advances it."""
+
+    def __init__(self, level: Level, grid: Grid | None = None) -> None:
+        self.level = level
+        self.grid = grid_of(level) if grid is None else grid
+        self.guards: tuple[Guard, ...] = ()
+        self.damage = 0.0
+        """Health that the player lost in the last step."""
+        self._shut: set[int] = set()
+        self._solids = [corners(each.box) for each in level.solids if each.box.high[2] > 0.0]
+        self._boxes: list[Corners] = []
+
+    def reset(self, rng: np.random.Generator) -> None:
+        """Every enemy at the start of its route, all barriers shut; what is random comes from ``rng``."""
+        self._shut = set(range(len(self.level.barriers)))
+        floor = self._changed()
+        self.guards = tuple(Guard(enemy, floor, rng) for enemy in self.level.enemies)
+        self.damage = 0.0
+
+    def set_open(self, barrier: int, opened: bool) -> None:
+        """Open or shut the barrier with this index.  One is only shut where no enemy stands."""
+        if opened == (barrier not in self._shut):
+            return
+        (self._shut.discard if opened else self._shut.add)(barrier)
+        floor = self._changed()
+        for guard in self.guards:
+            guard.floor = floor
+            guard.forget_way()
+
+    def step(self, dt: float, player: PlayerView, movers: Sequence[Box] = ()) -> None:
+        """Advance by ``dt`` seconds; ``movers`` are boxes that stop sight beside those of the level."""
+        boxes = [*self._boxes, *map(corners, movers)] if movers else self._boxes
+        self.damage = 0.0
+        for guard in self.guards:
+            self.damage += guard.step(dt, player, boxes)
+
+    @property
+    def positions(self) -> tuple[Point, ...]:
+        """Of their feet."""
+        return tuple((guard.x, guard.y, 0.0) for guard in self.guards)
+
+    @property
+    def yaws(self) -> tuple[float, ...]:
+        """Where they look, from -pi to pi."""
+        return tuple(guard.yaw for guard in self.guards)
+
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """What they are at."""
+        return tuple(guard.mode for guard in self.guards)
+
+    @property
+    def sees(self) -> tuple[bool, ...]:
+        """Whether the player is in sight of each."""
+        return tuple(guard.sees for guard in self.guards)
+
+    @property
+    def knows(self) -> tuple[bool, ...]:
+        """Whether each has noticed the player, and still knows where it is."""
+        return tuple(guard.knows for guard in self.guards)
+
+    def _changed(self) -> Floor:
+        shut = [self.level.barriers[index] for index in sorted(self._shut)]
+        self._boxes = self._solids + [corners(each.box) for each in shut if each.kind == "solid"]
+        return self.grid.floor(self._shut)
+
+
+class Guard:
+    """One enemy in an episode: its body, its senses and its memory."""
+
+    def __init__(self, enemy: Enemy, floor: Floor, rng: np.random.Generator) -> None:
+        self.kind = enemy.kind
+        self.floor = floor
+        self.rng = rng
+        self.route: tuple[Place, ...] = tuple(point[:2] for point in enemy.route)
+        self.x, self.y = floor.stand(self.route[0])
+        self.leg = min(1, len(self.route) - 1)
+        dx, dy = self.route[self.leg][0] - self.x, self.route[self.leg][1] - self.y
+        self.yaw = atan2(dy, dx)
+        self.mode: Mode = "patrol"
+        self.dt = 0.0
+        self.sees = False
+        self.knows = False
+        self.in_reach = False
+        """Whether the player could be hit: near enough, with nothing between."""
+        self.last_known: Point = (self.x, self.y, 0.0)
+        self.search_left = 0.0
+        self.searching = False
+        """Whether the search has come to where the player was last known to be."""
+        self.back = False
+        """Whether a search is over and the way to the route is to be found."""
+        self.gap: Place | None = None
+        self._visited: set[Place] = set()
+        self._gaps_of: Floor | None = None
+        self._gaps: tuple[Place, ...] = ()
+        self._tick = tree(enemy.kind.branches)
+        self._in_sight = 0.0
+        self._out_of_sight = 0.0
+        self._goal: Place = (self.x, self.y)
+        self._speed = 0.0
+        self._facing: Place | None = None
+        self._waypoint: Place | None = None
+        self._anchor: Place = (self.x, self.y)
+        """Where the way was last found from.  It is a free straight walk away: the way out of narrow corners."""
+        self._half_angle_cosine = cos(min(enemy.kind.sight_angle, 2 * pi) / 2)
+
+    def fork(self, rng: np.random.Generator) -> Guard:
+        """The same guard at this moment, that goes on by itself and draws from ``rng``."""
+        other = copy(self)
+        other.rng = rng
+        other._visited = set(self._visited)
+        return other
+
+    def step(self, dt: float, player: PlayerView, boxes: Sequence[Corners]) -> float:
+        """Look, decide, move; returns the health that the player loses."""
+        self.dt = dt
+        self._look(player, boxes)
+        self._facing = None
+        self._tick(self)
+        self._move(dt)
+        return self.kind.attack_damage * dt if self.knows and self.in_reach else 0.0
+
+    @property
+    def state(self) -> tuple[object, ...]:
+        """Where it is, looks and wants to, and what it is at: of guards without added branches, all that counts."""
+        return (self.x, self.y, self.yaw, self.mode, self.leg, self.back, self.search_left > 0.0)
+
+    def go(self, goal: Place, speed: float) -> None:
+        """From now on walk to a place, or to the nearest that can be reached, at a speed in m/s."""
+        if goal != self._goal:
+            self._goal = goal
+            self._waypoint = None
+        self._speed = speed
+
+    def face(self, x: float, y: float) -> None:
+        """Look there in this step once arrived."""
+        self._facing = (x, y)
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it is where ``go`` told it to, or can come no nearer."""
+        if hypot(self._goal[0] - self.x, self._goal[1] - self.y) < _ARRIVED:
+            return True
+        return self._next_waypoint() == (self.x, self.y)
+
+    def nearest_leg(self) -> int:
+        """The point of the route that is the nearest, by its index."""
+        return min(range(len(self.route)), key=lambda i: hypot(self.route[i][0] - self.x, self.route[i][1] - self.y))
+
+    def next_gap(self) -> Place | None:
+        """One of the three nearest narrow places off the route that were not visited yet, or None."""
+        if self._gaps_of is not self.floor:
+            self._gaps_of = self.floor
+            gaps = self.floor.gaps(self.floor.area((self.x, self.y)))
+            self._gaps = tuple(gap for gap in gaps if not self._is_on_route(gap))
+        if not self._gaps:
+            return None
+        if self._visited.issuperset(self._gaps):
+            self._visited.clear()
+        left = [gap for gap in self._gaps if gap not in self._visited]
+        left.sort(key=lambda gap: hypot(gap[0] - self.x, gap[1] - self.y))
+        chosen = left[int(self.rng.integers(min(3, len(left))))]
+        self._visited.add(chosen)
+        return chosen
+
+    def forget_way(self) -> None:
+        """Find the way anew: the floor has changed."""
+        self._waypoint = None
+
+    def _is_on_route(self, gap: Place) -> bool:
+        ends = zip(self.route, (*self.route[1:], self.route[0]), strict=True)
+        return any(_distance_to_segment(gap, a, b) < 1.0 for a, b in ends)
+
+    def _look(self, player: PlayerView, boxes: Sequence[Corners]) -> None:
+        """Sight, and what follows from it: noticing, knowing, losing, being in reach.
+
+        An enemy that knows of the player turns its head: its sight has no cone then.
+        """
+        dt, kind = self.dt, self.kind
+        px, py, pz = player.position
+        dx, dy = px - self.x, py - self.y
+        flat = hypot(dx, dy)
+        self.sees = self.in_reach = False
+        if flat <= kind.sight_range:
+            head, chest = (px, py, pz + player.head), (px, py, pz + CHEST * player.head)
+            eyes = (self.x, self.y, EYES)
+            in_cone = self.knows or dx * cos(self.yaw) + dy * sin(self.yaw) >= flat * self._half_angle_cosine
+            near = flat <= kind.attack_range and self.knows
+            if in_cone and sqrt(flat**2 + (head[2] - EYES) ** 2) <= kind.sight_range:
+                self.sees = not blocked(eyes, head, boxes) or not blocked(eyes, chest, boxes)
+            if near and abs(pz) < 1.0:
+                self.in_reach = self.sees or not blocked(eyes, chest, boxes)
+        if self.sees:
+            self._in_sight += dt
+            self._out_of_sight = 0.0
+            if self._in_sight >= kind.reaction_time - 1e-9:
+                self.knows = True
+        else:
+            self._in_sight = 0.0
+            self._out_of_sight += dt
+            if self.knows and self._out_of_sight > kind.memory_time + 1e-9:
+                self.knows, self.searching = False, False
+                self.search_left = kind.search_time
+                self.back = kind.search_time <= 0.0
+        if self.knows:
+            self.last_known = player.position
+            self.search_left = 0.0
+            self.back = True
+
+    def _next_waypoint(self) -> Place:
+        if self._waypoint is None:
+            here = (self.x, self.y)
+            found = self.floor.towards(here, self._goal)
+            if found is not None:
+                self._anchor = here
+            self._waypoint = self._anchor if found is None else found
+        return self._waypoint
+
+    def _move(self, dt: float) -> None:
+        """Walk towards the goal for ``dt`` seconds, around corners; only turn while it is too far aside."""
+        left = self._speed * dt
+        turned = False
+        for _leg in range(_MOST_LEGS):
+            if left <= 0.0 or (self.x, self.y) == self._goal:
+                break
+            x, y = self._next_waypoint()
+            distance = hypot(x - self.x, y - self.y)
+            if distance == 0.0:
+                break
+            if not turned:
+                turned = True
+                if abs(self._turn(atan2(y - self.y, x - self.x), dt)) > _TURNED:
+                    return
+            if distance <= left:
+                self.x, self.y = x, y
+                self._waypoint = None
+                left -= distance
+            else:
+                self.x += (x - self.x) * left / distance
+                self.y += (y - self.y) * left / distance
+                left = 0.0
+        if not turned and self._facing is not None:
+            x, y = self._facing
+            if (x, y) != (self.x, self.y):
+                self._turn(atan2(y - self.y, x - self.x), dt)
+
+    def _turn(self, yaw: float, dt: float) -> float:
+        """Turn towards a yaw; returns what is missing, in radians."""
+        missing = remainder(yaw - self.yaw, 2 * pi)
+        most = self.kind.turn_speed * dt
+        turn = min(max(missing, -most), most)
+        self.yaw = remainder(self.yaw + turn, 2 * pi)
+        return missing - turn
+
+
+def _distance_to_segment(p: Place, a: Place, b: Place) -> float:
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    length = dx * dx + dy * dy
+    part = 0.0 if length == 0.0 else min(1.0, max(0.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length))
+    return hypot(p[0] - a[0] - part * dx, p[1] - a[1] - part * dy)

@@ -1,0 +1,1 @@
+"""Episodes: recorded, kept in files, checked and summed up."""

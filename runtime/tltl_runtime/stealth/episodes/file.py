@@ -1,0 +1,271 @@
+"""The file of an episode: a compressed numpy archive, ``docs/episode-log.md`` describes every array in it."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.episodes.arrays import ARRAYS, Array, Arrays, shape_of, sizes, snapshots, to_arrays
+from tltl_runtime.stealth.episodes.episode import End, Episode
+from tltl_runtime.stealth.episodes.numpy_archive import ArchiveError, read_array, read_members
+from tltl_runtime.stealth.episodes.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.stealth.game import BRANCHES
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.levels.fault import fault
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reading_error
+from tltlc.monitor import RewardOptions
+from tltlc.pipeline import read_artefact
+from tltlc.record import record, replace
+from tltlc.source import SourceFile
+from tltlc.writing import write_file
+
+SUFFIX: Final = ".episode.npz"
+FORMAT: Final = "tltl-episode"
+VERSION: Final = 1
+MAX_BYTES: Final = 1 << 28
+"""Greatest size of a file and of what it holds unpacked, about half a million decisions: 256 MiB."""
+
+_TEXTS: Final = ("meta", "artefact")
+"""The arrays that hold the bytes of a text, UTF-8."""
+
+_AGAIN: Final = "record the episode again, or get a whole copy of the file"
+
+
+@record
+class Names:
+    """What the entries along an axis are called."""
+
+    signals: tuple[str, ...]
+    atoms: tuple[str, ...]
+    enemies: tuple[str, ...]
+    movers: tuple[str, ...]
+    switches: tuple[str, ...]
+    barriers: tuple[str, ...]
+
+
+@record
+class Meta:
+    """What the array ``meta`` holds as JSON: all of an episode that is no array, but for the artefact of its spec."""
+
+    format: str
+    version: int
+    player: str
+    seed: int
+    verdict: Literal["holding", "pending", "satisfied", "violated"]
+    success: bool
+    end: End
+    params: Mapping[str, float]
+    reward: RewardOptions
+    versions: Mapping[str, str]
+    modes: tuple[str, ...]
+    names: Names
+    level: Level
+
+
+def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
+    """Write an episode to a file, which is there as a whole or not at all; equal episodes give equal bytes.
+
+    Raises:
+        TltlError: TLT0005 where the system refuses.
+        ValueError: the episode's arrays are not of the shapes that its level and its automaton ask for.
+    """
+    write_file(Path(path), to_bytes(episode))
+
+
+def read_episode(path: str | os.PathLike[str]) -> Episode:
+    """The episode in a file.
+
+    Raises:
+        TltlError: TLT0001 it cannot be read; TLT0820 it is no episode, or is damaged; TLT0821 of another version;
+            TLT0822 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0605.
+    """
+    name = os.fspath(path)
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        raise reading_error(name, error) from None
+    return from_bytes(data, name)
+
+
+def to_bytes(episode: Episode) -> bytes:
+    """What :func:`write_episode` writes."""
+    meta = json.dumps(to_json(_meta(episode)), ensure_ascii=False, allow_nan=False)
+    (artefact,) = emit("json", episode.fspa).values()
+    texts = {"meta": meta, "artefact": str(artefact)}
+    arrays: dict[str, Any] = {name: np.frombuffer(text.encode(), dtype=np.uint8) for name, text in texts.items()}
+    arrays |= to_arrays(episode, _modes(episode))
+    written = BytesIO()
+    np.savez_compressed(written, **arrays)
+    return written.getvalue()
+
+
+def from_bytes(data: bytes, name: str) -> Episode:
+    """The episode in the bytes of a file, which messages call ``name``; errors as of :func:`read_episode`."""
+    members = _members(data, name)
+    meta = _read_meta(members, name)
+    fspa = read_artefact(SourceFile(f"{name}/artefact", _text(members, "artefact", name)))
+    unpacked = _read_arrays(members, meta.level, fspa, name)
+    _check_indices(unpacked, meta, fspa, name)
+    return Episode(
+        level=meta.level,
+        fspa=fspa,
+        params=meta.params,
+        player=meta.player,
+        seed=meta.seed,
+        actions=unpacked["actions"],
+        snapshots=snapshots(unpacked, meta.modes),
+        signals=unpacked["signals"],
+        atoms=unpacked["atoms"],
+        states=unpacked["states"],
+        progress=unpacked["progress"],
+        rewards=unpacked["rewards"],
+        verdict=meta.verdict,
+        success=meta.success,
+        end=meta.end,
+        reward=meta.reward,
+        versions=meta.versions,
+    )
+
+
+def _meta(episode: Episode) -> Meta:
+    level = episode.level
+    return Meta(
+        format=FORMAT,
+        version=VERSION,
+        player=episode.player,
+        seed=episode.seed,
+        verdict=episode.verdict,  # type: ignore[arg-type]
+        success=episode.success,
+        end=episode.end,
+        params=episode.params,
+        reward=episode.reward,
+        versions=episode.versions,
+        modes=_modes(episode),
+        names=_names(level, episode.fspa),
+        # Where the spec lay says nothing to others.
+        level=replace(level, spec=level.spec.replace("\\", "/").rpartition("/")[2]),
+    )
+
+
+def _modes(episode: Episode) -> tuple[str, ...]:
+    return tuple(sorted({mode for shot in episode.snapshots for mode in shot.modes}))
+
+
+def _names(level: Level, fspa: Fspa) -> Names:
+    groups = (fspa.signals, fspa.atoms, level.enemies, level.movers, level.switches, level.barriers)
+    return Names(*(tuple(each.name for each in group) for group in groups))
+
+
+# --- reading what nobody vouches for ----------------------------------------------------------------
+
+
+def _members(data: bytes, name: str) -> dict[str, bytes]:
+    """The files of the archive that an episode has, by the names of their arrays."""
+    if len(data) > MAX_BYTES:
+        raise _unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
+    try:
+        members = read_members(data, [*_TEXTS, *(array.name for array in ARRAYS)], MAX_BYTES)
+    except ArchiveError as error:
+        raise _unreadable(name, str(error)) from None
+    if "meta" not in members:
+        raise _unreadable(name, "it is an archive of something else")
+    return members
+
+
+def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
+    try:
+        document = json.loads(_text(members, "meta", name))
+    except (ValueError, RecursionError):
+        raise _broken(name, "`meta` is not JSON") from None
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise _unreadable(name, "it is an archive of something else")
+    version = document.get("version")
+    if type(version) is not int or version != VERSION:
+        help_ = "use a newer tltlc" if type(version) is int and version > VERSION else "record the episode again"
+        title = f"`{name}` has version {version!r:.20}, and only version {VERSION} can be read"
+        raise TltlError([Diagnostic("TLT0821", title, help=help_)])
+    try:
+        meta = from_json(Meta, document, "meta")
+    except (RecordJsonError, RecursionError) as error:
+        raise _broken(name, str(error)) from None
+    if wrong := fault(meta.level):
+        raise _broken(name, f"its level is unfit: {wrong}")
+    return meta
+
+
+def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
+    data = _array(members, array, name)
+    if data.dtype != np.uint8 or data.ndim != 1:
+        raise _broken(name, f"the array `{array}` holds no bytes")
+    try:
+        return data.tobytes().decode()
+    except UnicodeDecodeError:
+        raise _broken(name, f"the array `{array}` is no UTF-8 text") from None
+
+
+def _read_arrays(members: Mapping[str, bytes], level: Level, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
+    """The arrays, of the shapes and within the ranges that they must have."""
+    found = {array.name: _array(members, array.name, name) for array in ARRAYS}
+    actions = found["actions"]
+    known = sizes(level, fspa, actions.shape[0] if actions.ndim else 0)
+    for array in ARRAYS:
+        _check(found[array.name], array, shape_of(array, known), name)
+    return found
+
+
+def _array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
+    """An array of whatever shape."""
+    if array not in members:
+        raise _broken(name, f"the array `{array}` is missing")
+    try:
+        return read_array(members[array])
+    except ArchiveError as error:
+        raise _broken(name, f"the array `{array}`: {error}") from None
+
+
+def _check(found: NDArray[Any], array: Array, shape: tuple[int, ...], name: str) -> None:
+    if found.dtype != np.dtype(array.dtype) or found.shape != shape:
+        expected = f"{array.dtype} of shape {shape}"
+        raise _broken(name, f"the array `{array.name}` is {found.dtype.str} of shape {found.shape}, not {expected}")
+    if found.dtype == np.bool_:
+        good = bool((found.view(np.uint8) <= 1).all())
+    else:
+        # What is no number is in no range.
+        good = bool(((found >= array.low) & (found <= array.high) & np.isfinite(found)).all())
+    if not good:
+        raise _broken(name, f"the array `{array.name}` has values that it cannot have")
+
+
+def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
+    """That everything that counts something counts what there is."""
+    limits = [
+        ("actions", np.array(BRANCHES)),
+        ("states", np.array(len(fspa.states))),
+        ("enemy_mode", np.array(len(meta.modes))),
+    ]
+    for array, limit in limits:
+        if bool((arrays[array] >= limit).any()):
+            raise _broken(name, f"the array `{array}` has values that it cannot have")
+    if meta.names != _names(meta.level, fspa):
+        raise _broken(name, "`meta.names` are not those of the level and of the spec")
+    if meta.seed < 0:
+        raise _broken(name, "`meta.seed` is below 0")
+
+
+def _unreadable(name: str, why: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0820", f"`{name}` cannot be read as an episode: {why}", help=_AGAIN)])
+
+
+def _broken(name: str, why: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0822", f"`{name}` is a broken episode: {why}", help=_AGAIN)])

@@ -1,0 +1,102 @@
+"""A scripted player that finishes levels: it knows the level and the spec, and sees what a player sees."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import gymnasium
+
+from tltl_runtime.stealth.expert.goals import next_goals
+from tltl_runtime.stealth.expert.movers import reach_of
+from tltl_runtime.stealth.expert.routes import Leg, routes_of, shut_of
+from tltl_runtime.stealth.expert.sneaker import Sneaker
+from tltl_runtime.stealth.expert.walker import STAY, Walker
+from tltl_runtime.stealth.game import Snapshot
+from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.world.player import Action
+
+_ROOM: Final = 0.5
+"""Metres from where a moving obstacle can be within which a way meets it."""
+
+
+class Expert:
+    """Plays ``env``, a TltlEnv over a GameEnv or wrappers around one: ``reset`` after each of its resets, then ``act``.
+
+    Where to go it reads off the automaton, how to get there off the level and what there is to see.  ``careful``
+    keeps out of the sight of enemies where the way is on the floor, and moves as if there were none elsewhere.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any], careful: bool = True) -> None:
+        self._env = env
+        self._task = env.get_wrapper_attr("task")
+        self._game = env.get_wrapper_attr("game")
+        self.level: Level = self._game.level
+        self.careful = careful
+        self._walker = Walker(self.level)
+        self._sneaker = Sneaker(self.level)
+        self._movers = [reach_of(mover) for mover in self.level.movers]
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin an episode."""
+        self._walker.reset()
+        self._sneaker.reset()
+        self._chosen_for: object = None
+        self._sneaks = False
+
+    def act(self) -> Action:
+        """What to do now; nothing where the automaton sends the player nowhere."""
+        snapshot = self._game.snapshot()
+        goal = self.goal(snapshot)
+        if goal is None:
+            return STAY
+        if (goal, snapshot.open) != self._chosen_for:
+            self._chosen_for = (goal, snapshot.open)
+            self._sneaks = self.careful and bool(self.level.enemies) and self._is_plain(snapshot, goal)
+        return (self._sneaker if self._sneaks else self._walker).act(snapshot, goal)
+
+    def goal(self, snapshot: Snapshot) -> Point | None:
+        """Where the automaton sends the player now, None where there is no such place."""
+        taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
+        state = 0 if taken is None else taken.state
+        places = _places(self.level, snapshot)
+        goals = next_goals(self._task.fspa, state, sample, self._task.params, places)
+        return places[goals[0]] if goals else None
+
+    def _is_plain(self, snapshot: Snapshot, goal: Point) -> bool:
+        """Whether the way to a goal is on the floor, and past no moving obstacle."""
+        here = snapshot.player.position
+        way = routes_of(self.level, shut_of(snapshot)).field_from(here, goal).way(here)
+        return all(leg.kind in ("walk", "crouch") and not self._meets_mover(leg) for leg in way)
+
+    def _meets_mover(self, leg: Leg) -> bool:
+        return any(_is_within(leg.place, box, _ROOM) for box in self._movers)
+
+
+def play_episode(env: gymnasium.Env[Any, Any], expert: Expert, seed: int) -> dict[str, Any]:
+    """Play one episode to its end; its last ``info``.  Give a ``RecordEpisode`` to have the episode itself."""
+    _, info = env.reset(seed=seed)
+    expert.reset()
+    over = False
+    while not over:
+        _, _, terminated, truncated, info = env.step(expert.act())
+        over = terminated or truncated
+    return info
+
+
+def _places(level: Level, snapshot: Snapshot) -> dict[str, Point]:
+    """Where each entity is that a player can be sent to."""
+    places = {switch.name: switch.position for switch in level.switches}
+    places |= {way_out.name: way_out.position for way_out in level.exits}
+    places |= {barrier.name: _base(barrier.box) for barrier in level.barriers}
+    places |= {mover.name: place for mover, place in zip(level.movers, snapshot.movers, strict=True)}
+    places |= {enemy.name: place for enemy, place in zip(level.enemies, snapshot.enemies, strict=True)}
+    return places
+
+
+def _base(box: Box) -> Point:
+    return (box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, box.low[2]
+
+
+def _is_within(point: Point, box: Box, metres: float) -> bool:
+    return all(box.low[axis] - metres <= point[axis] <= box.high[axis] + metres for axis in range(3))

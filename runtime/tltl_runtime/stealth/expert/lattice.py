@@ -1,0 +1,172 @@
+"""The floor as a lattice of places, and what each action of one decision does on it.
+
+Places lie 0.4 m apart where a player fits between everything that stands on the floor.  An action moves by its exact
+way, which ends between places: a value there is interpolated from the four around it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from functools import lru_cache
+from math import hypot
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.enemies.segments import Rectangle
+from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
+
+SPACING: Final = 0.4
+MARGIN: Final = 0.03
+"""Kept to what stops bodies, beside the player's radius."""
+FAR: Final = np.float32(1e6)
+"""The value of what cannot be."""
+
+Floats = NDArray[np.float32]
+
+STAND, WALK, SPRINT, DUCK, CRAWL = range(5)
+
+
+def _actions() -> tuple[list[Action], NDArray[np.float64], list[int]]:
+    """All actions without a jump that differ, how far each moves, and its manner."""
+    kind = PlayerKind()
+    actions: list[Action] = []
+    ways: list[tuple[float, float]] = []
+    manners: list[int] = []
+    for crouch, sprint, speed, manner in (
+        (0, 0, kind.walk_speed, WALK),
+        (0, 1, kind.sprint_speed, SPRINT),
+        (1, 0, kind.crouch_speed, CRAWL),
+    ):
+        for x in (0, 1, 2):
+            for y in (0, 1, 2):
+                if (x or y) or not sprint:
+                    dx, dy = (0, 1, -1)[x], (0, 1, -1)[y]
+                    length = hypot(dx, dy) or 1.0
+                    actions.append((x, y, 0, crouch, sprint))
+                    ways.append((dx / length * speed * DECISION, dy / length * speed * DECISION))
+                    manners.append(manner if x or y else DUCK if crouch else STAND)
+    return actions, np.array(ways), manners
+
+
+ACTIONS, WAYS, MANNERS = _actions()
+CROUCHED: Final = np.array([manner in (DUCK, CRAWL) for manner in MANNERS])
+SPRINTS: Final = np.array([manner == SPRINT for manner in MANNERS])
+
+
+@lru_cache(maxsize=64)
+def lattice_of(level: Level, shut: frozenset[int]) -> Lattice:
+    """The lattice of a level while the barriers with these indices are shut, made once in a process."""
+    return Lattice(level, shut)
+
+
+class Lattice:
+    """The places of a floor.  ``places`` float64 [n, 2] are their x and y, in metres."""
+
+    def __init__(self, level: Level, shut: Collection[int]) -> None:
+        boxes = [each.box for each in level.solids] + [level.barriers[index].box for index in sorted(shut)]
+        kind = PlayerKind()
+        self._obstacles = (
+            _grown(boxes, kind.radius + MARGIN, kind.step_height, kind.height),
+            _grown(boxes, kind.radius + MARGIN, kind.step_height, kind.crouched_height),
+        )
+        (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
+        self._low = np.array((x0, y0)) + SPACING / 2
+        columns, rows = int((x1 - x0) / SPACING), int((y1 - y0) / SPACING)
+        every = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"), -1).reshape(-1, 2)
+        centres = self._low + every * SPACING
+        free = ~_crossed(centres, centres, self._obstacles[1])
+        self.places: NDArray[np.float64] = centres[free]
+        # A frame of three columns and rows that belong to no place, for ways that lead out of the bounds.
+        self._number = np.full((columns + 6, rows + 6), -1, dtype=np.int64)
+        self._number[every[free, 0] + 3, every[free, 1] + 3] = np.arange(len(self.places))
+        ends = self.places[None] + WAYS[:, None]
+        self._corners, self._shares = self._between(ends.reshape(-1, 2))
+        shape = (len(ACTIONS), len(self.places), 4)
+        count = len(self.places)
+        self._corners = (self._corners.reshape(shape) + CROUCHED[:, None, None] * count).astype(np.int32)
+        self._shares = self._shares.reshape(shape)
+        self._forbidden = np.where(self.feasible(self.places), np.float32(0), FAR)
+        self._forbidden[self._shares.sum(-1) == 0] = FAR
+
+    def feasible(self, places: NDArray[Any]) -> NDArray[np.bool_]:
+        """Whether each action's way is free from each of the places [n, 2]: bool [actions, n]."""
+        found = np.zeros((len(ACTIONS), len(places)), dtype=bool)
+        for crouched in (0, 1):
+            mine = np.flatnonzero(crouched == CROUCHED)
+            starts = np.broadcast_to(places[None], (len(mine), *places.shape)).reshape(-1, 2)
+            ends = (places[None] + WAYS[mine, None]).reshape(-1, 2)
+            found[mine] = ~_crossed(starts, ends, self._obstacles[crouched]).reshape(len(mine), -1)
+        return found
+
+    def values(self, value: Floats, places: NDArray[Any]) -> Floats:
+        """The value [n] that is known at the lattice's places, at any places [m, 2]; FAR where none is near."""
+        corners, shares = self._between(places)
+        found: Floats = (value[corners] * shares).sum(-1)
+        found[shares.sum(-1) == 0] = FAR
+        return found
+
+    def best(self, standing: Floats, crouched: Floats, extra: Floats) -> Floats:
+        """At each place the least of what the actions lead to: a value where they end, by stance, and ``extra``."""
+        both = np.concatenate((standing, crouched))
+        led: Floats = np.einsum("anc,anc->an", both[self._corners], self._shares)
+        led += self._forbidden
+        led += extra[:, None]
+        least: Floats = led.min(axis=0)
+        return least
+
+    def way_to(self, goal: Point, within: float) -> Floats:
+        """Decisions that a walk takes from each place to within a distance of the goal, FAR where there is none."""
+        there = np.hypot(*(self.places - goal[:2]).T) <= within
+        found: Floats = np.where(there, np.float32(0), FAR)
+        extra = np.where(SPRINTS, FAR, np.float32(1))
+        for _ in range(10_000):
+            better: Floats = np.where(there, np.float32(0), np.minimum(found, self.best(found, found, extra)))
+            if np.abs(better - found).max() < 0.01:
+                break
+            found = better
+        return found
+
+    def _between(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Floats]:
+        """The four places around each point [m, 2], and their shares: those that are free, by their nearness."""
+        position = (ends - self._low) / SPACING
+        base = np.floor(position).astype(np.int64)
+        part = position - base
+        corners = np.zeros((len(ends), 4), dtype=np.int64)
+        shares = np.zeros((len(ends), 4), dtype=np.float32)
+        limit = np.array(self._number.shape) - 1
+        for corner, (dx, dy) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
+            column, row = np.clip(base + np.array((dx + 3, dy + 3)), 0, limit).T
+            number = self._number[column, row]
+            share = (part[:, 0] if dx else 1 - part[:, 0]) * (part[:, 1] if dy else 1 - part[:, 1])
+            corners[:, corner] = np.maximum(number, 0)
+            shares[:, corner] = np.where(number >= 0, share, 0)
+        total = shares.sum(-1, keepdims=True)
+        return corners, np.where(total > 0.05, shares / np.maximum(total, 1e-9), 0).astype(np.float32)
+
+
+def _grown(boxes: list[Box], grow: float, step: float, height: float) -> list[Rectangle]:
+    return [
+        (box.low[0] - grow, box.low[1] - grow, box.high[0] + grow, box.high[1] + grow)
+        for box in boxes
+        if box.low[2] < height and box.high[2] > step
+    ]
+
+
+def _crossed(starts: NDArray[Any], ends: NDArray[Any], rectangles: list[Rectangle]) -> NDArray[np.bool_]:
+    """Whether the segments between points [m, 2] go through the inside of a rectangle."""
+    crossed: NDArray[np.bool_] = np.zeros(len(starts), dtype=bool)
+    enter: Any
+    leave: Any
+    delta = ends - starts
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = 1.0 / np.where(delta == 0.0, 1e-12, delta)
+        for x0, y0, x1, y1 in rectangles:
+            enter, leave = 0.0, 1.0
+            for axis, low, high in ((0, x0, x1), (1, y0, y1)):
+                a, b = (low - starts[:, axis]) * inverse[:, axis], (high - starts[:, axis]) * inverse[:, axis]
+                enter, leave = np.maximum(enter, np.minimum(a, b)), np.minimum(leave, np.maximum(a, b))
+            crossed |= enter < leave
+    return crossed

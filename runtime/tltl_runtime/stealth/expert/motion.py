@@ -1,0 +1,208 @@
+"""The motion of :mod:`~tltl_runtime.stealth.world.physics`, foreseen for thousands of bodies at once.
+
+This is the player's feel for its own body, not the game: boxes push a capsule out as the physics does, to a few
+centimetres, and moving obstacles count as touched where they pass in the same decision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.level import Box
+from tltl_runtime.stealth.world.physics import SUBSTEPS
+from tltl_runtime.stealth.world.player import DECISION, PlayerKind, PlayerState
+from tltlc.record import record
+
+Floats = NDArray[np.float64]
+Truths = NDArray[np.bool_]
+
+_TOUCH: Final = 0.02
+"""How near a body is to what it stands on."""
+_COARSE: Final = 3
+"""Physics steps that are foreseen in a decision of bodies that all walk."""
+_BERTH: Final = 0.06
+"""How wide a berth moving obstacles are given."""
+
+
+@record
+class Poses:
+    """Bodies [n]: feet in metres, the speed of their fall upwards, and what they can do next."""
+
+    x: Floats
+    y: Floats
+    z: Floats
+    vz: Floats
+    crouching: Truths
+    grounded: Truths
+    stamina: Floats
+
+    def take(self, which: Any) -> Poses:
+        """Those of some indices, or of a mask."""
+        return Poses(*(getattr(self, name)[which] for name in _FIELDS))
+
+
+_FIELDS: Final = ("x", "y", "z", "vz", "crouching", "grounded", "stamina")
+
+
+def poses_of(state: PlayerState) -> Poses:
+    """One body, the player's."""
+    x, y, z = state.position
+    values = (x, y, z, state.velocity[2], state.crouching, state.grounded, state.stamina)
+    return Poses(*(np.array([value]) for value in values))
+
+
+def joined(parts: Sequence[Poses]) -> Poses:
+    """All bodies of several groups."""
+    return Poses(*(np.concatenate([getattr(part, name) for part in parts]) for name in _FIELDS))
+
+
+@record
+class _Boxes:
+    """The corners of boxes, [3, boxes] each."""
+
+    low: Floats
+    high: Floats
+
+
+class Motion:
+    """Bodies among boxes that stand still."""
+
+    def __init__(self, kind: PlayerKind, boxes: Sequence[Box]) -> None:
+        self.kind = kind
+        corners = np.array([[*box.low, *box.high] for box in boxes], dtype=np.float64).reshape(-1, 6)
+        self._boxes = _Boxes(corners[:, :3].T, corners[:, 3:].T)
+
+    def step(self, poses: Poses, actions: NDArray[np.int64], movers: Sequence[Box] = ()) -> tuple[Poses, Truths]:
+        """The bodies after one decision with these actions [n, 5], and which of them met one of ``movers``.
+
+        ``movers`` are the boxes that moving obstacles sweep in this decision.
+        """
+        kind = self.kind
+        boxes = self._reached(poses)
+        crouching = (actions[:, 3] > 0) | (poses.crouching & ~self._room(poses, boxes))
+        vx, vy, stamina = self._wish(poses, actions, crouching)
+        jumps = (actions[:, 2] > 0) & poses.grounded & ~crouching
+        height = np.where(crouching, kind.crouched_height, kind.height)
+        x, y, z = poses.x.copy(), poses.y.copy(), poses.z.copy()
+        lift = np.where(jumps | ~poses.grounded, 0.0, self._stairs(poses, vx, vy, height, boxes))
+        z += lift
+        vz = np.where(jumps, kind.jump_speed, np.maximum(poses.vz, -kind.fall_speed))
+        vz[lift > 0.0] = 0.0
+        substeps = SUBSTEPS if (jumps | ~poses.grounded).any() else _COARSE
+        seconds = DECISION / substeps
+        met = np.zeros(x.shape, dtype=np.bool_)
+        for _ in range(substeps):
+            vz -= kind.gravity * seconds
+            x += vx * seconds
+            y += vy * seconds
+            z += vz * seconds
+            for box in movers:
+                met |= _meets(x, y, z, height, kind.radius + _BERTH, box)
+            self._push_out(x, y, z, vx, vy, vz, height, boxes)
+        depth, normal = self._contacts(x, y, z, height, boxes)
+        grounded = ((depth > -_TOUCH) & (normal[2] > 0.5)).any(axis=1)
+        return Poses(x, y, z, vz, crouching, grounded, stamina), met
+
+    def _wish(self, poses: Poses, actions: NDArray[np.int64], crouching: Truths) -> tuple[Floats, Floats, Floats]:
+        """The speed along x and y that is asked for, and the stamina that is left (``player.control``)."""
+        kind = self.kind
+        sign = np.array([0.0, 1.0, -1.0])
+        dx, dy = sign[actions[:, 0]], sign[actions[:, 1]]
+        spent = DECISION / kind.stamina_time
+        sprints = (actions[:, 4] > 0) & ((dx != 0) | (dy != 0)) & ~crouching & (poses.stamina >= spent - 1e-9)
+        speed = np.where(sprints, kind.sprint_speed, np.where(crouching, kind.crouch_speed, kind.walk_speed))
+        speed = speed / np.maximum(np.hypot(dx, dy), 1.0)
+        refilled = np.minimum(1.0, poses.stamina + DECISION / kind.refill_time)
+        return dx * speed, dy * speed, np.where(sprints, np.maximum(0.0, poses.stamina - spent), refilled)
+
+    def _reached(self, poses: Poses) -> _Boxes:
+        """The boxes that any of the bodies may meet in one decision."""
+        reach = self.kind.radius + self.kind.sprint_speed * DECISION + _TOUCH
+        low, high = self._boxes.low, self._boxes.high
+        near = (low[0] < poses.x.max() + reach) & (high[0] > poses.x.min() - reach)
+        near &= (low[1] < poses.y.max() + reach) & (high[1] > poses.y.min() - reach)
+        return _Boxes(low[:, near], high[:, near])
+
+    def _stairs(self, poses: Poses, vx: Floats, vy: Floats, height: Floats, boxes: _Boxes) -> Floats:
+        """How high each body is lifted by a stair in its way; 0 where there is none."""
+        lift = np.zeros(poses.x.shape)
+        kind = self.kind
+        low, high = boxes.low, boxes.high
+        stairs = (high[2] > poses.z[:, None] + _TOUCH) & (high[2] <= poses.z[:, None] + kind.step_height + _TOUCH)
+        reach = kind.radius + kind.sprint_speed * DECISION
+        stairs &= (np.maximum(low[0] - poses.x[:, None], poses.x[:, None] - high[0]) < reach) & (
+            np.maximum(low[1] - poses.y[:, None], poses.y[:, None] - high[1]) < reach
+        )
+        some = np.flatnonzero(stairs.any(axis=1) & ((vx != 0.0) | (vy != 0.0)))
+        if not some.size:
+            return lift
+        here, z = poses.take(some), poses.z[some, None]
+        in_way = (z + _TOUCH < high[2]) & (low[2] < z + kind.radius)
+        for wx, wy in ((vx, vy), (vx, np.zeros_like(vx)), (np.zeros_like(vy), vy)):
+            undecided = np.ones(some.size, dtype=np.bool_)
+            for share in (1 / 3, 2 / 3, 1.0):
+                ahead_x, ahead_y = here.x + wx[some] * DECISION * share, here.y + wy[some] * DECISION * share
+                depth, _ = self._contacts(ahead_x, ahead_y, here.z, height[some], boxes)
+                tops = np.where(in_way & (depth > _TOUCH), high[2], -np.inf).max(axis=1)
+                step = tops - here.z + 0.005
+                first = undecided & np.isfinite(tops)
+                lift[some] = np.where(
+                    first & (step <= kind.step_height + _TOUCH), np.maximum(lift[some], step), lift[some]
+                )
+                undecided &= ~first
+        return lift
+
+    def _room(self, poses: Poses, boxes: _Boxes) -> Truths:
+        """Whether there is room to stand."""
+        depth, _ = self._contacts(poses.x, poses.y, poses.z, np.full(poses.x.shape, self.kind.height), boxes)
+        free: Truths = np.logical_and.reduce(depth <= _TOUCH, axis=1)
+        return free
+
+    def _push_out(
+        self, x: Floats, y: Floats, z: Floats, vx: Floats, vy: Floats, vz: Floats, height: Floats, boxes: _Boxes
+    ) -> None:
+        """Move bodies out of the boxes, and take away the speed into them: all in place."""
+        depth, normal = self._contacts(x, y, z, height, boxes)
+        touched = np.flatnonzero((depth > 0.0).any(axis=1))
+        if not touched.size:
+            return
+        deep, normal = np.maximum(depth[touched], 0.0), normal[:, touched]
+        for axis, place in enumerate((x, y, z)):
+            push = deep * normal[axis]
+            place[touched] += push.max(axis=1, initial=0.0) + push.min(axis=1, initial=0.0)
+        # The speed into what is met: the deepest first, then what is left of it against the others.
+        speed = np.stack([vx[touched], vy[touched], vz[touched]])
+        rows = np.arange(touched.size)
+        for _ in range(2):
+            against = np.where(deep > 0.0, (speed[:, :, None] * normal).sum(axis=0), 0.0)
+            worst = against.argmin(axis=1)
+            lost = np.minimum(against[rows, worst], 0.0)
+            speed -= lost * normal[:, rows, worst]
+        vx[touched], vy[touched], vz[touched] = speed
+
+    def _contacts(self, x: Floats, y: Floats, z: Floats, height: Floats, boxes: _Boxes) -> tuple[Floats, Floats]:
+        """How far each capsule reaches into each box [n, boxes], and the directions out of them [3, n, boxes]."""
+        radius = self.kind.radius
+        low, high = boxes.low, boxes.high
+        away = np.empty((3, x.size, low.shape[1]))
+        for axis, place in enumerate((x, y)):
+            away[axis] = place[:, None] - np.minimum(np.maximum(place[:, None], low[axis]), high[axis])
+        bottom, top = (z + radius)[:, None], (z + height - radius)[:, None]
+        away[2] = np.where(top < low[2], top - low[2], np.maximum(bottom - high[2], 0.0))
+        distance = np.sqrt((away * away).sum(axis=0))
+        inside = distance < 1e-9
+        away[2][inside] = 1.0
+        return radius - distance, away / np.where(inside, 1.0, distance)
+
+
+def _meets(x: Floats, y: Floats, z: Floats, height: Floats, radius: float, box: Box) -> Truths:
+    """Whether capsules of ``radius`` reach into a box."""
+    dx = np.maximum(np.maximum(box.low[0] - x, x - box.high[0]), 0.0)
+    dy = np.maximum(np.maximum(box.low[1] - y, y - box.high[1]), 0.0)
+    dz = np.maximum(np.maximum(box.low[2] - (z + height - radius), z + radius - box.high[2]), 0.0)
+    meets: Truths = dx * dx + dy * dy + dz * dz < radius * radius
+    return meets

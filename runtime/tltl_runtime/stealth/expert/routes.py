@@ -1,0 +1,274 @@
+"""How long the way to a goal is from everywhere: walked, crouched, climbed, leapt and dropped.
+
+The places of :class:`~tltl_runtime.stealth.expert.surfaces.Surfaces` are joined by what a player can do from one to the
+other; obstacles that move and enemies are not in it.  Times are rough, the ways are not: an edge is there only where
+the body passes with room to spare.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from functools import lru_cache
+from heapq import heappop, heappush
+from math import dist, hypot, inf, sqrt
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.expert.surfaces import CELL, Cells, Surfaces
+from tltl_runtime.stealth.game import Snapshot
+from tltl_runtime.stealth.level import Level, Point
+from tltlc.record import record
+
+Seconds = NDArray[np.float64]
+_Edges = tuple[NDArray[np.intp], NDArray[np.intp], Seconds, NDArray[np.intp]]
+
+_DIRECTIONS: Final = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
+_CLIMB: Final = 1.0
+"""The highest edge that a jump reaches."""
+_CLIMB_REACH, _DROP_REACH, _LEAP_REACH = 1.0, 1.0, 3.0
+"""How far from where a climb, a drop and a leap begin they end at most, in metres from centre to centre."""
+_JUMP_TIME: Final = 0.3
+"""Seconds that a jump costs beside its way."""
+_GOAL: Final = 0.6
+"""Metres from a goal that count as there."""
+_CLOSE_TO_WALL: Final = 1.25
+"""What a way past a wall with hardly any room costs more."""
+
+
+Kind = Literal["walk", "crouch", "climb", "drop", "leap"]
+
+_KINDS: Final[tuple[Kind, ...]] = ("walk", "crouch", "climb", "drop", "leap")
+
+
+@record
+class Leg:
+    """A piece of a way: how one gets to ``place``."""
+
+    kind: Kind
+    place: Point
+
+
+@record
+class Field:
+    """The seconds from each place to a goal [layers, rows, columns]; infinite where no way leads there.
+
+    ``towards`` [places] holds where the way goes from each, -1 at the goal and where there is none, ``kinds`` how.
+    """
+
+    surfaces: Surfaces
+    seconds: Seconds
+    towards: NDArray[np.int64]
+    kinds: NDArray[np.uint8]
+
+    def way(self, start: Point, metres: float = inf) -> tuple[Leg, ...]:
+        """The way from the place nearest to ``start``, so far and no further."""
+        place = self.surfaces.nearest(start)
+        legs = []
+        here, length = self.surfaces.point(place), 0.0
+        while self.towards[place] >= 0 and length <= metres:
+            kind, place = _KINDS[self.kinds[place]], int(self.towards[place])
+            there = self.surfaces.point(place)
+            legs.append(Leg(kind, there))
+            length += dist(here, there)
+            here = there
+        return tuple(legs)
+
+    def at(self, x: Seconds, y: Seconds, z: Seconds) -> Seconds:
+        """The seconds from points [n] on the ground, by the best of the places around each."""
+        surfaces, speed = self.surfaces, self.surfaces.kind.walk_speed
+        _, rows, columns = self.seconds.shape
+        column = np.floor((x - surfaces.origin[0]) / CELL).astype(np.intp)
+        row = np.floor((y - surfaces.origin[1]) / CELL).astype(np.intp)
+        best = np.full(x.shape, np.inf)
+        near = np.abs(surfaces.heights[:, None] - z[None, :]) < 0.3
+        for layer in np.flatnonzero(near.any(axis=1)):
+            for dy in (-1, 0, 1):
+                for dx in (-1, 0, 1):
+                    r, c = _within(row + dy, rows), _within(column + dx, columns)
+                    away = np.hypot(surfaces.xs[c] - x, surfaces.ys[r] - y) / speed
+                    seconds = np.where(near[layer], self.seconds[layer, r, c] + away, np.inf)
+                    best = np.minimum(best, seconds)
+        return best
+
+
+class Routes:
+    """The ways of a level while some barriers are shut."""
+
+    def __init__(self, level: Level, shut: Collection[int]) -> None:
+        self.surfaces = Surfaces(level, shut)
+        self._roomy = Surfaces(level, shut, margin=0.2).crouched
+        self._into: list[list[tuple[int, float, int]]] = [[] for _ in range(self.surfaces.places.size)]
+        for sources, targets, seconds, kinds in self._edges():
+            columns = (each.tolist() for each in (sources, targets, seconds, kinds))
+            for source, target, cost, kind in zip(*columns, strict=True):
+                self._into[target].append((source, cost, kind))
+        self._fields: dict[object, Field] = {}
+
+    def field(self, goal: Point, radius: float = _GOAL) -> Field:
+        """The way from everywhere to within ``radius`` of ``goal``."""
+        key = (goal, radius)
+        if key not in self._fields:
+            self._fields[key] = self._field(self.surfaces.near(goal, radius))
+        return self._fields[key]
+
+    def field_from(self, start: Point, goal: Point) -> Field:
+        """The way to ``goal``, or where none leads there from ``start`` to the nearest place that one leads to."""
+        field = self.field(goal)
+        place = self.surfaces.nearest(start)
+        if np.isfinite(field.seconds.flat[place]):
+            return field
+        key = (goal, place)
+        if key not in self._fields:
+            reached = min(self._reached(place), key=lambda each: dist(self.surfaces.point(each), goal))
+            self._fields[key] = self._field(np.array([reached]))
+        return self._fields[key]
+
+    def _field(self, goals: NDArray[np.intp]) -> Field:
+        """The shortest times to any of ``goals`` (Dijkstra's algorithm, backwards)."""
+        seconds: Any = [inf] * self.surfaces.places.size
+        towards, kinds = [-1] * len(seconds), [0] * len(seconds)
+        queue = [(0.0, goal) for goal in goals.tolist()]
+        for _, goal in queue:
+            seconds[goal] = 0.0
+        while queue:
+            time, place = heappop(queue)
+            if time > seconds[place]:
+                continue
+            for source, cost, kind in self._into[place]:
+                if time + cost < seconds[source]:
+                    seconds[source], towards[source], kinds[source] = time + cost, place, kind
+                    heappush(queue, (time + cost, source))
+        shape = self.surfaces.places.shape
+        return Field(
+            self.surfaces, np.array(seconds).reshape(shape), np.array(towards), np.array(kinds, dtype=np.uint8)
+        )
+
+    def _reached(self, start: int) -> set[int]:
+        """The places that a way leads to from ``start``."""
+        out: dict[int, list[int]] = {}
+        for target, sources in enumerate(self._into):
+            for source, _, _ in sources:
+                out.setdefault(source, []).append(target)
+        reached, left = {start}, [start]
+        while left:
+            for target in out.get(left.pop(), ()):
+                if target not in reached:
+                    reached.add(target)
+                    left.append(target)
+        return reached
+
+    # Edges: arrays of sources, targets, seconds and kinds, one direction and pair of layers at a time.
+
+    def _edges(self) -> Iterator[_Edges]:
+        heights = self.surfaces.heights
+        occupied = np.flatnonzero(self.surfaces.places.any(axis=(1, 2))).tolist()
+        for layer in occupied:
+            for target in occupied:
+                up = float(heights[target] - heights[layer])
+                if up > _CLIMB + 1e-6:
+                    break
+                for direction in _DIRECTIONS:
+                    if abs(up) <= self.surfaces.kind.step_height + 1e-6:
+                        yield self._walks(layer, target, direction)
+                    if up > self.surfaces.kind.step_height + 1e-6:
+                        yield from self._climbs(layer, target, direction)
+                    elif up < 0.0:
+                        yield from self._drops(layer, target, direction)
+                    if up < 1e-6:
+                        yield from self._leaps(layer, target, direction)
+
+    def _walks(self, layer: int, target: int, direction: tuple[int, int]) -> _Edges:
+        surfaces, kind = self.surfaces, self.surfaces.kind
+        sources, targets = self._joined(layer, target, direction, surfaces.places[layer])
+        upright = surfaces.standing.ravel()[sources] & surfaces.standing.ravel()[targets]
+        roomy = self._roomy.ravel()[targets]
+        length = CELL * hypot(*direction)
+        seconds = np.where(upright, length / kind.walk_speed, length / kind.crouch_speed)
+        kinds = np.where(upright, _KINDS.index("walk"), _KINDS.index("crouch"))
+        return sources, targets, np.where(roomy, seconds, seconds * _CLOSE_TO_WALL), kinds
+
+    def _climbs(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
+        """Jumps up to a higher place, from at least two cells away."""
+        surfaces = self.surfaces
+        begin = surfaces.places[layer] & surfaces.standing[layer] & surfaces.standing[target]
+        for steps, length in _reaches(direction, 2, _CLIMB_REACH):
+            begin = begin & _shifted(surfaces.standing[target], direction, steps - 1)
+            yield self._timed(self._joined(layer, target, direction, begin, steps), length, _JUMP_TIME, "climb")
+
+    def _drops(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
+        """Steps off an edge, down to a lower place."""
+        surfaces = self.surfaces
+        fall = sqrt(2 * float(surfaces.heights[layer] - surfaces.heights[target]) / surfaces.kind.gravity)
+        column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
+        begin = surfaces.places[layer] & surfaces.standing[layer]
+        for steps, length in _reaches(direction, 2, _DROP_REACH):
+            begin = begin & _shifted(surfaces.standing[layer], direction, steps - 1)
+            lands = begin & _shifted(column, direction, steps)
+            yield self._timed(self._joined(layer, target, direction, lands, steps), length, fall, "drop")
+
+    def _leaps(self, layer: int, target: int, direction: tuple[int, int]) -> Iterator[_Edges]:
+        """Jumps across what cannot be walked on, to a place no higher."""
+        surfaces = self.surfaces
+        column: Cells = np.logical_and.reduce(surfaces.standing[target : layer + 1])
+        begin = surfaces.places[layer] & surfaces.leaping[layer]
+        walkable = begin
+        for steps, length in _reaches(direction, 2, _LEAP_REACH):
+            begin = begin & _shifted(surfaces.leaping[layer], direction, steps - 1)
+            walkable = walkable & _shifted(surfaces.places[layer], direction, steps - 1)
+            lands = begin & ~walkable & _shifted(column, direction, steps)
+            yield self._timed(self._joined(layer, target, direction, lands, steps), length, _JUMP_TIME, "leap")
+
+    def _joined(
+        self, layer: int, target: int, direction: tuple[int, int], begin: Cells, steps: int = 1
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """The places of ``begin`` [rows, columns] and those of another layer so many steps from them, as indices."""
+        _, rows, columns = self.surfaces.places.shape
+        places = begin & _shifted(self.surfaces.places[target], direction, steps)
+        row, column = np.nonzero(places)
+        sources = (layer * rows + row) * columns + column
+        targets = (target * rows + row + steps * direction[0]) * columns + column + steps * direction[1]
+        return sources, targets
+
+    def _timed(
+        self, joined: tuple[NDArray[np.intp], NDArray[np.intp]], length: float, extra: float, kind: Kind
+    ) -> _Edges:
+        sources, targets = joined
+        seconds = np.full(sources.shape, length / self.surfaces.kind.walk_speed + extra)
+        return sources, targets, seconds, np.full(sources.shape, _KINDS.index(kind))
+
+
+@lru_cache(maxsize=32)
+def routes_of(level: Level, shut: frozenset[int]) -> Routes:
+    """The ways of a level while these barriers are shut, made once in a process."""
+    return Routes(level, shut)
+
+
+def shut_of(snapshot: Snapshot) -> frozenset[int]:
+    """The indices of the barriers that are shut."""
+    return frozenset(index for index, is_open in enumerate(snapshot.open) if not is_open)
+
+
+def _reaches(direction: tuple[int, int], least: int, reach: float) -> Iterator[tuple[int, float]]:
+    """The numbers of steps in a direction, from ``least`` to those that go as far as ``reach``, with their lengths."""
+    length = CELL * hypot(*direction)
+    for steps in range(least, int(reach / length + 1e-6) + 1):
+        yield steps, steps * length
+
+
+def _within(index: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+    """Indices out of range, moved to its ends."""
+    return np.minimum(np.maximum(index, 0), count - 1)
+
+
+def _shifted(cells: Cells, direction: tuple[int, int], steps: int) -> Cells:
+    """For each cell, what holds so many steps from it; beyond the border nothing does."""
+    dy, dx = direction[0] * steps, direction[1] * steps
+    rows, columns = cells.shape
+    found = np.zeros_like(cells)
+    if abs(dy) < rows and abs(dx) < columns:
+        found[max(0, -dy) : rows - max(0, dy), max(0, -dx) : columns - max(0, dx)] = cells[
+            max(0, dy) : rows + min(0, dy), max(0, dx) : columns + min(0, dx)
+        ]
+    return found

@@ -1,0 +1,69 @@
+"""From where what is seen: the places of a lattice that lie in an enemy's line of sight, standing and crouched."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from functools import lru_cache
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.enemies.enemy import CHEST, CROUCHED_HEAD, EYES, STANDING_HEAD
+from tltl_runtime.stealth.expert.lattice import Lattice, lattice_of
+from tltl_runtime.stealth.level import Level
+
+ROUNDED: Final = 0.2
+"""Enemies are taken to stand at multiples of this, in metres."""
+_KEPT: Final = 4096
+_ASIDE: Final = 0.15
+"""Places are looked at in five points: the middle, and so far to each side."""
+
+
+@lru_cache(maxsize=64)
+def sight_of(level: Level, shut: frozenset[int]) -> Sight:
+    """The sight in a level while the barriers with these indices are shut, kept in a process."""
+    return Sight(level, shut)
+
+
+class Sight:
+    """Lines of sight to a lattice's places, each found when it is first asked for.  Moving obstacles hide nobody."""
+
+    def __init__(self, level: Level, shut: frozenset[int]) -> None:
+        self.lattice: Lattice = lattice_of(level, shut)
+        boxes = [each.box for each in level.solids if each.box.high[2] > 0.0]
+        boxes += [level.barriers[each].box for each in sorted(shut) if level.barriers[each].kind == "solid"]
+        self._low = np.array([box.low for box in boxes], dtype=np.float32)[:, :, None]
+        self._high = np.array([box.high for box in boxes], dtype=np.float32)[:, :, None]
+        steps = np.array(((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))) * _ASIDE
+        self._targets = (self.lattice.places[None] + steps[:, None]).astype(np.float32).reshape(-1, 2)
+        self._kept: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
+
+    def seen_from(self, x: float, y: float) -> NDArray[np.float32]:
+        """How much of each place is in the line of sight of eyes at x, y: float32 [2, places], standing, crouched."""
+        key = (round(x / ROUNDED), round(y / ROUNDED))
+        found = self._kept.get(key)
+        if found is None:
+            found = self._kept[key] = self._look(key[0] * ROUNDED, key[1] * ROUNDED)
+            if len(self._kept) > _KEPT:
+                self._kept.popitem(last=False)
+        return found
+
+    def _look(self, x: float, y: float) -> NDArray[np.float32]:
+        eye = np.array((x, y), dtype=np.float32)
+        delta = (self._targets - eye).T
+        inverse = 1.0 / np.where(np.abs(delta) < 1e-6, np.float32(1e-6), delta)
+        a: NDArray[Any] = (self._low[:, :2] - eye[:, None]) * inverse
+        b: NDArray[Any] = (self._high[:, :2] - eye[:, None]) * inverse
+        enter = np.maximum(np.minimum(a, b).max(1), 0.0)
+        leave = np.minimum(np.maximum(a, b).min(1), 1.0)
+        meets = enter < leave
+        low, high = self._low[:, 2], self._high[:, 2]
+        seen = np.zeros((2, len(self._targets)), dtype=bool)
+        for stance, head in enumerate((STANDING_HEAD, CROUCHED_HEAD)):
+            for height in (head, CHEST * head):
+                fall = height - EYES
+                over = (EYES + fall * leave < high) & (EYES + fall * enter > low)
+                seen[stance] |= ~(meets & over).any(0)
+        share: NDArray[np.float32] = seen.reshape(2, 5, -1).mean(1, dtype=np.float32)
+        return share

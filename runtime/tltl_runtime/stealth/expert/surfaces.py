@@ -1,0 +1,116 @@
+"""Where a player can stand: the tops of everything, cell by cell.
+
+A level is cut into square cells.  Each height at which some box ends is a layer; a place is a layer and a cell
+whose centre lies on such a top with room for the body above it.  The body is taken for an upright cylinder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from math import ceil
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.world.player import PlayerKind
+
+CELL: Final = 0.25
+"""Metres to a side of a cell."""
+
+Cells = NDArray[np.bool_]
+"""[layers, rows, columns]: rows along y, columns along x."""
+
+_TOUCH: Final = 1e-6
+
+
+class Surfaces:
+    """The places of a level while the barriers with the indices ``shut`` are shut, lasers included.
+
+    ``heights`` [layers] are those of the tops, in metres, upwards.  Of each layer, row and column, ``supported`` says
+    whether something ends there under the cell's centre; ``standing``, ``crouched`` and ``leaping`` whether the room
+    above is free for a body that stands, is crouched, or stands and jumps, with ``margin`` metres (less than 0 where
+    one rather sees too much room than too little) to all sides.  What rises no higher than a stair is no obstacle.
+    """
+
+    def __init__(
+        self, level: Level, shut: Collection[int] = (), *, kind: PlayerKind | None = None, margin: float = 0.04
+    ) -> None:
+        self.level = level
+        self.kind = kind or PlayerKind()
+        (x0, y0, _), (x1, y1, ceiling) = level.bounds.low, level.bounds.high
+        self.origin = (x0, y0)
+        columns, rows = ceil((x1 - x0) / CELL - _TOUCH), ceil((y1 - y0) / CELL - _TOUCH)
+        self.xs = x0 + CELL * (np.arange(columns) + 0.5)
+        self.ys = y0 + CELL * (np.arange(rows) + 0.5)
+        solids = [solid.box for solid in level.solids]
+        boxes = solids + [level.barriers[index].box for index in sorted(shut)]
+        self.heights = np.array(sorted({box.high[2] for box in solids if box.high[2] < ceiling - _TOUCH}))
+        apex = self.kind.jump_speed**2 / (2 * self.kind.gravity)
+        self.supported = self._supported(solids)
+        self.standing = self._free(boxes, self.kind.height, margin)
+        self.crouched = self._free(boxes, self.kind.crouched_height, margin)
+        self.leaping = self._free(boxes, self.kind.height + apex, margin)
+        self.places: Cells = self.supported & self.crouched & ~self._buried(boxes)
+        layer, row, column = np.nonzero(self.places)
+        self._flat = np.flatnonzero(self.places)
+        self._points = np.stack([self.xs[column], self.ys[row], self.heights[layer]], axis=1)
+
+    def near(self, point: Point, radius: float) -> NDArray[np.intp]:
+        """The places within ``radius`` metres of a point, as flat indices into ``places``."""
+        return self._flat[self._squares(point) <= radius * radius]
+
+    def nearest(self, point: Point) -> int:
+        """The place nearest to a point, as a flat index into ``places``."""
+        return int(self._flat[self._squares(point).argmin()])
+
+    def point(self, place: int) -> Point:
+        """The middle of a place that is given by its flat index."""
+        layer, row, column = np.unravel_index(place, self.places.shape)
+        return float(self.xs[column]), float(self.ys[row]), float(self.heights[layer])
+
+    def _squares(self, point: Point) -> NDArray[np.float64]:
+        """The squared distances of all places from a point."""
+        squares: NDArray[np.float64] = ((self._points - np.array(point)) ** 2).sum(axis=1)
+        return squares
+
+    def _supported(self, boxes: list[Box]) -> Cells:
+        found = self._nothing()
+        for box in boxes:
+            layer = np.flatnonzero(np.abs(self.heights - box.high[2]) < _TOUCH)
+            rows, columns = self._over(box)
+            found[layer] |= (rows[:, None] & columns[None, :])[None]
+        return found
+
+    def _free(self, boxes: list[Box], height: float, margin: float) -> Cells:
+        """Where no box meets a cylinder of this height, above what it steps on."""
+        taken = self._nothing()
+        radius = self.kind.radius + margin
+        for box in boxes:
+            dx = np.maximum(np.maximum(box.low[0] - self.xs, self.xs - box.high[0]), 0.0)
+            dy = np.maximum(np.maximum(box.low[1] - self.ys, self.ys - box.high[1]), 0.0)
+            meets = dx[None, :] ** 2 + dy[:, None] ** 2 < radius * radius - _TOUCH
+            layers = (box.high[2] > self.heights + self.kind.step_height + _TOUCH) & (
+                box.low[2] < self.heights + height + max(margin, 0.0) - _TOUCH
+            )
+            taken[layers] |= meets[None]
+        return ~taken
+
+    def _buried(self, boxes: list[Box]) -> Cells:
+        """Where the centre itself is inside a box, however low it is."""
+        found = self._nothing()
+        for box in boxes:
+            rows, columns = self._over(box)
+            layers = (box.high[2] > self.heights + _TOUCH) & (box.low[2] < self.heights + _TOUCH)
+            found[layers] |= (rows[:, None] & columns[None, :])[None]
+        return found
+
+    def _over(self, box: Box) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """The rows and the columns whose centres are above a box."""
+        rows = (self.ys >= box.low[1]) & (self.ys <= box.high[1])
+        columns = (self.xs >= box.low[0]) & (self.xs <= box.high[0])
+        return rows, columns
+
+    def _nothing(self) -> Cells:
+        return np.zeros((len(self.heights), len(self.ys), len(self.xs)), dtype=np.bool_)

@@ -1,0 +1,1 @@
+"""Level files: read, checked, and changed by overlays."""

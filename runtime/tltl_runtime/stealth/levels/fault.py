@@ -1,0 +1,67 @@
+"""What makes a level unfit to be drawn and played, where it comes from elsewhere than a level file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltl_runtime.stealth.enemies.branches import added_branches
+from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.signals import readers
+from tltlc.record import replace
+
+_FARTHEST: Final = 1000.0
+"""Metres from the origin, as in level files."""
+
+_THINNEST: Final = 1e-3
+"""Metres that a box measures at least."""
+
+
+def fault(level: Level) -> str | None:
+    """The first thing that is wrong, None for a level that is fit; names and room are the business of level files."""
+    return next(_faults(level), None)
+
+
+def _faults(level: Level) -> Iterator[str]:
+    boxes = [("the bounds", level.bounds)]
+    boxes += [(f"the solid `{each.name}`", each.box) for each in level.solids]
+    boxes += [(f"the barrier `{each.name}`", each.box) for each in level.barriers]
+    yield from (f"{name}: no box within {_FARTHEST:g} m" for name, box in boxes if not _is_box(box))
+    for mover in level.movers:
+        good = mover.path and all(map(_is_place, mover.path)) and min(mover.size) >= _THINNEST and mover.speed > 0.0
+        if not good or min(mover.pause, mover.offset) < 0.0:
+            yield f"the mover `{mover.name}` has no way"
+    for enemy in level.enemies:
+        if not enemy.route or not all(map(_is_place, enemy.route)):
+            yield f"the enemy `{enemy.name}` has no route"
+        unknown = set(enemy.kind.branches) - set(added_branches())
+        yield from (f"the enemy `{enemy.name}` has a branch `{name}`, which there is not" for name in sorted(unknown))
+    places = [level.start.position]
+    places += [switch.position for switch in level.switches]
+    places += [each.position for each in level.exits]
+    yield from (f"{place} is no place within {_FARTHEST:g} m" for place in places if not _is_place(place))
+    yield from _wrong_references(level)
+
+
+def _wrong_references(level: Level) -> Iterator[str]:
+    switches, barriers = {each.name for each in level.switches}, {each.name for each in level.barriers}
+    opening = {name for barrier in level.barriers for name in barrier.opened_by}
+    opening |= {unlock.switch for unlock in level.unlocks}
+    opened = {name for unlock in level.unlocks for name in unlock.barriers}
+    yield from (f"there is no switch `{name}`" for name in sorted(opening - switches))
+    yield from (f"there is no barrier `{name}`" for name in sorted(opened - barriers))
+    yield from (f"`{unlock.switch}` unlocks nothing" for unlock in level.unlocks if not unlock.barriers)
+    signals = set(readers(replace(level, signals=())))
+    for name, meant in level.signals:
+        if meant not in signals:
+            yield f"there is no signal `{meant}`"
+        signals.add(name)
+
+
+def _is_box(box: Box) -> bool:
+    sides = [high - low for low, high in zip(box.low, box.high, strict=True)]
+    return _is_place(box.low) and _is_place(box.high) and min(sides) >= _THINNEST
+
+
+def _is_place(point: Point) -> bool:
+    return all(abs(value) <= _FARTHEST for value in point)

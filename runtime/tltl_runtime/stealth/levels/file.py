@@ -1,0 +1,291 @@
+"""Level files: TOML that a designer writes, read into a :class:`Level` (``docs/levels.md`` describes every key).
+
+A level lies in ``NAME.toml``, beside it ``assets/`` and ``overlays/``; what is not there is looked for among the
+levels that come with the package.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Solid
+from tltl_runtime.stealth.levels import check, overlay, parts
+from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
+from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.files import read_source
+from tltlc.record import replace
+from tltlc.source import SourceFile, Span
+
+LEVELS: Final = Path(__file__).parents[2] / "levels"
+"""The folder of the levels that come with the package."""
+
+_SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
+"""Where their specs lie: in an installed package, and in a checkout."""
+
+
+def level_names() -> tuple[str, ...]:
+    """The levels that come with the package."""
+    return tuple(sorted(path.stem for path in LEVELS.glob("*.toml")))
+
+
+def variants(name_or_path: str) -> tuple[str, ...]:
+    """The variants of a level, in the order of its file; errors as :func:`load_level` has them."""
+    loading = _Loading(_level_path(name_or_path))
+    return tuple(loading.variants)
+
+
+def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
+    """What the overlays of a variant say that they change, in their order; errors as :func:`load_level` has them."""
+    loading = _Loading(_level_path(name_or_path))
+    loading.level(variant)
+    return tuple(loading.changes)
+
+
+def load_level(name_or_path: str, variant: str = "v0") -> Level:
+    """A level that comes with the package, by name, or one in a ``.toml`` file, in one of its variants.
+
+    :func:`read_level` also tells what looks like a mistake and is none.
+
+    Errors (:class:`TltlError`): all that is wrong, as far as it can be told at once.  TLT0800 no such level or
+    variant; TLT0801 a file is no TOML; TLT0802 an unknown key; TLT0803 a missing key, a value of the wrong kind or
+    out of range; TLT0804 a name that is taken or that specs cannot use; TLT0805 a name that stands for nothing;
+    TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay changes what is not there; and those of
+    :func:`tltlc.files.read_source`.
+    """
+    return read_level(name_or_path, variant)[0]
+
+
+def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
+    """A level as :func:`load_level` reads it, and warnings: TLT0809 a mover runs into something."""
+    return _Loading(_level_path(name_or_path)).level(variant)
+
+
+def _level_path(name_or_path: str) -> Path:
+    if name_or_path.endswith(".toml"):
+        return Path(name_or_path)
+    if name_or_path not in level_names():
+        help_ = suggestion(name_or_path, level_names()) + " Files end with `.toml`."
+        raise TltlError([Diagnostic("TLT0800", f"there is no level `{name_or_path}`", help=help_)])
+    return LEVELS / f"{name_or_path}.toml"
+
+
+class _Loading:
+    """A level file on its way to a :class:`Level`: the files read so far, and what is wrong with them."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.log: list[Diagnostic] = []
+        self.files: list[tuple[str, str]] = []
+        self.changes: list[str] = []
+        self.places = parts.Places({}, {}, [])
+        self.root = self._read(path, path.name)
+        self.table = Table(self.root, f"the level `{path.stem}`", self.log)
+        self.variants = self._variants()
+
+    def level(self, variant: str) -> tuple[Level, tuple[Diagnostic, ...]]:
+        """The level in a variant, and warnings."""
+        if variant not in self.variants:
+            title = f"the level `{self.path.stem}` has no variant `{variant}`"
+            label = self.table.place("variants")
+            raise TltlError([Diagnostic("TLT0800", title, (label,), suggestion(variant, self.variants))])
+        table, places = self.table, self.places
+        doc, spec = table.text("doc"), self._spec()
+        bounds = self._bounds()
+        start = table.table("start")
+        uses, assets = self._assets(variant)
+        kinds = {
+            name: parts.enemy_kind(part, name)
+            for name, part in assets.items()
+            if part.text("type", one_of=("enemy", "part")) == "enemy"
+        }
+        used_solids, used_movers = self._used(uses, assets, kinds)
+        switches = parts.switches(table, places)
+        barriers = parts.barriers(table, places)
+        exits = parts.exits(table, places)
+        enemies = parts.enemies(table, kinds, places)
+        movers = [*used_movers, *parts.movers(table, places)]
+        level = Level(
+            name=self.path.stem,
+            variant=variant,
+            doc=doc,
+            bounds=bounds,
+            start=parts.start(start if start is not None else Table(self.root, "the start", [])),
+            solids=(*parts.enclosure(bounds), *used_solids, *parts.solids(table, places)),
+            switches=tuple(switches),
+            barriers=tuple(barriers),
+            unlocks=tuple(parts.unlocks(table, places)),
+            movers=tuple(movers),
+            enemies=tuple(enemies),
+            exits=tuple(exits),
+            sensors=parts.sensors(None, (), places),
+            spec=spec,
+            files=tuple(self.files),
+            signals=self._signals(),
+        )
+        names = check.entities(level)
+        level = replace(level, sensors=parts.sensors(table.table("sensors", needed=False), names, places))
+        table.done()
+        self._raise()
+        self.log += check.check_names(names, places)
+        self.log += check.check_references(level, places)
+        self.log += check.check_room(level, places, table.place("start"))
+        self._raise()
+        return level, tuple(check.check_movers(level, places))
+
+    def _read(self, path: Path, name: str) -> Entry:
+        source = read_source(path, _shown(path))
+        self.files.append((name, hashlib.sha256(source.text.encode()).hexdigest()))
+        return Entry(read_tree(source), Label(source, _first_line(source)))
+
+    def _raise(self) -> None:
+        if self.log:
+            raise TltlError(self.log)
+
+    def _variants(self) -> dict[str, tuple[str, ...]]:
+        """The overlays of each variant; ``v0`` alone where the file says nothing."""
+        table = self.table.table("variants", needed=False)
+        if table is None:
+            return {"v0": ()}
+        found = {key: table.names(key) for key in table.entries}
+        self._raise()
+        return found
+
+    def _bounds(self) -> Box:
+        table = self.table.table("bounds")
+        if table is None:
+            return Box((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
+        before = len(self.log)
+        box = parts.box(table)
+        table.done()
+        if len(self.log) == before and not box.low[2] < 0.0 < box.high[2]:
+            help_ = "expected the floor, at height 0, inside: `at` below 0, `at` and `size` above it"
+            self.log.append(Diagnostic("TLT0803", "the bounds hold no floor", (table.place("at"),), help_))
+        return box
+
+    def _spec(self) -> str:
+        """The spec's file, found beside the level or among the examples, and its name."""
+        text = self.table.text("spec", "")
+        file, colon, name = text.rpartition(":")
+        if not text:
+            return ""
+        if not file.endswith(".tltl") or not name:
+            self.log.append(wrong(self.table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
+            return ""
+        label = self.table.place("spec")
+        for folder in (self.path.parent, *_SPECS):
+            if (folder / file).is_file():
+                specs = _specs(folder / file)
+                if name not in specs:
+                    title = f"`{file}` holds no spec `{name}`"
+                    self.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, specs)))
+                return f"{folder / file}{colon}{name}"
+        title = f"there is no spec file `{file}`"
+        help_ = f"put it beside `{self.path.name}`"
+        self.log.append(Diagnostic("TLT0805", title, (label,), help_))
+        return ""
+
+    def _assets(self, variant: str) -> tuple[list[Table], dict[str, Table]]:
+        """The level's uses of parts, and its assets by name, with the overlays of the variant."""
+        uses = self.table.tables("use")
+        wanted = [(use, "asset") for use in uses]
+        wanted += [(Table(enemy, "`[[enemy]]`", []), "kind") for enemy in self._listed("enemy")]
+        found: dict[str, Entry] = {}
+        for table, key in wanted:
+            name = table.text(key)
+            if name and name not in found and (path := self._shared("assets", name, table.place(key))):
+                found[name] = self._read(path, f"assets/{name}.toml")
+        trees: dict[str, Tree] = {name: entry.value for name, entry in found.items()}
+        for name in self.variants[variant]:
+            label = self.table.entries["variants"].value[variant].label
+            if path := self._shared("overlays", name, label):
+                change = self._read(path, f"overlays/{name}.toml")
+                self.changes.append(str(change.value["doc"].value) if "doc" in change.value else name)
+                trees = overlay.apply(change.value, trees, self.log)
+        self._raise()
+        assets = {
+            name: Table(Entry(tree, found[name].label), f"the asset `{name}`", self.log) for name, tree in trees.items()
+        }
+        for table in assets.values():
+            table.text("doc")
+        return uses, assets
+
+    def _listed(self, key: str) -> list[Entry]:
+        """The tables under a key, if they are any."""
+        entry = self.root.value.get(key)
+        items = entry.value if entry is not None and isinstance(entry.value, list) else []
+        return [item for item in items if isinstance(item, Entry)]
+
+    def _shared(self, folder: str, name: str, label: Label) -> Path | None:
+        """The file of an asset or overlay, beside the level or in the package."""
+        for place in (self.path.parent / folder, LEVELS / folder):
+            if (path := place / f"{name}.toml").is_file() and path.parent == place:
+                return path
+        known = sorted({path.stem for place in (self.path.parent, LEVELS) for path in (place / folder).glob("*.toml")})
+        title = f"there is no {folder[:-1]} `{name}`"
+        self.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, known)))
+        return None
+
+    def _used(
+        self, uses: list[Table], assets: dict[str, Table], kinds: dict[str, EnemyKind]
+    ) -> tuple[list[Solid], list[Mover]]:
+        """What the parts that the level uses bring with them."""
+        solids: list[Solid] = []
+        prefixes: dict[str, Table] = {}
+        movers: list[Mover] = []
+        for use in uses:
+            asset = use.text("asset")
+            prefix, shift = use.text("name", asset) + "_", use.point("at", (0.0, 0.0, 0.0))
+            use.done()
+            if prefix in prefixes:
+                title, help_ = f"two parts are called `{prefix[:-1]}`", "give one of them another `name`"
+                labels = (use.place("name"), prefixes[prefix].place("name"))
+                self.log.append(Diagnostic("TLT0804", title, labels, help_))
+                continue
+            prefixes[prefix] = use
+            if asset in kinds:
+                self.log.append(wrong(use.entries["asset"], "asset", 'the name of an asset with `type = "part"`'))
+                continue
+            solids += parts.solids(assets[asset], self.places, shift, prefix)
+            movers += parts.movers(assets[asset], self.places, shift, prefix)
+            assets[asset].done()
+        for enemy in self._listed("enemy"):
+            kind = enemy.value.get("kind")
+            if kind is not None and kind.value in [name for name in assets if name not in kinds]:
+                self.log.append(wrong(kind, "kind", 'the name of an asset with `type = "enemy"`'))
+        return solids, movers
+
+    def _signals(self) -> tuple[tuple[str, str], ...]:
+        table = self.table.table("signals", needed=False)
+        if table is None:
+            return ()
+        found = tuple((key, table.text(key)) for key in table.entries)
+        for key, signal in found:
+            self.places.refer("signal", table, key, (signal,))
+        return found
+
+
+def _specs(path: Path) -> list[str]:
+    """The names of the specs in a file, whatever else is wrong with it."""
+    from tltlc.grammar.parser import parse
+    from tltlc.grammar.tree import SpecDecl
+
+    declarations = parse(read_source(path, _shown(path)))[0].declarations
+    return [declaration.name for declaration in declarations if isinstance(declaration, SpecDecl)]
+
+
+def _first_line(source: SourceFile) -> Span:
+    """The first line of a text that says something: where messages about the whole file point."""
+    found = re.search(r"^[ \t]*[^#\s].*$", source.text, re.MULTILINE)
+    return Span(*found.span()) if found else Span(0, 0)
+
+
+def _shown(path: Path) -> str:
+    """The path, relative to the current folder where it lies inside."""
+    try:
+        return str(path.absolute().relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)

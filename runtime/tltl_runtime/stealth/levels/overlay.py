@@ -1,0 +1,77 @@
+"""Overlays: small changes to the assets that levels share, kept beside them and named by the variants of levels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tltl_runtime.stealth.levels.table import suggestion
+from tltl_runtime.stealth.levels.toml_tree import Entry, Tree
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+
+
+def apply(overlay: Tree, assets: dict[str, Tree], log: list[Diagnostic]) -> dict[str, Tree]:
+    """The assets, by name, with an overlay's changes; what it says of things that are not there goes to ``log``.
+
+    ``[change.ASSET]`` gives keys of an asset another value, ``[change.ASSET.THING]`` keys of a thing in it;
+    ``[add.ASSET]`` appends to its lists.  Neither makes a key that the asset does not have (TLT0808), so that a
+    change cannot go wrong unseen.
+    """
+    changed = dict(assets)
+    for key, entry in overlay.items():
+        if key == "doc" and isinstance(entry.value, str):
+            continue
+        if key not in ("change", "add") or not isinstance(entry.value, dict):
+            help_ = "an overlay has `doc`, `[change.ASSET]` and `[add.ASSET]`"
+            log.append(Diagnostic("TLT0802", f"an overlay has no key `{key}` of this kind", (entry.label,), help_))
+            continue
+        for name, part in entry.value.items():
+            if name not in assets or not isinstance(part.value, dict):
+                log.append(_missing(f"the level uses no asset `{name}`", part.label, name, assets))
+            else:
+                put = _changed if key == "change" else _extended
+                changed[name] = put(changed[name], part.value, f"the asset `{name}`", log)
+    return changed
+
+
+def _changed(target: Tree, changes: Tree, what: str, log: list[Diagnostic]) -> Tree:
+    things = {
+        item.value["name"].value: (key, number)
+        for key, entry in target.items()
+        if _is_tables(entry.value)
+        for number, item in enumerate(entry.value)
+        if "name" in item.value
+    }
+    result = dict(target)
+    for key, entry in changes.items():
+        if key in things and isinstance(entry.value, dict):
+            kind, number = things[key]
+            items = list(result[kind].value)
+            inside = _changed(items[number].value, entry.value, f"`{key}` of {what}", log)
+            items[number] = Entry(inside, items[number].label)
+            result[kind] = Entry(items, result[kind].label)
+        elif key in target and key != "name" and not _is_tables(target[key].value):
+            result[key] = entry
+        else:
+            known = [known for known in (*target, *things) if known != "name"]
+            log.append(_missing(f"{what} has no `{key}` to change", entry.label, key, known))
+    return result
+
+
+def _extended(target: Tree, additions: Tree, what: str, log: list[Diagnostic]) -> Tree:
+    result = dict(target)
+    for key, entry in additions.items():
+        old = target[key].value if key in target else None
+        if not isinstance(old, list) or not isinstance(entry.value, list) or _is_tables(old) != _is_tables(entry.value):
+            lists = [known for known in target if isinstance(target[known].value, list)]
+            log.append(_missing(f"{what} has no list `{key}` of this kind to add to", entry.label, key, lists))
+        else:
+            result[key] = Entry([*old, *entry.value], entry.label)
+    return result
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], Entry)
+
+
+def _missing(title: str, label: Label, name: str, known: Any) -> Diagnostic:
+    return Diagnostic("TLT0808", title, (label,), suggestion(name, known))

@@ -1,0 +1,287 @@
+"""From the tables of level files to the records of a level: one function per kind of thing."""
+
+from __future__ import annotations
+
+import math
+from typing import Final, Literal, cast
+
+from tltl_runtime.stealth.enemies.branches import added_branches
+from tltl_runtime.stealth.level import (
+    Barrier,
+    Box,
+    Enemy,
+    EnemyKind,
+    Exit,
+    MapSensor,
+    Mover,
+    Point,
+    Sensors,
+    Solid,
+    Start,
+    Switch,
+    Unlock,
+)
+from tltl_runtime.stealth.levels.table import Table, suggestion
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.record import record
+
+OUTER_WALL: Final = 0.2
+"""How thick the walls around a level are, in metres."""
+
+MAX_RISE: Final = 0.25
+"""The highest step of stairs that the player walks up, in metres."""
+
+CELL_TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barrier", "laser", "mover", "enemy")
+"""What a cell of the semantic map can hold, beside nothing; where several meet, it holds the last of them."""
+
+SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
+
+CELL_WIDTH: Final = (0.1, 5.0)
+"""The least and the greatest width of a cell of the semantic map, in metres."""
+
+MAP_EXTENT: Final = (3, 63)
+"""The least and the greatest number of cells to a side of it; the number is odd."""
+
+VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "seen")
+"""What the player senses where a level does not say."""
+
+
+@record
+class Places:
+    """Where things were said, for the checks that come later: names by thing, positions by thing, references."""
+
+    names: dict[str, Label]
+    spots: dict[str, Label]
+    references: list[tuple[str, str, Label]]
+    """What kind of thing is meant, its name, and where."""
+
+    def put(self, name: str, table: Table, spot: str) -> None:
+        """Remember a thing; a second one of that name is an error (TLT0804)."""
+        label = table.place("name")
+        if name in self.names:
+            title = f"two things are called `{name}`"
+            table.log.append(Diagnostic("TLT0804", title, (label, self.names[name]), "give one another `name`"))
+        self.names.setdefault(name, label)
+        self.spots.setdefault(name, table.place(spot))
+
+    def refer(self, kind: str, table: Table, key: str, names: tuple[str, ...]) -> None:
+        """Remember that a key speaks of things of a kind."""
+        self.references.extend((kind, name, table.place(key)) for name in names)
+
+
+def solids(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
+    """The walls, low obstacles, platforms and stairs of a level or a part."""
+    found = []
+    for kind in SOLIDS:
+        for number, item in enumerate(table.tables(kind), 1):
+            name = prefix + item.text("name", f"{kind}_{number}")
+            found.append(Solid(name, kind, box(item, shift)))
+            places.put(name, item, "at")
+            item.done()
+    for number, item in enumerate(table.tables("stairs"), 1):
+        name = prefix + item.text("name", f"stairs_{number}")
+        found += _stairs(item, name, shift)
+        places.put(name, item, "from")
+        places.spots.update({solid.name: item.place("from") for solid in found if solid.name.startswith(f"{name}_")})
+        item.done()
+    return found
+
+
+def box(table: Table, shift: Point = (0.0, 0.0, 0.0)) -> Box:
+    """The box whose base has its middle at ``at`` and which is ``size`` large."""
+    (x, y, z), (dx, dy, dz) = moved(table.point("at"), shift), table.size()
+    return Box(_rounded((x - dx / 2, y - dy / 2, z)), _rounded((x + dx / 2, y + dy / 2, z + dz)))
+
+
+def _stairs(table: Table, name: str, shift: Point) -> list[Solid]:
+    """Boxes, one a step, that reach down to the height at which the stairs begin."""
+    foot, top = moved(table.point("from"), shift), moved(table.point("to"), shift)
+    width = table.number("width", low=0.7, high=50.0)
+    steps = table.whole("steps", low=1, high=40)
+    rise = (top[2] - foot[2]) / steps
+    run = [abs(top[0] - foot[0]), abs(top[1] - foot[1])]
+    axis = 0 if run[0] >= run[1] else 1
+    problem = None
+    if min(run) > 1e-9 or run[axis] / steps < 0.2:
+        problem = "along x or y, with steps at least 0.2 m deep"
+    elif not 0.0 < rise <= MAX_RISE + 1e-9:
+        problem = f"upwards, with steps of at most {MAX_RISE} m (here {rise:.3g} m)"
+    if problem:
+        label = table.place("to")
+        table.log.append(Diagnostic("TLT0803", f"nobody walks up `{name}`", (label,), f"expected stairs {problem}"))
+        return []
+    found = []
+    for number in range(steps):
+        begin, end = (foot[axis] + (top[axis] - foot[axis]) * (number + more) / steps for more in (0, 1))
+        low, high = list(foot), list(foot)
+        low[axis], high[axis] = min(begin, end), max(begin, end)
+        low[1 - axis] -= width / 2
+        high[1 - axis] += width / 2
+        high[2] = foot[2] + rise * (number + 1)
+        found.append(Solid(f"{name}_{number + 1}", "platform", Box(_rounded(low), _rounded(high))))
+    return found
+
+
+def movers(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Mover]:
+    """The moving boxes of a level or a part; in files, paths are those of the middle of the base."""
+    found = []
+    for item in table.tables("mover"):
+        name, size = prefix + item.text("name"), item.size()
+        up = (shift[0], shift[1], shift[2] + size[2] / 2)
+        path = tuple(_rounded(moved(point, up)) for point in item.points("path", 2))
+        speed = item.number("speed", low=0.01, high=10.0, unit="m/s")
+        pause = item.number("pause", 0.0, low=0.0, high=600.0, unit="s")
+        offset = item.number("offset", 0.0, low=0.0, high=600.0, unit="s")
+        found.append(Mover(name, size, path, speed, pause, offset, item.flag("closed")))
+        places.put(name, item, "path")
+        item.done()
+    return found
+
+
+def switches(table: Table, places: Places) -> list[Switch]:
+    """The switches of a level."""
+    found = []
+    for item in table.tables("switch"):
+        name = item.text("name")
+        found.append(Switch(name, item.point("at"), item.number("radius", 1.0, low=0.1, high=10.0)))
+        places.put(name, item, "at")
+        item.done()
+    return found
+
+
+def barriers(table: Table, places: Places) -> list[Barrier]:
+    """The barriers and lasers of a level."""
+    found = []
+    for kind, key in (("solid", "barrier"), ("laser", "laser")):
+        for item in table.tables(key):
+            name, opened_by = item.text("name"), item.names("opened_by", ())
+            damage = item.number("damage", 0.5, low=0.0, high=100.0, unit="a second") if kind == "laser" else 0.0
+            found.append(Barrier(name, cast(Literal["solid", "laser"], kind), box(item), opened_by, damage))
+            places.put(name, item, "at")
+            places.refer("switch", item, "opened_by", opened_by)
+            item.done()
+    return found
+
+
+def unlocks(table: Table, places: Places) -> list[Unlock]:
+    """What opens at random."""
+    found = []
+    for item in table.tables("unlock"):
+        unlock = Unlock(item.text("switch"), item.names("barriers"))
+        if len(set(unlock.barriers)) < max(2, len(unlock.barriers)):
+            help_ = "expected two or more barriers, each once"
+            title = "nothing is left to chance here"
+            item.log.append(Diagnostic("TLT0803", title, (item.place("barriers"),), help_))
+        places.refer("switch", item, "switch", (unlock.switch,))
+        places.refer("barrier", item, "barriers", unlock.barriers)
+        item.done()
+        found.append(unlock)
+    return found
+
+
+def exits(table: Table, places: Places) -> list[Exit]:
+    """The exits of a level."""
+    found = []
+    for item in table.tables("exit"):
+        name = item.text("name")
+        found.append(Exit(name, item.point("at")))
+        places.put(name, item, "at")
+        item.done()
+    return found
+
+
+def enemies(table: Table, kinds: dict[str, EnemyKind], places: Places) -> list[Enemy]:
+    """The enemies of a level; ``kinds`` are those that could be read, by the name of their asset."""
+    found = []
+    for item in table.tables("enemy"):
+        name, kind, route = item.text("name"), item.text("kind"), item.points("route", 1)
+        if kind in kinds:
+            found.append(Enemy(name, kinds[kind], route))
+        places.put(name, item, "route")
+        item.done()
+    return found
+
+
+def enemy_kind(table: Table, name: str) -> EnemyKind:
+    """An asset of type ``enemy``; angles are degrees in files."""
+    kind = EnemyKind(
+        name=name,
+        sight_range=table.number("sight_range", low=0.0, high=100.0),
+        sight_angle=math.radians(table.number("sight_angle", low=0.0, high=360.0, unit="degrees")),
+        walk_speed=table.number("walk_speed", low=0.1, high=20.0, unit="m/s"),
+        chase_speed=table.number("chase_speed", low=0.1, high=20.0, unit="m/s"),
+        turn_speed=math.radians(table.number("turn_speed", low=1.0, high=3600.0, unit="degrees a second")),
+        reaction_time=table.number("reaction_time", low=0.0, high=60.0, unit="s"),
+        memory_time=table.number("memory_time", low=0.0, high=60.0, unit="s"),
+        search_time=table.number("search_time", low=0.0, high=60.0, unit="s"),
+        search_radius=table.number("search_radius", low=0.0, high=50.0),
+        attack_range=table.number("attack_range", low=0.1, high=10.0),
+        attack_damage=table.number("attack_damage", low=0.0, high=100.0, unit="a second"),
+        branches=table.names("branches"),
+    )
+    for branch in kind.branches:
+        if branch not in added_branches():
+            title = f"there is no behaviour branch `{branch}`"
+            help_ = suggestion(branch, added_branches())
+            table.log.append(Diagnostic("TLT0805", title, (table.place("branches"),), help_))
+    table.done()
+    return kind
+
+
+def start(table: Table) -> Start:
+    """Where the player begins."""
+    found = Start(
+        table.point("at"),
+        math.radians(table.number("yaw", 0.0, low=-360.0, high=360.0, unit="degrees")),
+        table.number("spread", 0.0, low=0.0, high=10.0),
+    )
+    table.done()
+    return found
+
+
+def sensors(table: Table | None, entities: tuple[str, ...], places: Places) -> Sensors:
+    """What the agent senses; every entity and :data:`VARIABLES`, without a map, where nothing is said."""
+    if table is None:
+        return Sensors(entities, VARIABLES, None)
+    found_map = None
+    if (map_ := table.table("map", needed=False)) is not None:
+        extent = map_.whole("extent", low=MAP_EXTENT[0], high=MAP_EXTENT[1])
+        if extent % 2 == 0:
+            help_ = "expected an odd number of cells, so that one is in the middle"
+            title = f"wrong value for `extent`: {extent}"
+            map_.log.append(Diagnostic("TLT0803", title, (map_.place("extent"),), help_))
+        types = map_.names("types", CELL_TYPES)
+        places.refer("cell type", map_, "types", types)
+        found_map = MapSensor(types, map_.number("cell", low=CELL_WIDTH[0], high=CELL_WIDTH[1]), extent)
+        map_.done()
+    found = Sensors(table.names("entities", entities), table.names("variables", VARIABLES), found_map)
+    places.refer("entity", table, "entities", found.entities)
+    places.refer("signal", table, "variables", found.variables)
+    table.done()
+    return found
+
+
+def enclosure(bounds: Box) -> list[Solid]:
+    """The floor, whose top is at height 0, and the walls around a level."""
+    (x0, y0, z0), (x1, y1, z1) = bounds.low, bounds.high
+    walls = {
+        "outer_west": Box((x0, y0, 0.0), (x0 + OUTER_WALL, y1, z1)),
+        "outer_east": Box((x1 - OUTER_WALL, y0, 0.0), (x1, y1, z1)),
+        "outer_south": Box((x0, y0, 0.0), (x1, y0 + OUTER_WALL, z1)),
+        "outer_north": Box((x0, y1 - OUTER_WALL, 0.0), (x1, y1, z1)),
+    }
+    return [
+        Solid("floor", "floor", Box((x0, y0, z0), (x1, y1, 0.0))),
+        *(Solid(name, "wall", wall) for name, wall in walls.items()),
+    ]
+
+
+def moved(point: Point, shift: Point) -> Point:
+    """A point of a part, where the part stands."""
+    return (point[0] + shift[0], point[1] + shift[1], point[2] + shift[2])
+
+
+def _rounded(point: list[float] | Point) -> Point:
+    """To the micrometre: boxes that a designer makes touch do touch."""
+    x, y, z = (round(value, 6) + 0.0 for value in point)
+    return (x, y, z)

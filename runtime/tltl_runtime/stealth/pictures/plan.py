@@ -1,0 +1,225 @@
+"""A level from above, with the way of an episode through it, coloured by the automaton's state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from io import BytesIO
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Rectangle
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.episodes.episode import End, Episode
+from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.supply.reach import Reach
+
+_SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
+BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
+_STATES: Final = ("#2563eb", "#9333ea", "#0d9488", "#ca8a04", "#db2777", "#65a30d", "#0284c7", "#ea580c")
+_INK: Final = "#0f172a"
+_ENDS: Final[dict[End, tuple[str, str]]] = {
+    "success": ("D", "#16a34a"),
+    "violation": ("X", "#dc2626"),
+    "limit": ("s", "#64748b"),
+    "stopped": ("o", "#64748b"),
+}
+"""Marker and colour."""
+
+_DPI: Final = 100
+_METRES_PER_INCH: Final = 2.0
+_LONGEST_SIDE: Final = 40.0
+"""Of a picture, in inches: larger levels are drawn smaller."""
+
+_LINE: Final = 0.22
+"""Height of a line of the legend, in inches."""
+
+_MOST_LISTED: Final = 12
+"""Of the states of an episode, as many are in the legend."""
+
+_LETTERS_PER_INCH: Final = 12
+"""Of a line of the legend; what is longer is cut."""
+
+
+def draw(level: Level, path: Sequence[Point] = (), states: Sequence[int] = (), *, reach: Reach | None = None) -> bytes:
+    """The plan of a level as a PNG; ``path`` holds the player's feet, decision by decision, ``states`` the automaton's.
+
+    Without ``states`` the whole path has one colour; with ``reach``, red lies over all that nobody can stand on.
+    Raises ValueError where there is not one state for each point.
+    """
+    if states and len(states) != len(path):
+        raise ValueError(f"{len(path)} points need as many states, not {len(states)}")
+    figure = Figure(figsize=_natural_size(level), dpi=_DPI, layout="constrained")
+    axes = _level_axes(figure, level)
+    _add_way(axes, path, states or [0] * len(path))
+    if reach is not None:
+        _add_reach(axes, reach)
+    return _png(figure)
+
+
+def draw_episode(episode: Episode, size: tuple[int, int] | None = None) -> bytes:
+    """The plan of an episode as a PNG, ``size`` pixels wide and high: its way, where the state changed, how it ended.
+
+    The legend says what remained to be satisfied in each state.
+    """
+    states = episode.states.tolist()
+    path = [shot.player.position for shot in episode.snapshots]
+    visited = list(dict.fromkeys(states))[:_MOST_LISTED]
+    below = (len(visited) + 2) * _LINE
+    width, height = _natural_size(episode.level)
+    inches = (size[0] / _DPI, size[1] / _DPI) if size else (width, height + below)
+    figure = Figure(figsize=inches, dpi=_DPI, layout="constrained")
+    axes = _level_axes(figure, episode.level, start=False)
+    axes.set_title(
+        f"{episode.level.name} {episode.level.variant}, {episode.player}, seed {episode.seed}: {episode.end}"
+    )
+    _add_way(axes, path, states)
+    marks = [_mark(axes, path[0], "o", "white", "start")]
+    for row in (row for row in range(1, len(states)) if states[row] != states[row - 1]):
+        _mark(axes, path[row], "o", state_colour(states[row]), str(states[row]))
+        axes.annotate(str(states[row]), path[row][:2], color="white", fontsize=6, ha="center", va="center", zorder=7)
+    died = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
+    if died is not None:
+        marks.append(_mark(axes, path[died], "P", "#dc2626", "without health"))
+    marks.append(_mark(axes, path[-1], *_ENDS[episode.end], f"end: {episode.end}"))
+    letters = int(inches[0] * _LETTERS_PER_INCH)
+    lines = [
+        Line2D([], [], color=state_colour(state), linewidth=3, label=_label(episode, state, letters))
+        for state in visited
+    ]
+    figure.legend(handles=[*lines, *marks], loc="outside lower left", fontsize=8, frameon=False)
+    return _png(figure)
+
+
+def backdrop(level: Level, size: tuple[int, int]) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
+    """The plan of a level without its moving parts, (height, width, 3), and where in it a place is, in pixels."""
+    figure = Figure(figsize=(size[0] / _DPI, size[1] / _DPI), dpi=_DPI, layout="constrained")
+    axes = _level_axes(figure, level, moving=False, start=False)
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    transform = axes.transData
+
+    def pixel(place: Point) -> tuple[float, float]:
+        x, y = transform.transform(place[:2])
+        return float(x), size[1] - float(y)
+
+    return np.asarray(canvas.buffer_rgba())[..., :3].copy(), pixel
+
+
+def state_colour(state: int) -> str:
+    """The colour of a state of the automaton, as ``#rrggbb``."""
+    return _STATES[state % len(_STATES)]
+
+
+def _add_reach(axes: Any, reach: Reach) -> None:
+    """Red over the cells without ground that can be reached."""
+    rows, columns = reach.ground.shape
+    west, south = reach.origin
+    red = np.zeros((rows, columns, 4))
+    red[..., 0], red[..., 3] = 0.86, np.where(reach.ground, 0.0, 0.3)
+    extent = (west, west + columns * reach.cell, south, south + rows * reach.cell)
+    axes.imshow(red, origin="lower", extent=extent, interpolation="nearest", zorder=2)
+
+
+def _natural_size(level: Level) -> tuple[float, float]:
+    """Width and height in inches."""
+    (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
+    width, height = (x1 - x0) / _METRES_PER_INCH, (y1 - y0) / _METRES_PER_INCH
+    shrink = min(1.0, _LONGEST_SIDE / max(width, height))
+    return width * shrink, height * shrink + 0.4
+
+
+def _level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = True) -> Any:
+    """Axes in metres with all that a level has; what moves is drawn where it begins."""
+    (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
+    axes: Any = figure.add_subplot(
+        xlim=(x0, x1),
+        ylim=(y0, y1),
+        aspect="equal",
+        title=f"{level.name} {level.variant}",
+        xlabel="x, m",
+        ylabel="y, m",
+    )
+    for solid in sorted(level.solids, key=lambda solid: solid.box.high[2]):
+        axes.add_patch(_area(solid.box, facecolor=_SOLIDS[solid.kind], edgecolor="#94a3b8", linewidth=0.4))
+    for barrier in level.barriers:
+        axes.add_patch(_area(barrier.box, facecolor=BARRIERS[barrier.kind], alpha=0.8 if moving else 0.25))
+        _name(axes, barrier.name, _middle(barrier.box))
+    for mover in level.movers:
+        axes.plot(*_flat(mover.path), color="#7c3aed", linestyle=":", linewidth=1.5)
+        if moving:
+            _name(axes, mover.name, mover.path[0])
+    for enemy in level.enemies:
+        axes.plot(*_flat([*enemy.route, enemy.route[0]]), color="#dc2626", linestyle="--", linewidth=1.0)
+        if moving:
+            _name(axes, enemy.name, enemy.route[0])
+    for switch in level.switches:
+        axes.add_patch(Circle(switch.position[:2], switch.radius, facecolor="#facc15", alpha=0.5))
+        _name(axes, switch.name, switch.position)
+    for way_out in level.exits:
+        axes.plot(*way_out.position[:2], marker="*", markersize=14, color="#16a34a")
+        _name(axes, way_out.name, way_out.position)
+    if start:
+        axes.plot(*level.start.position[:2], marker="o", markersize=7, color=_INK)
+    return axes
+
+
+def _add_way(axes: Any, path: Sequence[Point], states: Sequence[int]) -> None:
+    pieces = [(one[:2], other[:2]) for one, other in pairwise(path)]
+    colours = [state_colour(state) for state in states[: len(pieces)]]
+    axes.add_collection(LineCollection(pieces, colors=colours, linewidths=2.0, capstyle="round", zorder=4))
+
+
+def _mark(axes: Any, place: Point, marker: str, colour: str, label: str) -> Any:
+    (mark,) = axes.plot(
+        *place[:2],
+        marker=marker,
+        markersize=9,
+        markerfacecolor=colour,
+        markeredgecolor=_INK,
+        linestyle="",
+        label=label,
+        zorder=6,
+    )
+    return mark
+
+
+def _label(episode: Episode, state: int, letters: int) -> str:
+    """A state in the legend: its number, what remains to be satisfied, and its verdict where that is settled."""
+    known = episode.fspa.states[state]
+    text = known.label.unicode
+    if len(text) > letters:
+        text = text[: letters - 1] + "…"
+    settled = f" ({known.verdict})" if known.verdict in ("satisfied", "violated") else ""
+    # matplotlib reads what stands between dollars as mathematics.
+    return f"state {state}: {text}{settled}".replace("$", r"\$")
+
+
+def _png(figure: Figure) -> bytes:
+    written = BytesIO()
+    figure.savefig(written, format="png", dpi=_DPI, metadata={"Software": None})
+    return written.getvalue()
+
+
+def _area(box: Box, **style: Any) -> Rectangle:
+    (x0, y0, _), (x1, y1, _) = box.low, box.high
+    return Rectangle((x0, y0), x1 - x0, y1 - y0, **style)
+
+
+def _middle(box: Box) -> Point:
+    (x0, y0, z0), (x1, y1, _) = box.low, box.high
+    return (x0 + x1) / 2, (y0 + y1) / 2, z0
+
+
+def _flat(points: Iterable[Point]) -> tuple[list[float], list[float]]:
+    listed = list(points)
+    return [point[0] for point in listed], [point[1] for point in listed]
+
+
+def _name(axes: Any, name: str, place: Point) -> None:
+    axes.annotate(name, place[:2], xytext=(0, 7), textcoords="offset points", ha="center", fontsize=8, color=_INK)

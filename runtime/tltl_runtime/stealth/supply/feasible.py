@@ -1,0 +1,111 @@
+"""Whether anybody can do in a level what a spec asks, as far as it depends on what can be reached there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import inf
+from typing import Final
+
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.supply.offer import offers
+from tltl_runtime.stealth.supply.reach import Reach, highest_lift, reachable
+from tltl_runtime.stealth.supply.spec_places import SpecPlaces
+from tltl_runtime.stealth.supply.supply import given_params, used_entities
+from tltl_runtime.stealth.world.player import PlayerKind
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.expression import Expression, Param, Signal
+from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases
+from tltlc.resolve.predicate_check.interval import Interval, UndefinedError
+from tltlc.resolve.predicate_check.region import Region, Variable, bound
+
+_TALLER: Final = 0.25
+"""By so many metres jumps get higher, until one leads past what is in the way."""
+
+
+def check_reach(level: Level, reach: Reach, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
+    """TLT0814 for each entity of a spec that nobody gets near to, as an error where the spec cannot be met without it.
+
+    The level supplies all that the spec speaks of.
+    """
+    far = [name for name in used_entities(level, fspa) if not reach.reaches(name)]
+    if not far:
+        return []
+    doable = _doable(fspa, _impossible(level, reach, fspa))
+    end = _end(level, reach, far[0])
+    found = []
+    for name in far:
+        title = f"nobody reaches `{name}` in `{level.name}:{level.variant}`"
+        title += "" if doable else f", so nobody can do what `{fspa.name}` asks"
+        found.append(Diagnostic("TLT0814", title, places.entity(name), end, "warning" if doable else "error"))
+    return found
+
+
+def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
+    """The atoms that hold nowhere that can be reached, by index."""
+    offered = offers(level)
+    box: dict[Variable, Interval] = {}
+    for signal in fspa.signals:
+        offer = offered[signal.name]
+        low, high = _ends(offer.low, offer.high)
+        entity = signal.name.removeprefix("distance(").removesuffix(")")
+        if signal.name == f"distance({entity})":
+            low = max(low, reach.distances[entity])
+        # A sample outside the declared range counts as the nearest value inside.
+        least, most = _ends(signal.low, signal.high)
+        box[Signal(signal.name)] = (min(max(low, least), most), min(max(high, least), most))
+    given = given_params(level, fspa)
+    for param in fspa.params:
+        value = given.get(param.name, param.value)
+        box[Param(param.name)] = (value, value)
+    return frozenset(index for index, atom in enumerate(fspa.atoms) if _highest(atom.expression, box) <= 0.0)
+
+
+def _ends(low: float | None, high: float | None) -> Interval:
+    return -inf if low is None else low, inf if high is None else high
+
+
+def _highest(expression: Expression, box: Mapping[Variable, Interval]) -> float:
+    """A value that an expression does not exceed in a box."""
+    highest = -inf
+    try:
+        for case in cases(expression):
+            region = Region(box, {}).where(case.constraints)
+            if region is not None:
+                highest = max(highest, bound(case.value, region)[1])
+    except (TooManyCasesError, UndefinedError):
+        return inf
+    return highest
+
+
+def _doable(fspa: Fspa, impossible: frozenset[int]) -> bool:
+    """Whether a trace on which these atoms never hold may be accepted."""
+    met, waiting = {0}, [0]
+    while waiting:
+        state = waiting.pop()
+        if fspa.states[state].accepting:
+            return True
+        for edge in fspa.edges_from(state):
+            open_ = any(not any(holds and atom in impossible for atom, holds in prime) for prime in edge.guard.primes)
+            if open_ and edge.target not in met:
+                met.add(edge.target)
+                waiting.append(edge.target)
+    return False
+
+
+# --- where the way ends ------------------------------------------------------------------------------
+
+
+def _end(level: Level, reach: Reach, entity: str) -> str:
+    """What is in the way to an entity: the solid that is got over first where jumps are higher and higher."""
+    lift = normal = highest_lift(PlayerKind())
+    higher = reach
+    while lift < level.bounds.high[2] and not higher.reaches(entity):
+        lift += _TALLER
+        higher = reachable(level, lift=lift)
+    heights = {solid.name: solid.box.high[2] - solid.box.low[2] for solid in level.solids}
+    if higher.reaches(entity):
+        for name, height in heights.items():
+            if normal < height <= lift and reachable(level, without=[name]).reaches(entity):
+                return f"the way ends at `{name}`, which is {height:g} m high"
+    return f"one gets no nearer to it than {reach.distances[entity]:.1f} m"

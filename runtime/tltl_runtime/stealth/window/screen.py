@@ -1,0 +1,81 @@
+"""What ``render`` of an environment gives or shows; nothing is made before the first picture."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Final
+
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.pictures.camera import VIEWS, View
+from tltl_runtime.stealth.world.player import DECISION
+from tltlc.diagnostics.diagnostic import TltlError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from tltl_runtime.stealth.game import Snapshot
+    from tltl_runtime.stealth.pictures.render import Renderer
+    from tltl_runtime.stealth.window.window import Window
+
+MODES: Final = ("human", "rgb_array")
+
+
+class Screen:
+    """Pictures of a level for the render mode ``rgb_array``, a window for ``human``.
+
+    ``size`` is width and height in pixels.  Raises ValueError for a mode or a view that there is not.
+    """
+
+    def __init__(self, level: Level, mode: str | None, view: View, size: tuple[int, int]) -> None:
+        if mode is not None and mode not in MODES:
+            raise ValueError(f"there is no render mode {mode!r}: there are {', '.join(MODES)}")
+        if view not in VIEWS:
+            raise ValueError(f"there is no view {view!r}: there are {', '.join(VIEWS)}")
+        self.level, self.mode, self.view, self.size = level, mode, view, size
+        self._renderer: Renderer | None = None
+        self._window: Window | None = None
+        self._unseen = False
+
+    def render(self, snapshot: Snapshot) -> NDArray[np.uint8] | None:
+        """The picture, (height, width, 3); in a window it is shown for the time of a decision instead.
+
+        Where no window can be opened, one warning is given and nothing is shown.  Raises TltlError: TLT0730 where
+        what opens windows is not installed.
+        """
+        if self.mode is None or self._unseen:
+            return None
+        if self.mode == "human" and self._window is None:
+            self._open()
+            if self._unseen:
+                return None
+        if self._renderer is None:
+            from tltl_runtime.stealth.pictures.render import Renderer
+
+            self._renderer = Renderer(self.level, *self.size)
+        frame = self._renderer.frame(snapshot, self.view)
+        if self._window is None:
+            return frame
+        self._window.show(frame)
+        self._window.wait(DECISION)
+        return None
+
+    def _open(self) -> None:
+        from tltl_runtime.stealth.window.window import NO_WINDOW, Window
+
+        try:
+            self._window = Window(f"{self.level.name} {self.level.variant}", self.size)
+        except TltlError as error:
+            (diagnostic,) = error.diagnostics
+            if diagnostic.code != NO_WINDOW:
+                raise
+            warnings.warn(f"{diagnostic.code}: {diagnostic.title}", stacklevel=4)
+            self._unseen = True
+
+    def close(self) -> None:
+        """Close the window and give up the bodies; a later picture makes them anew."""
+        if self._renderer is not None:
+            self._renderer.close()
+        if self._window is not None:
+            self._window.close()
+        self._renderer = self._window = None

@@ -1,0 +1,208 @@
+"""A window with a keyboard, by pygame: shows pictures, and says which keys are held.
+
+No other module imports pygame; docs/adr/0010-pictures-and-windows.md says why it is pygame.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.stealth.pictures.hud import Hud, Tone
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.record import record
+
+NO_WINDOW: Final = "TLT0830"
+"""The code of the error that no window can be opened."""
+
+_LEAST: Final = 960
+"""Pixels: narrower pictures are enlarged to this width."""
+_UNSEEN: Final = {"dummy", "offscreen"}
+"""What SDL draws to where there is no screen; a game would wait there for keys that nobody can press."""
+_TONES: Final[dict[Tone, tuple[int, int, int]]] = {
+    "plain": (235, 239, 245),
+    "quiet": (160, 170, 186),
+    "good": (88, 214, 141),
+    "bad": (255, 99, 99),
+    "warn": (255, 201, 71),
+    "dark": (16, 20, 30),
+}
+_PANEL: Final = (16, 20, 30)
+_TITLE_STRENGTH: Final = 215
+_LINE: Final = 20
+"""The height of a line, in pixels."""
+_SMALL: Final = 20
+"""The height of names in the picture."""
+_SIDE: Final = 330
+"""The width of what stands beside the picture."""
+_TRACK: Final = (60, 68, 84)
+
+Names = Sequence[tuple[str, float, float]]
+"""Names, and where they stand: pixels from the left and from the top."""
+
+
+@record
+class Keys:
+    """What a person asks for: an action of the game, and whether to begin again, to stop, or another view."""
+
+    action: tuple[int, int, int, int, int]
+    restart: bool = False
+    stop: bool = False
+    view: bool = False
+
+
+class Window:
+    """A window for pictures of ``size`` (width, height), enlarged where that is small; it closes with ``close``.
+
+    One with a ``side`` has room beside the pictures for a head-up display.
+
+    Keys: arrows or WASD walk (up is away from the eye, which is north), space jumps, C or control crouches, shift
+    sprints, R begins again, V changes the view, Escape, Q or the window's own button stop.
+
+    Raises:
+        TltlError: TLT0730 without pygame, TLT0830 where no window can be opened.
+    """
+
+    def __init__(self, title: str, size: tuple[int, int], side: bool = False) -> None:
+        pygame = self._pygame = _loaded()
+        scale = max(1.0, _LEAST / size[0])
+        self.size = (round(size[0] * scale), round(size[1] * scale))
+        self._side = _SIDE if side else 0
+        try:
+            pygame.display.init()
+            pygame.font.init()
+            self._surface = pygame.display.set_mode((self._side + self.size[0], self.size[1]))
+        except pygame.error as error:
+            pygame.quit()
+            raise _no_display(str(error)) from None
+        if pygame.display.get_driver() in _UNSEEN:
+            pygame.quit()
+            raise _no_display("there is no screen")
+        pygame.display.set_caption(title)
+        pygame.event.set_allowed((pygame.QUIT, pygame.KEYDOWN, pygame.KEYUP))
+        self._clock = pygame.time.Clock()
+        self._fonts: dict[int, Any] = {}
+        self._tapped: set[int] = set()
+
+    def close(self) -> None:
+        """Close the window; closing twice does nothing."""
+        self._pygame.quit()
+
+    def keys(self) -> Keys:
+        """What is asked for now; a key that was only tapped since the last call counts as held."""
+        pygame = self._pygame
+        stop = restart = view = False
+        for event in pygame.event.get():
+            if event.type == pygame.QUIT:
+                stop = True
+            elif event.type == pygame.KEYDOWN:
+                self._tapped.add(event.key)
+                stop = stop or event.key in (pygame.K_ESCAPE, pygame.K_q)
+                restart = restart or event.key == pygame.K_r
+                view = view or event.key == pygame.K_v
+        pressed, tapped = pygame.key.get_pressed(), self._tapped
+        self._tapped = set()
+
+        def held(*keys: int) -> bool:
+            return any(pressed[key] or key in tapped for key in keys)
+
+        east = held(pygame.K_d, pygame.K_RIGHT) - held(pygame.K_a, pygame.K_LEFT)
+        north = held(pygame.K_w, pygame.K_UP) - held(pygame.K_s, pygame.K_DOWN)
+        action = (
+            east % 3,
+            north % 3,
+            int(held(pygame.K_SPACE)),
+            int(held(pygame.K_c, pygame.K_LCTRL, pygame.K_RCTRL)),
+            int(held(pygame.K_LSHIFT, pygame.K_RSHIFT)),
+        )
+        return Keys(action, restart, stop, view)
+
+    def show(self, frame: NDArray[np.uint8], hud: Hud | None = None, names: Names = ()) -> None:
+        """Show a picture, (height, width, 3), names at their places in its pixels, and the head-up display."""
+        pygame = self._pygame
+        picture = pygame.image.frombuffer(np.ascontiguousarray(frame).tobytes(), frame.shape[1::-1], "RGB")
+        self._surface.blit(pygame.transform.smoothscale(picture, self.size), (self._side, 0))
+        for name, x, y in names:
+            self._draw_name(name, x * self.size[0] / frame.shape[1], y * self.size[1] / frame.shape[0])
+        if hud is not None:
+            self._draw_side(hud)
+            if hud.title:
+                self._draw_title(hud)
+        pygame.display.flip()
+
+    def wait(self, seconds: float) -> None:
+        """Wait until this long after the last call, and let the window live meanwhile."""
+        self._pygame.event.pump()
+        self._clock.tick(1 / seconds)
+
+    def _draw_name(self, name: str, x: float, y: float) -> None:
+        """A name above a place in the picture, light with a dark edge, to be read on anything."""
+        light, dark = (self._text(name, tone, _SMALL) for tone in ("plain", "dark"))
+        left = self._side + round(x) - light.get_width() // 2
+        top = round(y) - light.get_height()
+        for across, down in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+            self._surface.blit(dark, (left + across, top + down))
+        self._surface.blit(light, (left, top))
+
+    # The head-up display
+
+    def _draw_side(self, hud: Hud) -> None:
+        """Bars and lines, left of the picture."""
+        step = _LINE
+        self._surface.fill(_PANEL, (0, 0, self._side, self.size[1]))
+        rows = [self._bar(bar.name, bar.value, bar.tone, step) for bar in hud.bars]
+        rows += [self._text(line.text, line.tone, step) for line in hud.lines]
+        for index, row in enumerate(rows):
+            self._surface.blit(row, (step, step + index * round(step * 1.3)))
+
+    def _draw_title(self, hud: Hud) -> None:
+        """A title and the lines below it, in the middle of the picture."""
+        pygame, step = self._pygame, _LINE + 4
+        rows = [self._text(hud.title, hud.tone, step * 2), *(self._text(line, "plain", step) for line in hud.below)]
+        width = max(row.get_width() for row in rows) + 2 * step
+        height = sum(row.get_height() for row in rows) + 2 * step
+        panel = pygame.Surface((width, height), pygame.SRCALPHA)
+        panel.fill((*_PANEL, _TITLE_STRENGTH))
+        y = step
+        for row in rows:
+            panel.blit(row, ((width - row.get_width()) // 2, y))
+            y += row.get_height()
+        middle = self._side + (self.size[0] - width) // 2, (self.size[1] - height) // 2
+        self._surface.blit(panel, (max(0, middle[0]), max(0, middle[1])))
+
+    def _bar(self, name: str, value: float, tone: Tone, height: int) -> Any:
+        """A name, and how much of a track is filled."""
+        pygame = self._pygame
+        row = pygame.Surface((height * 13, height), pygame.SRCALPHA)
+        row.blit(self._text(name, "quiet", height), (0, 0))
+        track = pygame.Rect(height * 5, height // 4, height * 8, height // 2)
+        pygame.draw.rect(row, _TRACK, track, border_radius=height // 4)
+        track.width = round(track.width * min(1.0, max(0.0, value)))
+        pygame.draw.rect(row, _TONES[tone], track, border_radius=height // 4)
+        return row
+
+    def _text(self, text: str, tone: Tone, height: int) -> Any:
+        if height not in self._fonts:
+            self._fonts[height] = self._pygame.font.Font(None, int(height * 1.1))
+        return self._fonts[height].render(text, True, _TONES[tone])
+
+
+def _loaded() -> Any:
+    """Pygame, without its greeting on standard output."""
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    try:
+        import pygame
+    except ModuleNotFoundError as error:
+        title = f"a window needs `{error.name}`, which is not installed"
+        raise TltlError([Diagnostic("TLT0730", title, help="pip install 'tltlc[rl]'")]) from None
+    return pygame
+
+
+def _no_display(why: str) -> TltlError:
+    title = f"no window can be opened here: {why}"
+    way_out = "play on a machine with a screen, or start `Xvfb` and set DISPLAY; pictures of episodes need none of that"
+    return TltlError([Diagnostic(NO_WINDOW, title, help=way_out)])

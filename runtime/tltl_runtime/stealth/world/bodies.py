@@ -1,0 +1,83 @@
+"""Bodies in pybullet, made so that none of its silent traps is met; ``physics`` says which they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pybullet
+
+from tltl_runtime.stealth.level import Point
+from tltl_runtime.stealth.world.geometry import Bounds
+
+COMPOUND = 16
+"""The children of a compound shape that Bullet keeps."""
+RAY, PLAYER, PARKED, WORLD = 1, 2, 4, 8
+"""Groups of collision; Bullet puts rays in the first."""
+STOPS = RAY | PLAYER
+"""What the world stops: not itself."""
+UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+
+
+def static_boxes(client: int, boxes: Sequence[Bounds]) -> int:
+    """One static body of at most 16 boxes, in the group of the world."""
+    if len(boxes) > COMPOUND:
+        raise ValueError(f"a compound holds {COMPOUND} boxes, {len(boxes)} were given")
+    shape = pybullet.createCollisionShapeArray(
+        shapeTypes=[pybullet.GEOM_BOX] * len(boxes),
+        halfExtents=[[(b - a) / 2 for a, b in zip(low, high, strict=True)] for low, high in boxes],
+        collisionFramePositions=[[(a + b) / 2 for a, b in zip(low, high, strict=True)] for low, high in boxes],
+        physicsClientId=client,
+    )
+    return _static(client, shape, (0.0, 0.0, 0.0))
+
+
+def static_box(client: int, size: Point, place: Point) -> int:
+    """A static body of one box with its centre at ``place``, in the group of the world; it can be put elsewhere."""
+    half = [side / 2 for side in size]
+    shape = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half, physicsClientId=client)
+    return _static(client, shape, place)
+
+
+def capsule(client: int, radius: float, height: float, place: Point) -> int:
+    """A dynamic capsule of 1 kg that neither turns nor rubs, parked at ``place``."""
+    shape = pybullet.createCollisionShape(
+        pybullet.GEOM_CAPSULE, radius=radius, height=height - 2 * radius, physicsClientId=client
+    )
+    body: int = pybullet.createMultiBody(1.0, shape, _unseen(client), place, physicsClientId=client)
+    pybullet.changeDynamics(
+        body,
+        -1,
+        localInertiaDiagonal=(0.0, 0.0, 0.0),
+        lateralFriction=0.0,
+        spinningFriction=0.0,
+        rollingFriction=0.0,
+        restitution=0.0,
+        linearDamping=0.0,
+        angularDamping=0.0,
+        physicsClientId=client,
+    )
+    set_filter(client, body, PARKED, 0)
+    return body
+
+
+def set_filter(client: int, body: int, group: int, mask: int) -> None:
+    """Say which group a body is in, and which groups it meets."""
+    pybullet.setCollisionFilterGroupMask(body, -1, group, mask, physicsClientId=client)
+
+
+def _static(client: int, shape: int, place: Point) -> int:
+    body: int = pybullet.createMultiBody(
+        0.0, shape, _unseen(client), place, useMaximalCoordinates=1, physicsClientId=client
+    )
+    pybullet.changeDynamics(body, -1, lateralFriction=0.0, restitution=0.0, physicsClientId=client)
+    set_filter(client, body, WORLD, STOPS)
+    return body
+
+
+def _unseen(client: int) -> int:
+    """A visual shape too small for a picture; without one, a body looks like its collision shape."""
+    corners = [[0.0, 0.0, 0.0], [0.001, 0.0, 0.0], [0.0, 0.001, 0.0]]
+    shape: int = pybullet.createVisualShape(
+        pybullet.GEOM_MESH, vertices=corners, indices=[0, 1, 2], physicsClientId=client
+    )
+    return shape

@@ -1,0 +1,90 @@
+from __future__ import annotations
+
+import pytest
+
+from tltl_runtime.stealth.enemies import branches
+from tltl_runtime.stealth.enemies.behaviour import (
+    FAILURE,
+    RUNNING,
+    SUCCESS,
+    Node,
+    action,
+    condition,
+    selector,
+    sequence,
+)
+
+
+def leaf(status: int, seen: list[int]) -> Node:
+    def tick(_: object) -> int:
+        seen.append(status)
+        return status
+
+    return tick
+
+
+@pytest.mark.parametrize(
+    ("statuses", "result", "ticked"),
+    [
+        ((FAILURE, FAILURE), FAILURE, 2),
+        ((FAILURE, RUNNING, SUCCESS), RUNNING, 2),
+        ((SUCCESS, RUNNING), SUCCESS, 1),
+    ],
+)
+def test_a_selector_takes_the_first_that_does_not_fail(statuses: tuple[int, ...], result: int, ticked: int) -> None:
+    seen: list[int] = []
+    assert selector(*(leaf(status, seen) for status in statuses))(None) == result
+    assert len(seen) == ticked
+
+
+@pytest.mark.parametrize(
+    ("statuses", "result", "ticked"),
+    [
+        ((SUCCESS, SUCCESS), SUCCESS, 2),
+        ((SUCCESS, RUNNING, FAILURE), RUNNING, 2),
+        ((FAILURE, SUCCESS), FAILURE, 1),
+    ],
+)
+def test_a_sequence_goes_on_while_its_children_succeed(statuses: tuple[int, ...], result: int, ticked: int) -> None:
+    seen: list[int] = []
+    assert sequence(*(leaf(status, seen) for status in statuses))(None) == result
+    assert len(seen) == ticked
+
+
+def test_conditions_and_actions_speak_of_what_acts() -> None:
+    assert condition(lambda number: number > 3)(4) == SUCCESS
+    assert condition(lambda number: number > 3)(3) == FAILURE
+    assert action(lambda number: number > 3)(4) == SUCCESS
+    assert action(lambda number: number > 3)(3) == RUNNING
+
+
+def test_check_gaps_is_what_can_be_added() -> None:
+    assert branches.added_branches() == ("check_gaps",)
+    with pytest.raises(ValueError, match="no branch 'fly' can be added to an enemy: there are check_gaps"):
+        branches.tree(("fly",))
+    with pytest.raises(ValueError, match="no branch 'chase' can be added"):
+        branches.tree(("chase",))
+
+
+def test_a_branch_is_added_by_one_function(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(branches, "_BRANCHES", dict(branches._BRANCHES))
+
+    class Dancer:
+        knows = False
+        search_left = 0.0
+        back = False
+        danced = 0
+
+    @branches.branch("dance", rank=45, added=True)
+    def dance() -> Node:
+        def step(dancer: Dancer) -> bool:
+            dancer.danced += 1
+            return False
+
+        return action(step)
+
+    dancer = Dancer()
+    assert branches.tree(("dance",))(dancer) == RUNNING
+    assert dancer.danced == 1
+    with pytest.raises(ValueError, match="there is a branch 'dance' already"):
+        branches.branch("dance", rank=1)(dance)

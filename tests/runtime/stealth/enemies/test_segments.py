@@ -1,0 +1,57 @@
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from tltl_runtime.stealth.enemies.segments import Corners, blocked, crosses
+from tltl_runtime.stealth.level import Point
+
+POINTS = st.tuples(*[st.floats(-5, 5).map(lambda x: round(x, 2))] * 3)
+
+
+def around(c: Point, d: Point) -> Corners:
+    return (min(c[0], d[0]), min(c[1], d[1]), min(c[2], d[2]), max(c[0], d[0]), max(c[1], d[1]), max(c[2], d[2]))
+
+
+def exactly(a: np.ndarray, b: np.ndarray, box: Corners) -> float:
+    """The length, as a part of the segment, that is inside the box: all six planes at once."""
+    low, high = np.array(box[:3]), np.array(box[3:])
+    delta = b - a
+    with np.errstate(divide="ignore", invalid="ignore"):
+        times = np.stack([(low - a) / delta, (high - a) / delta])
+    still = delta == 0
+    outside = still & ((a <= low) | (a >= high))
+    if outside.any():
+        return -1.0
+    times[:, still] = [[-np.inf], [np.inf]]
+    return float(min(1.0, times.max(axis=0).min()) - max(0.0, times.min(axis=0).max()))
+
+
+@settings(max_examples=300, deadline=None)
+@given(POINTS, POINTS, POINTS, POINTS)
+def test_sight_is_the_exact_intersection_with_boxes(a: Point, b: Point, c: Point, d: Point) -> None:
+    box = around(c, d)
+    assume(all(box[i] < box[i + 3] for i in range(3)))
+    length = exactly(np.array(a), np.array(b), box)
+    assume(abs(length) > 1e-9 or a == b)
+    if a != b:
+        assert blocked(a, b, [box]) == (length > 0)
+        assert blocked(b, a, [box]) == (length > 0)
+
+
+@settings(max_examples=200, deadline=None)
+@given(POINTS, POINTS, POINTS, POINTS)
+def test_walking_is_sight_without_heights(a: Point, b: Point, c: Point, d: Point) -> None:
+    box = around(c, d)
+    assume(box[0] < box[3] and box[1] < box[4])
+    flat = (box[0], box[1], -1.0, box[3], box[4], 1.0)
+    rectangle = (box[0], box[1], box[3], box[4])
+    assert crosses(a[0], a[1], b[0], b[1], [rectangle]) == blocked((*a[:2], 0.0), (*b[:2], 0.0), [flat])
+
+
+def test_touching_a_face_or_an_edge_is_not_blocked() -> None:
+    box: Corners = (1.0, 1.0, 1.0, 2.0, 2.0, 2.0)
+    assert not blocked((0.0, 1.0, 1.5), (3.0, 1.0, 1.5), [box])
+    assert blocked((0.0, 1.5, 1.5), (3.0, 1.5, 1.5), [box])
+    assert not blocked((0.0, 1.5, 1.5), (0.9, 1.5, 1.5), [box])

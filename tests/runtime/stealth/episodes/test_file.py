@@ -1,0 +1,401 @@
+"""Episodes come back from their files as they were, and whatever else a file holds is answered in plain words."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import re
+import struct
+import zipfile
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.arrays import ARRAYS
+from tltl_runtime.stealth.episodes.check import check, check_replay, resimulate
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.episodes.file import SUFFIX, from_bytes, read_episode, to_bytes, write_episode
+from tltl_runtime.stealth.episodes.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.render import render
+from tltlc.record import replace
+
+Change = Callable[[dict[str, Any], dict[str, Any]], None]
+GOLDEN = Path(__file__).parents[3] / "golden" / "episode"
+NUMBERS = ("actions", "signals", "atoms", "states", "progress", "rewards")
+
+
+def played(level: str, variant: str = "v0", seed: int = 7, steps: int = 30) -> Episode:
+    env = RecordEpisode(make_env(level, variant), player="dice")
+    env.reset(seed=seed)
+    rng = np.random.default_rng(seed)
+    for _ in range(steps):
+        env.step([int(rng.integers(size)) for size in (3, 3, 2, 2, 2)])
+    episode = env.episode
+    env.close()
+    return episode
+
+
+@pytest.fixture(name="episode", scope="module")
+def _episode() -> Episode:
+    return played("branching", "v1")
+
+
+def assert_same(one: Episode, other: Episode) -> None:
+    for name in NUMBERS:
+        first, second = getattr(one, name), getattr(other, name)
+        assert first.dtype == second.dtype and first.tobytes() == second.tobytes(), name
+    others = [name for name in Episode.__match_args__ if name not in (*NUMBERS, "level")]  # type: ignore[attr-defined]
+    assert all(getattr(one, name) == getattr(other, name) for name in others)
+    assert repr(one.snapshots) == repr(other.snapshots)  # -0.0 is not 0.0
+    assert replace(one.level, spec="") == replace(other.level, spec="")
+
+
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    level=st.sampled_from(level_names()),
+    variant=st.sampled_from(("v0", "v1", "v2")),
+    seed=st.integers(0, 2**40),
+    steps=st.integers(0, 25),
+)
+def test_an_episode_comes_back_judged_and_played_alike(level: str, variant: str, seed: int, steps: int) -> None:
+    episode = played(level, variant, seed, steps)
+    data = to_bytes(episode)
+    again = from_bytes(data, "it")
+    assert_same(again, episode)
+    assert to_bytes(again) == data
+    assert check(again) == ()
+    assert resimulate(again) is None
+
+
+def test_a_file_is_written_whole(tmp_path: Path, episode: Episode) -> None:
+    path = tmp_path / f"one{SUFFIX}"
+    write_episode(path, episode)
+    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+    assert_same(read_episode(path), episode)
+    with pytest.raises(TltlError, match="TLT0005"):
+        write_episode(tmp_path / "nowhere" / f"one{SUFFIX}", episode)
+    with pytest.raises(TltlError, match="TLT0001"):
+        read_episode(tmp_path / f"two{SUFFIX}")
+
+
+def test_numpy_alone_reads_it_and_nobody_learns_where_it_was_made(episode: Episode) -> None:
+    data = to_bytes(episode)
+    assert len(data) < 20_000
+    with np.load(BytesIO(data), allow_pickle=False) as arrays:
+        assert set(arrays) == {"meta", "artefact", *(array.name for array in ARRAYS)}
+        meta = json.loads(bytes(arrays["meta"]))
+        assert json.loads(bytes(arrays["artefact"]))["spec"]["name"] == "branching"
+        assert arrays["position"][0].tolist() == list(episode.snapshots[0].player.position)
+    assert (meta["format"], meta["version"], meta["player"]) == ("tltl-episode", 1, "dice")
+    assert meta["level"]["spec"] == "branching.tltl:branching"
+    assert meta["names"]["signals"] == [signal.name for signal in episode.fspa.signals]
+    assert dict(meta["level"]["files"])["branching.toml"]
+
+
+def test_finished_episodes_are_written_to_a_folder(tmp_path: Path) -> None:
+    spec = "signal health: ratio  spec soon { limit 2 steps  reach health < 50 % }"
+    env = RecordEpisode(make_env("navigation", spec=spec), folder=tmp_path / "runs")
+    for _ in range(2):
+        env.reset(seed=3)
+        for _ in range(3):
+            env.step([0, 0, 0, 0, 0])
+    env.reset(seed=4)
+    env.step([0, 0, 0, 0, 0])  # left before its end
+    env.close()
+    files = sorted((tmp_path / "runs").iterdir())
+    seed = env.episode.seed
+    assert len(files) == 2 and not any(str(seed) in path.name for path in files)
+    assert files[0].name.startswith("navigation-v0-") and files[0].name.endswith(f"-2{SUFFIX}")
+    assert all(read_episode(path).end == "limit" for path in files)
+
+
+# --- what was changed -------------------------------------------------------------------------------
+
+
+def changed(episode: Episode, **fields: Any) -> Episode:
+    return replace(episode, **fields)
+
+
+def nudged(array: np.ndarray, index: tuple[int, ...], by: float) -> np.ndarray:
+    copy = array.copy()
+    copy[index] += by
+    return copy
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda e: {"states": nudged(e.states, (9,), 1)}, "step 9 of the recording .*: the state was recorded as"),
+        (lambda e: {"rewards": nudged(e.rewards, (4,), 1e-15)}, "step 5 .*the reward"),
+        (lambda e: {"progress": nudged(e.progress, (6,), 1e-15)}, "step 6 .*the progress"),
+        (lambda e: {"progress": nudged(e.progress, (0,), 0.1)}, "step 0 .*the start"),
+        (lambda e: {"atoms": nudged(e.atoms, (2, 1), -1e-9)}, "step 3 .*`near"),
+        (lambda e: {"signals": nudged(e.signals, (8, 0), 0.25)}, "step 8 .*`"),
+        (lambda e: {"verdict": "violated"}, "step 30 .*the verdict"),
+        (lambda e: {"success": True}, "step 30 .*success"),
+        (lambda e: {"end": "limit"}, "step 30 .*the reward"),
+        (lambda e: {"params": {"level_size": -1.0}}, "TLT0307"),
+    ],
+)
+def test_a_changed_recording_does_not_pass(episode: Episode, change: Any, said: str) -> None:
+    (found,) = check(changed(episode, **change(episode)))
+    assert re.search(said, f"{found.code} {found.title}"), found.title
+    assert found.code in ("TLT0823", "TLT0307")
+
+
+def test_another_game_is_told_from_the_first_step_on(episode: Episode) -> None:
+    actions = episode.actions.copy()
+    actions[11] = (actions[11] + 1) % 2
+    assert resimulate(changed(episode, actions=actions)) == 12
+    assert resimulate(changed(episode, seed=episode.seed + 1)) == 0
+    assert resimulate(changed(episode, signals=nudged(episode.signals, (5, 0), 1e-12))) == 5
+    wall = episode.level.solids[1]
+    far = replace(wall, box=replace(wall.box, low=(-100.0, -100.0, -100.0), high=(100.0, 100.0, 100.0)))
+    assert resimulate(changed(episode, level=replace(episode.level, solids=(*episode.level.solids, far)))) == 0
+
+
+# --- what is no episode -----------------------------------------------------------------------------
+
+
+def packed(arrays: dict[str, Any]) -> bytes:
+    stream = BytesIO()
+    np.savez_compressed(stream, **arrays)
+    return stream.getvalue()
+
+
+def taken_apart(data: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
+    with np.load(BytesIO(data)) as archive:
+        arrays = dict(archive)
+    return arrays, json.loads(bytes(arrays["meta"]))
+
+
+def rebuilt(episode: Episode, change: Change) -> bytes:
+    """The file of an episode after ``change(arrays, meta)``; arrays that become None are left out."""
+    arrays, meta = taken_apart(to_bytes(episode))
+    arrays.pop("meta")
+    change(arrays, meta)
+    text = np.frombuffer(json.dumps(meta).encode(), dtype=np.uint8)
+    return packed({"meta": text, **{name: array for name, array in arrays.items() if array is not None}})
+
+
+def put(array: str, value: Any) -> Change:
+    return lambda arrays, _: arrays.update({array: value(arrays[array]) if callable(value) else value})
+
+
+def said(key: str, value: Any) -> Change:
+    return lambda _, meta: meta.update({key: value})
+
+
+def with_first(value: float) -> Callable[[np.ndarray], np.ndarray]:
+    def change(array: np.ndarray) -> np.ndarray:
+        copy = array.copy()
+        copy.reshape(-1)[0] = value
+        return copy
+
+    return change
+
+
+def in_level(key: str, value: Any) -> Change:
+    return lambda _, meta: meta["level"].update({key: value})
+
+
+BROKEN: dict[str, Change] = {
+    "missing": put("atoms", None),
+    "dtype": put("rewards", lambda array: array.astype(np.float32)),
+    "shape": put("enemy_yaw", lambda array: array[:, :1]),
+    "rows": put("progress", lambda array: array[1:]),
+    "actions": put("actions", np.uint8(3)),
+    "action": put("actions", with_first(3)),
+    "nan": put("signals", with_first(np.nan)),
+    "range": put("atoms", with_first(1.5)),
+    "state": put("states", with_first(99)),
+    "mode": put("enemy_mode", with_first(9)),
+    "bool": put("crouching", lambda array: array.view(np.uint8) + 2),
+    "object": put("time", lambda array: array.astype("<c16")),
+    "no_text": put("artefact", np.zeros(3)),
+    "no_utf8": put("artefact", np.array([255, 254], dtype=np.uint8)),
+    "end": said("end", "tired"),
+    "seed": said("seed", -1),
+    "seed_text": said("seed", "7"),
+    "success": said("success", 1),
+    "params": said("params", {"level_size": "30 m"}),
+    "key": said("author", "me"),
+    "names": lambda _, meta: meta["names"].update({"atoms": []}),
+    "level": in_level("bounds", {"low": [0, 0, 0]}),
+    "level_kind": lambda _, meta: meta["level"]["solids"][0].update({"kind": "lava"}),
+    "level_list": in_level("solids", 3),
+    "level_pair": in_level("files", [["a", "b", "c"]]),
+    "level_flat": in_level("bounds", {"low": [0, 0, 0], "high": [9, 0, 3]}),
+    "level_far": lambda _, meta: meta["level"]["exits"][0].update({"position": [1e6, 0, 0]}),
+    "level_route": lambda _, meta: meta["level"]["enemies"][0].update({"route": []}),
+    "level_branch": lambda _, meta: meta["level"]["enemies"][0]["kind"].update({"branches": ["fly"]}),
+    "level_path": lambda _, meta: meta["level"]["movers"][0].update({"path": []}),
+    "level_switch": lambda _, meta: meta["level"]["barriers"][0].update({"opened_by": ["s9"]}),
+    "level_barrier": lambda _, meta: meta["level"]["unlocks"][0].update({"barriers": ["up"]}),
+    "level_unlock": lambda _, meta: meta["level"]["unlocks"][0].update({"barriers": []}),
+    "level_signal": in_level("signals", [["open_up", "open(up)"]]),
+    "level_number": in_level("exits", [{"name": "exit", "position": [1e999, 0, 0]}]),
+}
+
+
+def refused(data: bytes, name: str = "run.episode.npz") -> str:
+    with pytest.raises(TltlError) as error:
+        from_bytes(data, name)
+    assert all(found.help for found in error.value.diagnostics)
+    return render(error.value.diagnostics)
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_what_does_not_fit_is_refused(episode: Episode, name: str) -> None:
+    assert "error[TLT0822]: `run.episode.npz` is a broken episode: " in refused(rebuilt(episode, BROKEN[name]))
+
+
+def bomb(unpacked: int) -> bytes:
+    stream = BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("meta.npy", "w") as file:
+        for _ in range(unpacked >> 20):
+            file.write(bytes(1 << 20))
+    return stream.getvalue()
+
+
+def lying_bomb() -> bytes:
+    """An archive that unpacks to more than it says."""
+    data = bytearray(bomb(64 << 20))
+    directory = data.rindex(b"PK\x01\x02")
+    data[directory + 24 : directory + 28] = struct.pack("<I", 1000)
+    return bytes(data)
+
+
+def squeezed_otherwise(episode: Episode) -> bytes:
+    stream = BytesIO()
+    arrays, _ = taken_apart(to_bytes(episode))
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_LZMA) as archive:
+        for name, array in arrays.items():
+            file = BytesIO()
+            np.save(file, array)
+            archive.writestr(f"{name}.npy", file.getvalue())
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda _: b"",
+        lambda _: b"signals,atoms\n",
+        lambda _: packed({"a": np.zeros(3)}),
+        lambda episode: rebuilt(episode, said("format", "other")),
+        lambda episode: to_bytes(episode)[:-40],
+        lambda _: lying_bomb(),
+        squeezed_otherwise,
+    ],
+)
+def test_what_is_no_episode_is_refused(episode: Episode, make: Callable[[Episode], bytes]) -> None:
+    assert "error[TLT0820]: `run.episode.npz` cannot be read as an episode: " in refused(make(episode))
+
+
+def test_a_bomb_is_not_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.stealth.episodes.file.MAX_BYTES", 1 << 20)
+    assert "it holds more than 1 MiB" in refused(bomb(4 << 20))
+    assert "it is larger than 1 MiB" in refused(bytes(2 << 20))
+
+
+def test_objects_are_never_unpickled(episode: Episode) -> None:
+    class Trap:
+        def __reduce__(self) -> tuple[Any, ...]:
+            return (os.abort, ())
+
+    arrays, _ = taken_apart(to_bytes(episode))
+    arrays["rewards"] = np.array([Trap()], dtype=object)
+    assert "TLT0822" in refused(packed(arrays))
+
+
+@pytest.mark.parametrize("version", [0, 2, "1", None, True])
+def test_another_version_is_refused(episode: Episode, version: Any) -> None:
+    assert "error[TLT0821]" in refused(rebuilt(episode, said("version", version)))
+
+
+def test_a_broken_artefact_is_refused_in_its_own_words(episode: Episode) -> None:
+    cut = put("artefact", lambda array: array[:-30])
+    assert "error[TLT0601]: `run.episode.npz/artefact` is not JSON" in refused(rebuilt(episode, cut))
+
+
+def test_whatever_is_flipped_or_cut_is_noticed_or_harmless(episode: Episode) -> None:
+    data, rng = to_bytes(episode), random.Random(3)
+    outcomes = set()
+    for _ in range(250):
+        damaged = bytearray(data)
+        for _ in range(rng.choice((1, 1, 1, 4, 20))):
+            # Half of them in the archive's directory, the last kilobytes.
+            place = rng.randrange(len(data)) if rng.random() < 0.5 else rng.randrange(len(data) - 1600, len(data))
+            damaged[place] ^= 1 << rng.randrange(8)
+        if rng.random() < 0.3:
+            damaged = damaged[: rng.randrange(len(data))]
+        try:
+            assert_same(from_bytes(bytes(damaged), "it"), episode)
+            outcomes.add("harmless")
+        except TltlError as error:
+            outcomes |= {found.code for found in error.diagnostics}
+    assert outcomes == {"harmless", "TLT0820", "TLT0822"}
+
+
+def test_whatever_is_said_in_meta_is_read_or_refused(episode: Episode) -> None:
+    """JSON with values exchanged at random: no exception but the one for broken files."""
+    rng = random.Random(5)
+    strange = [None, True, -1, 1e300, 10**400, "", "x", [], {}, [[]], [1.0, 2.0, 3.0], {"low": []}]
+
+    def mutated(value: Any) -> Any:
+        if rng.random() < 0.02:
+            return rng.choice(strange)
+        if isinstance(value, dict):
+            return {name: mutated(each) for name, each in value.items() if rng.random() > 0.003}
+        return [mutated(each) for each in value] if isinstance(value, list) else value
+
+    meta = taken_apart(to_bytes(episode))[1]
+    refused_times = 0
+    for _ in range(200):
+        try:
+            from_json(Level, mutated(meta["level"]), "level")
+        except RecordJsonError as error:
+            assert str(error).startswith("`level")
+            refused_times += 1
+    assert refused_times > 100
+
+
+@pytest.mark.parametrize(("name", "variant"), [(name, each) for name in level_names() for each in variants(name)])
+def test_levels_go_through_json(name: str, variant: str) -> None:
+    level = load_level(name, variant)
+    assert from_json(Level, json.loads(json.dumps(to_json(level))), "level") == level
+
+
+# --- messages ---------------------------------------------------------------------------------------
+
+MESSAGES: dict[str, Callable[[Episode], str]] = {
+    "TLT0820": lambda episode: refused(to_bytes(episode)[:-40]),
+    "TLT0821": lambda episode: refused(rebuilt(episode, said("version", 2))),
+    "TLT0822": lambda episode: refused(rebuilt(episode, BROKEN["nan"])),
+    "TLT0822_level": lambda episode: refused(rebuilt(episode, BROKEN["level_kind"])),
+    "TLT0824": lambda episode: render(check_replay(changed(episode, seed=8, versions={}))),
+    "TLT0824_versions": lambda episode: render(check_replay(changed(episode, seed=8, versions={"numpy": "1.0"}))),
+    "TLT0823": lambda episode: render(check(changed(episode, states=nudged(episode.states, (9,), 1)))),
+}
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_message(episode: Episode, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.stealth.episodes.check.versions", lambda: {**episode.versions, "numpy": "2.0"})
+    found, expected = MESSAGES[name](episode), GOLDEN / f"{name}.txt"
+    if os.environ.get("UPDATE_GOLDEN") == "1":
+        expected.write_text(found, encoding="utf-8")
+    assert found == expected.read_text(encoding="utf-8")

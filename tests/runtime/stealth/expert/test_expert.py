@@ -1,0 +1,137 @@
+"""The scripted expert finishes what can be finished, by actions that a player has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.expert.expert import Expert, play_episode
+from tltl_runtime.stealth.game import BRANCHES
+from tltl_runtime.stealth.recording import RecordEpisode
+
+TOWER = """
+doc = "Two platforms, a gap of 2.5 m, and a third."
+spec = "tower.tltl:tower"
+[bounds]
+at = [8.0, 4.0, -0.5]
+size = [16.0, 8.0, 6.5]
+[start]
+at = [1.0, 2.0, 0.0]
+spread = 0.3
+[variants]
+v0 = []
+[[platform]]
+name = "low"
+at = [3.5, 4.0, 0.0]
+size = [2.0, 7.0, 1.0]
+[[platform]]
+name = "high"
+at = [5.5, 6.0, 0.0]
+size = [2.0, 3.0, 1.9]
+[[platform]]
+name = "far"
+at = [10.5, 6.0, 0.0]
+size = [3.0, 3.0, 1.9]
+[[switch]]
+name = "top"
+at = [10.8, 6.0, 1.9]
+[[exit]]
+name = "out"
+at = [14.5, 1.0, 0.0]
+"""
+
+
+@contextmanager
+def _expert(level: str, variant: str = "v0", careful: bool = True) -> Iterator[tuple[RecordEpisode, Expert]]:
+    env = RecordEpisode(make_env(level, variant))
+    try:
+        yield env, Expert(env, careful)
+    finally:
+        env.close()
+
+
+def _played(env: RecordEpisode, expert: Expert, seed: int) -> Episode:
+    play_episode(env, expert, seed)
+    return env.episode
+
+
+def _left_is_open(episode: Episode) -> bool:
+    names = [barrier.name for barrier in episode.level.barriers]
+    return episode.snapshots[-1].open[names.index("left")]
+
+
+@pytest.mark.parametrize(("variant", "seed"), [("v0", 0), ("v0", 1), ("v1", 0)])
+def test_it_finds_the_way_through_navigation(variant: str, seed: int) -> None:
+    with _expert("navigation", variant) as (env, expert):
+        episode = _played(env, expert, seed)
+    assert episode.success
+    # Up to the platform, as only stairs lead there, and crouched through the gap.
+    assert max(shot.player.position[2] for shot in episode.snapshots) > 1.4
+    assert any(shot.player.crouching for shot in episode.snapshots)
+
+
+def test_it_goes_as_far_as_it_can_where_the_way_is_shut() -> None:
+    with _expert("navigation", "v2") as (env, expert):
+        env.reset(seed=0)
+        expert.reset()
+        for _ in range(60):
+            env.step(expert.act())
+        # To the block that shuts the corridor, 3.6 to 4.4 m from its west end at x = 8.
+        assert env.episode.states[-1] == 1
+        assert 11.0 < env.episode.snapshots[-1].player.position[0] < 11.6
+
+
+def test_it_takes_the_branch_that_has_opened() -> None:
+    taken = {}
+    with _expert("branching") as (env, expert):
+        for seed in range(20):
+            episode = _played(env, expert, seed)
+            assert episode.success
+            taken["left" if _left_is_open(episode) else "right"] = episode.snapshots[-1].player.position[1]
+            if len(taken) == 2:
+                break
+    assert taken["right"] < 9.6 < taken["left"]
+
+
+def test_it_passes_bars_that_rise() -> None:
+    with _expert("branching", "v1") as (env, expert):
+        for seed in range(20):
+            episode = _played(env, expert, seed)
+            if _left_is_open(episode):
+                break
+    assert episode.success
+    assert max(shot.player.position[2] for shot in episode.snapshots) > 0.4
+
+
+def test_the_same_seed_is_the_same_episode_whatever_was_played_before() -> None:
+    with _expert("cover_and_hide", careful=False) as (env, expert):
+        first = _played(env, expert, 3)
+        _played(env, expert, 4)
+        again = _played(env, expert, 3)
+    assert np.array_equal(first.actions, again.actions)
+    assert (first.actions < np.array(BRANCHES)).all()
+
+
+def test_it_stands_still_where_the_spec_sends_it_nowhere() -> None:
+    env = make_env("cover_and_hide", spec="import stealth\nspec hidden_at_once { limit 9 steps\n keep alive }")
+    expert = Expert(env)
+    env.reset(seed=0)
+    assert expert.act() == (0, 0, 0, 0, 0)
+    env.close()
+
+
+def test_it_plays_a_level_it_was_not_made_for(tmp_path: Path) -> None:
+    """Up two steps of a metre, over a gap that only a sprint carries across, and down again."""
+    (tmp_path / "tower.tltl").write_text(
+        "import spatial\nentity top, out\nspec tower { limit 100 steps\n reach near(top) then near(out) }\n"
+    )
+    (tmp_path / "tower.toml").write_text(TOWER)
+    with _expert(str(tmp_path / "tower.toml")) as (env, expert):
+        episode = _played(env, expert, 0)
+    assert episode.success and len(episode.actions) < 60

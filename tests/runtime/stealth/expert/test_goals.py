@@ -1,0 +1,36 @@
+"""Where a spec sends the player is read off its automaton."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltl_runtime.stealth.expert.goals import next_goals
+from tltl_runtime.task import load_task
+
+BRANCHING = "examples/branching.tltl:branching"
+SAMPLE = {"health": 1.0, "open_left": 0.0, "open_right": 0.0} | {
+    f"distance({name})": 5.0 for name in ("s1", "s2", "s3", "e_left", "e_right")
+}
+PLACES = ("s1", "s2", "s3", "e_left", "e_right")
+
+
+@pytest.mark.parametrize(
+    ("state", "opened", "goals"),
+    [(0, None, ("s1",)), (1, None, ("s2",)), (4, "left", ("e_left",)), (4, "right", ("e_right",)), (4, None, ())],
+)
+def test_the_way_of_branching(state: int, opened: str | None, goals: tuple[str, ...]) -> None:
+    task = load_task(BRANCHING)
+    sample = SAMPLE | ({f"open_{opened}": 1.0} if opened else {})
+    assert next_goals(task.fspa, state, sample, task.params, PLACES) == goals
+
+
+def test_an_automaton_that_is_content_sends_nowhere() -> None:
+    task = load_task(BRANCHING)
+    (accepting,) = (state.id for state in task.fspa.states if state.accepting)
+    assert next_goals(task.fspa, accepting, SAMPLE, task.params, PLACES) == ()
+
+
+def test_the_choice_that_leads_nearer_to_acceptance_comes_first() -> None:
+    task = load_task("import spatial\nentity a, b\nspec either = (F (near(a) & X F near(b))) | F near(b)")
+    sample = {"distance(a)": 9.0, "distance(b)": 9.0}
+    assert next_goals(task.fspa, 0, sample, {"level_size": 20.0}, ("a", "b"))[0] == "b"

@@ -1,0 +1,47 @@
+"""What actions do on the lattice is what they do in the physics, and its ways are as long as they are."""
+
+from __future__ import annotations
+
+from contextlib import closing
+
+import numpy as np
+import pytest
+
+from tests.runtime.stealth.enemy_levels import level, wall
+from tltl_runtime.stealth.expert.lattice import ACTIONS, FAR, SPRINTS, WAYS, lattice_of
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.world.physics import World
+
+
+def test_an_action_that_is_feasible_ends_where_the_lattice_says() -> None:
+    cover = load_level("cover_and_hide")
+    lattice = lattice_of(cover, frozenset(range(len(cover.barriers))))
+    rng = np.random.default_rng(3)
+    with closing(World(cover)) as world:
+        world.reset(None)
+        stamina = 1.0
+        for _ in range(600):
+            here = np.array(world.player.position[:2])
+            free = lattice.feasible(here[None])[:, 0] & ~(SPRINTS & (stamina < 0.1))
+            chosen = int(rng.choice(np.flatnonzero(free)))
+            world.step(ACTIONS[chosen])
+            stamina = world.player.stamina
+            assert world.player.position[:2] == pytest.approx(here + WAYS[chosen], abs=0.01)
+
+
+def test_a_way_around_a_wall_takes_as_many_decisions_as_its_length_says() -> None:
+    lattice = lattice_of(level(wall(5.0, 0.0, 5.4, 6.0)), frozenset())
+    way = lattice.way_to((8.0, 2.0, 0.0), within=0.8)
+    start = np.array([[2.0, 2.0]])
+    # To the wall's end by straight and diagonal steps: 2.7 m of both to the corner, and back down.
+    shortest = 2 * np.hypot(2.7, 4.3) / 0.45
+    found = float(lattice.values(way, start)[0])
+    assert shortest * 0.9 < found < shortest * 1.2
+    assert lattice.values(way, np.array([[8.0, 2.0]]))[0] == 0.0
+
+
+def test_what_is_walled_in_is_not_reached() -> None:
+    lattice = lattice_of(level(wall(5.0, 0.0, 5.4, 8.0)), frozenset())
+    way = lattice.way_to((8.0, 2.0, 0.0), within=0.8)
+    assert lattice.values(way, np.array([[2.0, 2.0]]))[0] >= 0.99 * FAR
+    assert lattice.values(way, np.array([[7.0, 6.0]]))[0] < 40.0

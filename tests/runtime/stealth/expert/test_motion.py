@@ -1,0 +1,67 @@
+"""What is foreseen is what the physics does, to a few centimetres."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from tltl_runtime.stealth.expert.motion import Motion, Poses, joined, poses_of
+from tltl_runtime.stealth.level import Box
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.world.physics import World
+from tltl_runtime.stealth.world.player import PlayerKind
+
+DECISIONS = 400
+
+
+@pytest.fixture(name="world")
+def _world() -> Iterator[World]:
+    world = World(load_level("navigation"))
+    yield world
+    world.close()
+
+
+def _motion(world: World) -> Motion:
+    return Motion(world.kind, [each.box for each in (*world.level.solids, *world.level.barriers)])
+
+
+def test_random_play_is_foreseen(world: World) -> None:
+    """Each decision from where the physics is; landings and stairs are the few that differ by more."""
+    motion, rng = _motion(world), np.random.default_rng(0)
+    world.reset(None)
+    before, actions, after = [], [], []
+    for step in range(DECISIONS):
+        if step % 4 == 0:
+            action = rng.integers(0, [3, 3, 2, 2, 2])
+        before.append(poses_of(world.player))
+        world.step(action.tolist())
+        actions.append(action)
+        after.append(world.player.position)
+    foreseen, _ = motion.step(joined(before), np.array(actions))
+    off = np.abs(np.stack([foreseen.x, foreseen.y, foreseen.z], axis=1) - np.array(after)).max(axis=1)
+    assert np.quantile(off, 0.5) < 0.005
+    assert np.quantile(off, 0.95) < 0.05
+
+
+def test_bodies_do_not_meet_each_other_and_may_be_foreseen_in_any_company(world: World) -> None:
+    motion = _motion(world)
+    alone = poses_of(world.player)
+    far = Poses(*(np.array([value]) for value in (20.0, 9.0, 1.5, 0.0, False, True, 1.0)))
+    action = np.array([[1, 0, 1, 0, 1]])
+    one, _ = motion.step(alone, action)
+    both, _ = motion.step(joined([alone, far]), np.repeat(action, 2, axis=0))
+    assert (one.x[0], one.y[0], one.z[0]) == pytest.approx((both.x[0], both.y[0], both.z[0]), abs=1e-9)
+
+
+def test_a_jump_over_a_mover_does_not_touch_it_and_a_walk_into_it_does() -> None:
+    floor, bar = Box((-9.0, -9.0, -1.0), (9.0, 9.0, 0.0)), Box((0.6, -1.0, 0.0), (0.8, 1.0, 0.2))
+    motion = Motion(PlayerKind(), [floor])
+    start = Poses(*(np.zeros(2), np.zeros(2), np.array([0.0, 0.4]), np.array([0.0, 5.0])), *_still(2))
+    _, met = motion.step(start, np.array([[1, 0, 0, 0, 0], [1, 0, 0, 0, 0]]), [bar])
+    assert met.tolist() == [True, False]
+
+
+def _still(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return np.zeros(count, dtype=np.bool_), np.arange(count) == 0, np.ones(count)

@@ -1,0 +1,62 @@
+"""Where a player can stand, and the ways between."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import dist, isinf
+
+import numpy as np
+import pytest
+
+from tltl_runtime.stealth.expert.routes import Leg, routes_of
+from tltl_runtime.stealth.expert.surfaces import Surfaces
+from tltl_runtime.stealth.levels.file import load_level
+
+START, S2, EXIT = (2.0, 8.0, 0.0), (12.6, 8.3, 1.5), (9.0, 6.2, 0.0)
+
+
+def test_a_place_has_ground_and_room() -> None:
+    surfaces = Surfaces(load_level("navigation"))
+    under_lintel, on_platform, in_wall = (7.4, 2.6, 0.0), (20.4, 9.4, 1.5), (9.8, 3.2, 0.0)
+    places = [surfaces.nearest(point) for point in (under_lintel, on_platform, in_wall)]
+    assert [surfaces.standing.flat[place] for place in places] == [False, True, True]
+    assert dist(surfaces.point(places[0]), under_lintel) < 0.2
+    assert dist(surfaces.point(places[1]), on_platform) < 0.2
+    assert dist(surfaces.point(places[2]), in_wall) > 0.5
+    shut = Surfaces(load_level("navigation"), [0])
+    assert dist(shut.point(shut.nearest(under_lintel)), under_lintel) > 0.5
+
+
+@pytest.mark.parametrize(("variant", "there"), [("v0", True), ("v1", True), ("v2", False)])
+def test_the_way_to_the_second_switch_of_navigation(variant: str, there: bool) -> None:
+    routes = routes_of(load_level("navigation", variant), frozenset({1}))
+    seconds = routes.field(S2).at(*(np.array([value]) for value in START))
+    assert isinf(seconds[0]) is not there
+
+
+def test_the_kinds_of_a_way() -> None:
+    level = load_level("navigation")
+    up = routes_of(level, frozenset({1})).field(S2).way(START)
+    assert {leg.kind for leg in up} == {"walk", "crouch", "climb", "drop", "leap"}
+    (leap,) = (index for index, leg in enumerate(up) if leg.kind == "leap")
+    assert up[leap - 1].place[0] > 17.0 and up[leap].place[0] < 15.2
+    down = routes_of(level, frozenset()).field(EXIT).way(S2)
+    (fall,) = (leg for leg in down if leg.kind != "walk")
+    assert fall.kind in ("drop", "leap") and fall.place[2] == 0.0
+
+
+def test_a_way_ends_where_it_is_cut_off() -> None:
+    field = routes_of(load_level("navigation"), frozenset({1})).field(S2)
+    whole, piece = field.way(START), field.way(START, 3.0)
+    assert whole[: len(piece)] == piece
+    assert 2.5 < _length(piece) < 5.5 < _length(whole)
+
+
+def test_without_a_way_it_leads_to_the_nearest_place() -> None:
+    routes = routes_of(load_level("navigation", "v2"), frozenset({1}))
+    end = routes.field_from(START, S2).way(START)[-1].place
+    assert 11.0 < end[0] < 11.5
+
+
+def _length(legs: tuple[Leg, ...]) -> float:
+    return sum(dist(one.place, other.place) for one, other in pairwise(legs))

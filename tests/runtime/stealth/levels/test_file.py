@@ -1,0 +1,274 @@
+from __future__ import annotations
+
+import math
+import os
+import pickle
+import random
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import tltlc
+from tltl_runtime.stealth.level import Box, Level, Solid
+from tltl_runtime.stealth.levels.check import entities
+from tltl_runtime.stealth.levels.file import LEVELS, level_names, load_level, variants
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.render import render
+
+GOLDEN = Path(__file__).parents[3] / "golden" / "level"
+CASES = sorted(path for path in GOLDEN.iterdir() if path.is_dir())
+SHIPPED = [(name, variant) for name in level_names() for variant in variants(name)]
+ROOM = """doc = "A room."
+[bounds]
+at = [5.0, 5.0, -0.5]
+size = [10.0, 10.0, 4.5]
+[start]
+at = [2.0, 2.0, 0.0]
+"""
+
+
+@pytest.fixture(name="folder")
+def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    monkeypatch.chdir(tmp_path)
+    yield tmp_path
+
+
+def solid(level: Level, name: str) -> Solid:
+    (found,) = (each for each in level.solids if each.name == name)
+    return found
+
+
+def write(path: str, text: str) -> None:
+    Path(path).parent.mkdir(exist_ok=True)
+    Path(path).write_text(text, encoding="utf-8")
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_message(case: Path, folder: Path) -> None:
+    shutil.copytree(case, folder / "case")
+    os.chdir(folder / "case")
+    arguments = (case / "cmd").read_text().split() if (case / "cmd").exists() else ["level.toml"]
+    with pytest.raises(TltlError) as error:
+        load_level(*arguments)
+    found = render(error.value.diagnostics)
+    expected = case / "expected.txt"
+    if os.environ.get("UPDATE_GOLDEN") == "1":
+        expected.write_text(found, encoding="utf-8")
+    assert found == expected.read_text(encoding="utf-8")
+    assert case.name[:7] in found
+    # Each message says where, unless it is about an argument, and a way out.
+    messages = re.split(r"^(?=error\[)", found, flags=re.MULTILINE)[1:]
+    assert all("  help: " in message for message in messages)
+    assert all(re.search(r"\.toml:\d+:\d+\n", message) for message in messages) or arguments == ["navigaton", "v0"]
+
+
+def test_the_levels_of_the_paper_are_there_in_three_variants() -> None:
+    assert level_names() == ("branching", "cover_and_hide", "navigation")
+    assert all(variants(name) == ("v0", "v1", "v2") for name in level_names())
+
+
+@pytest.mark.parametrize(("name", "variant"), SHIPPED)
+def test_a_shipped_level_has_what_its_spec_speaks_of(name: str, variant: str) -> None:
+    level = load_level(name, variant)
+    assert (level.name, level.variant) == (name, variant)
+    path, _, spec = level.spec.rpartition(":")
+    fspa = next(each for each in tltlc.compile_file(path) if each.name == spec)
+    wanted = {signal.name for signal in fspa.signals}
+    plain = {signal for signal in wanted if "(" not in signal} - {"health"}
+    assert plain <= {alias for alias, _ in level.signals}
+    called = {argument for signal in wanted for argument in re.findall(r"\((\w+)\)", signal)}
+    assert called and called <= set(entities(level))
+    assert pickle.loads(pickle.dumps(level)) == level
+
+
+def test_the_variants_change_what_the_paper_says() -> None:
+    block = [solid(load_level("navigation", variant), "corridor_block_2").box for variant in ("v0", "v1", "v2")]
+    gaps = [max(4.5 - box.high[1], box.low[1] - 0.5) for box in block]
+    assert gaps[0] > gaps[1] > 0.9
+    assert gaps[2] == pytest.approx(0.0)
+
+    guards = [load_level("cover_and_hide", variant).enemies[0].kind for variant in ("v0", "v1", "v2")]
+    assert guards[1].sight_range > guards[0].sight_range
+    assert guards[1].reaction_time < guards[0].reaction_time
+    assert [guard.branches for guard in guards] == [(), (), ("check_gaps",)]
+    assert guards[0].sight_angle == pytest.approx(math.pi / 2)
+
+    branching = [load_level("branching", variant) for variant in ("v0", "v1", "v2")]
+    heights = [{point[2] for mover in level.movers for point in mover.path} for level in branching]
+    assert max(heights[1]) > max(max(heights[0]), 0.6) - 0.6 and len(heights[1]) > len(heights[0])
+    # One asset serves two levels: the same edit changes both.
+    assert [level.enemies[0].kind for level in branching] == guards
+
+
+def test_variants_share_what_they_do_not_change() -> None:
+    first, second = load_level("navigation"), load_level("navigation", "v2")
+    changed = {one.name for one, other in zip(first.solids, second.solids, strict=True) if one != other}
+    assert changed == {"corridor_block_2"}
+    assert first.switches == second.switches
+    names = [name for name, _ in second.files]
+    assert names == ["navigation.toml", "assets/corridor.toml", "overlays/corridor_shut.toml"]
+    assert dict(first.files)["navigation.toml"] == dict(second.files)["navigation.toml"]
+
+
+@pytest.mark.parametrize(("name", "variant"), SHIPPED)
+def test_solids_of_a_shipped_level_do_not_run_into_its_barriers(name: str, variant: str) -> None:
+    level = load_level(name, variant)
+    for barrier in level.barriers:
+        for each in level.solids:
+            apart = any(
+                each.box.high[axis] <= barrier.box.low[axis] or barrier.box.high[axis] <= each.box.low[axis]
+                for axis in range(3)
+            )
+            assert apart, (barrier.name, each.name)
+
+
+def test_boxes_stairs_and_the_enclosure(folder: Path) -> None:
+    write("room.toml", ROOM + "[[stairs]]\nfrom = [8.0, 5.0, 0.0]\nto = [6.0, 5.0, 0.5]\nwidth = 1.0\nsteps = 2\n")
+    level = load_level("room.toml")
+    assert solid(level, "stairs_1_1").box == Box((7.0, 4.5, 0.0), (8.0, 5.5, 0.25))
+    assert solid(level, "stairs_1_2").box == Box((6.0, 4.5, 0.0), (7.0, 5.5, 0.5))
+    assert solid(level, "floor").box == Box((0.0, 0.0, -0.5), (10.0, 10.0, 0.0))
+    assert solid(level, "outer_east").box == Box((9.8, 0.0, 0.0), (10.0, 10.0, 4.0))
+    assert level.spec == "" and level.variant == "v0"
+    assert level.sensors.map is None
+
+
+def test_a_designer_adds_a_level_with_parts_of_the_package_and_of_their_own(folder: Path) -> None:
+    write("assets/bar.toml", BAR)
+    write(
+        "overlays/quick.toml",
+        "[change.bar.bar]\nspeed = 2.0\n[[add.bar.low]]\nname = 'more'\nat = [2, 0, 0]\nsize = [1, 1, 1]\n",
+    )
+    write(
+        "room.toml",
+        ROOM
+        + """[variants]
+v0 = []
+quick = ["quick", "guard_thorough"]
+[[use]]
+asset = "bar"
+name = "first"
+at = [4.0, 4.0, 0.5]
+[[use]]
+asset = "bar"
+name = "second"
+at = [4.0, 7.0, 0.0]
+[[enemy]]
+name = "guard"
+kind = "guard"
+route = [[8.0, 8.0, 0.0]]
+""",
+    )
+    level, quick = load_level("room.toml"), load_level("room.toml", "quick")
+    assert variants("room.toml") == ("v0", "quick")
+    assert [mover.name for mover in level.movers] == ["first_bar", "second_bar"]
+    assert level.movers[0].path == ((4.0, 4.0, 0.75), (5.0, 4.0, 0.75))
+    assert [mover.speed for mover in quick.movers] == [2.0, 2.0]
+    assert solid(quick, "second_more").box == Box((5.5, 6.5, 0.0), (6.5, 7.5, 1.0))
+    assert quick.enemies[0].kind.branches == ("check_gaps",)
+
+
+BAR = """doc = "A bar."
+type = "part"
+[[mover]]
+name = "bar"
+size = [1.0, 0.5, 0.5]
+path = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
+speed = 1.0
+[[low]]
+name = "stump"
+at = [0.0, 1.0, 0.0]
+size = [0.5, 0.5, 0.5]
+"""
+
+
+@pytest.mark.parametrize("name", ["../navigation", "/etc/passwd", "", ".", "navigation.toml.txt"])
+def test_a_level_is_no_path_into_the_dark(name: str) -> None:
+    with pytest.raises(TltlError):
+        load_level(name)
+
+
+def test_places_survive_odd_toml(folder: Path) -> None:
+    odd = 'doc = """a [[wall]]\n= "]" # no comment"""  # a [comment]\n' + ROOM.partition("\n")[2]
+    odd += "[sensors] # [x]\nentities = [\n  # ] ,\n  'exit' ]\n"
+    odd += "map.cell = 0.5\nmap . \"extent\" = 15\nmap.types = ['wool']\n"
+    write("room.toml", odd)
+    with pytest.raises(TltlError) as error:
+        load_level("room.toml")
+    places = [(d.labels[0].source.slice(d.labels[0].span), d.title) for d in error.value.diagnostics]
+    assert places == [("map.types", "there is no cell type `wool`"), ("entities", "there is no entity `exit`")]
+
+
+def test_loading_a_level_loads_no_physics() -> None:
+    code = (
+        "import sys; from tltl_runtime.stealth.levels.file import load_level; load_level('branching', 'v2');"
+        "print(sorted({'pybullet', 'torch', 'matplotlib'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_assets_and_overlays_are_all_used() -> None:
+    used = {name for level, variant in SHIPPED for name, _ in load_level(level, variant).files}
+    assert used == {str(path.relative_to(LEVELS)) for path in LEVELS.rglob("*.toml")}
+
+
+def test_the_reference_describes_a_level_that_loads_and_every_key(folder: Path) -> None:
+    text = (LEVELS.parents[2] / "docs" / "levels.md").read_text(encoding="utf-8")
+    level, overlay = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    write("vault.toml", level.replace('v1 = ["guard_alert"]', 'v1 = ["guard_alert"]\nv2 = ["changes"]') + CRATES)
+    write("vault.tltl", "signal a: bool\nspec unseen = F a\n")
+    write("overlays/changes.toml", overlay)
+    assert load_level("vault.toml", "v2").enemies[0].kind.branches == ("check_gaps",)
+    assert load_level("vault.toml", "v1").spec.endswith("vault.tltl:unseen")
+    sources = [LEVELS.parent / "stealth" / "levels" / f"{name}.py" for name in ("parts", "file")]
+    keys = {
+        key
+        for source in sources
+        for key in re.findall(
+            r"\.(?:number|whole|text|flag|names|points?|tables?)\(\"(\w+)\"", source.read_text(encoding="utf-8")
+        )
+    }
+    assert len(keys) > 35
+    missing = [key for key in sorted(keys) if not re.search(rf"`{key}`|`\[+(sensors\.)?{key}\]+`", text)]
+    assert not missing
+
+
+CRATES = '[[use]]\nasset = "crates"\nat = [5.0, 4.6, 0.0]\n'
+
+
+DAMAGE = ["[", "]", "[[", "]]", "=", '"', "{", "}", "-", "nan", "[]", "{}", "''", "true", "1979-05-27", "[[1,2,3]]"]
+DAMAGE += ["[{a=1}]", "\n", "name", "[sensors.map]\n", "[[use]]\n", "[variants.v0]\n", "[change.guard]\n", "#", "1e300"]
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "file", ["branching.toml", "assets/guard.toml", "assets/crates.toml", "overlays/guard_alert.toml"]
+)
+def test_damaged_files_are_told_so_and_nothing_else_happens(file: str, seed: int, folder: Path) -> None:
+    shutil.copytree(LEVELS, folder / "levels")
+    lines = (LEVELS / file).read_text(encoding="utf-8").split("\n")
+    draw = random.Random(seed)
+    refused = 0
+    for _ in range(15):
+        damaged = list(lines)
+        for _ in range(draw.randint(1, 3)):
+            at, what = draw.randrange(len(damaged)), draw.choice(DAMAGE)
+            key, equals, _ = damaged[at].partition("=")
+            column = draw.randrange(len(damaged[at]) + 1)
+            inside = damaged[at][:column] + what + damaged[at][column:]
+            damaged[at] = draw.choice([f"{key}= {what}" if equals else what, inside, "", f"{damaged[at]}\n{what} = 1"])
+        (folder / "levels" / file).write_text("\n".join(damaged), encoding="utf-8")
+        try:
+            load_level("levels/branching.toml", "v1")
+        except TltlError as error:
+            refused += 1
+            for diagnostic in error.diagnostics:
+                assert all(0 <= at.span.start <= at.span.end <= len(at.source.text) for at in diagnostic.labels)
+            assert render(error.diagnostics)
+    assert refused > 0

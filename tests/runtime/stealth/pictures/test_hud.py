@@ -1,0 +1,98 @@
+"""What a player reads, and what is seen between two decisions."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import pytest
+
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.game import Game
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.pictures.hud import beginning, ending, how_it_ended, hud
+from tltl_runtime.stealth.pictures.interpolation import between
+from tltlc import compile_text
+from tltlc.record import replace
+
+
+@pytest.fixture(scope="module")
+def played() -> Any:
+    env = make_env("cover_and_hide")
+    _, info = env.reset(seed=1)
+    yield env, env.unwrapped.game.snapshot(), info  # type: ignore[attr-defined]
+    env.close()
+
+
+def test_it_tells_how_things_stand(played: Any) -> None:
+    env, snapshot, info = played
+    shown = hud(snapshot, info, env.task.fspa)
+    assert [(bar.name, bar.value) for bar in shown.bars] == [("health", 1.0), ("stamina", 1.0), ("progress", 0.0)]
+    said = [line.text for line in shown.lines]
+    assert said[:2] == ["0.0 s   pending", "nobody sees you"]
+    assert " ".join(said[2:]) == env.task.fspa.states[0].label.english
+    assert max(map(len, said)) <= 36
+
+
+@pytest.mark.parametrize(
+    "modes, sees, said",
+    [
+        (("patrol",), (True,), "you are in sight"),
+        (("chase",), (False,), "you are chased"),
+        (("search",), (False,), "they search for you"),
+        (("return",), (False,), "nobody sees you"),
+    ],
+)
+def test_it_tells_who_sees_the_player(played: Any, modes: tuple[str, ...], sees: tuple[bool, ...], said: str) -> None:
+    env, snapshot, info = played
+    shown = hud(replace(snapshot, modes=modes, sees=sees), info, env.task.fspa)
+    assert shown.lines[1].text == said
+
+
+def test_a_long_formula_is_cut(played: Any) -> None:
+    _, snapshot, info = played
+    names = [f"seen_by_{number}" for number in range(40)]
+    text = "".join(f"signal {name}: bool\n" for name in names)
+    (fspa,) = compile_text(f"{text}spec long {{ keep {' & '.join(names)} }}")
+    shown = hud(snapshot, info, fspa)
+    assert len(shown.lines) == 12 and shown.lines[-1].text.endswith(" …")
+
+
+def test_titles(played: Any) -> None:
+    env, snapshot, info = played
+    shown = hud(snapshot, info, env.task.fspa)
+    first = beginning(shown, env.unwrapped.level, env.task.fspa)
+    assert first.title == "cover_and_hide v0" and any("Press the button" in line for line in first.below)
+    last = ending(shown, "success after 3.0 s", True, "a.episode.npz")
+    assert last.tone == "good" and last.below[0] == "recorded: a.episode.npz"
+
+
+def test_how_it_ended(played: Any) -> None:
+    fspa = played[0].task.fspa
+    trap = next(state.id for state in fspa.states if state.verdict == "violated")
+    assert how_it_ended(fspa, "violation", 3.0, (0, trap)) == "violated after 3.0 s: !alive"
+    assert how_it_ended(fspa, "success", 43.21, (0, 1)) == "success after 43.2 s"
+    assert how_it_ended(fspa, "limit", 60.0, (0, 0)) == "time is up after 60.0 s"
+
+
+def test_between_two_decisions() -> None:
+    game = Game(load_level("branching"))
+    before = game.snapshot()
+    for _ in range(4):
+        game.step([1, 0, 0, 0, 0])
+    after = game.snapshot()
+    assert between(before, after, 1.0) == after
+    start = between(before, after, 0.0)
+    assert start.player.position == before.player.position and start.movers == before.movers
+    half = between(before, after, 0.5)
+    assert half.player.position[0] == pytest.approx((before.player.position[0] + after.player.position[0]) / 2)
+    assert half.time == pytest.approx(0.3) and half.health == after.health
+    game.close()
+
+
+def test_turning_the_shorter_way() -> None:
+    game = Game(load_level("branching"))
+    snapshot = game.snapshot()
+    game.close()
+    turned = [replace(snapshot, player=replace(snapshot.player, yaw=yaw)) for yaw in (3.0, -3.0)]
+    assert abs(between(*turned, 0.5).player.yaw) == pytest.approx(pi)

@@ -1,0 +1,190 @@
+"""What a player can reach at all: rooms made for it, the shipped levels, and the physics never contradicts a no."""
+
+from __future__ import annotations
+
+from contextlib import closing
+
+import numpy as np
+import pytest
+
+from tltl_runtime.stealth.level import Barrier, Box, Exit, Level, Mover, Point, Sensors, Solid, Start, Switch, Unlock
+from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltl_runtime.stealth.levels.parts import enclosure
+from tltl_runtime.stealth.supply.reach import Reach, highest_lift, reachable
+from tltl_runtime.stealth.supply.space import distances, flood
+from tltl_runtime.stealth.world.physics import World
+from tltl_runtime.stealth.world.player import PlayerKind
+from tltlc.record import replace
+
+BOUNDS = Box((0.0, 0.0, -0.5), (12.0, 5.0, 4.0))
+SHIPPED = [(name, variant) for name in level_names() for variant in variants(name)]
+SHUT = ("navigation", "v2")
+
+
+def room(*boxes: Box, end: Point = (10.5, 2.5, 0.0), movers: tuple[Mover, ...] = ()) -> Level:
+    """A room 12 m long: one begins in the west, the exit is in the east, ``boxes`` stand between."""
+    solids = [Solid(f"box_{number}", "wall", box) for number, box in enumerate(boxes)]
+    return Level(
+        name="room",
+        variant="v0",
+        doc="A room.",
+        bounds=BOUNDS,
+        start=Start((1.5, 2.5, 0.0)),
+        solids=(*enclosure(BOUNDS), *solids),
+        switches=(),
+        barriers=(),
+        unlocks=(),
+        movers=movers,
+        enemies=(),
+        exits=(Exit("exit", end),),
+        sensors=Sensors((), (), None),
+        spec="",
+        files=(),
+    )
+
+
+def wall(low: float, high: float, x: float = 6.0, thick: float = 0.2, south: float = 0.0, north: float = 5.0) -> Box:
+    """A wall across the room, from one height to another."""
+    return Box((x, south, low), (x + thick, north, high))
+
+
+def pit(width: float) -> tuple[Box, Box]:
+    """Two platforms with nothing between them, and no way up: one begins on the first."""
+    return Box((0.2, 0.2, 0.0), (4.0, 4.8, 2.0)), Box((4.0 + width, 0.2, 0.0), (11.8, 4.8, 2.0))
+
+
+@pytest.mark.parametrize(
+    ("boxes", "reached"),
+    [
+        ((), True),
+        ((wall(0.0, 4.0),), False),
+        ((wall(0.0, 1.2),), True),
+        ((wall(0.0, 1.35),), False),
+        ((wall(0.9, 4.0),), True),
+        ((wall(0.7, 4.0),), False),
+        ((wall(0.0, 4.0, north=2.2), wall(0.0, 4.0, south=2.9)), True),
+        ((wall(0.0, 4.0, north=2.3), wall(0.0, 4.0, south=2.7)), False),
+        ((wall(0.0, 2.0), Box((4.5, 2.0, 0.0), (5.3, 2.8, 1.0))), True),
+        ((wall(0.0, 2.4), Box((4.5, 2.0, 0.0), (5.3, 2.8, 1.0))), False),
+    ],
+)
+def test_walls_gaps_and_slits(boxes: tuple[Box, ...], reached: bool) -> None:
+    assert reachable(room(*boxes)).reaches("exit") == reached
+
+
+@pytest.mark.parametrize(("width", "reached"), [(3.0, True), (5.0, False)])
+def test_leaps(width: float, reached: bool) -> None:
+    level = room(*pit(width), end=(10.5, 2.5, 2.0))
+    on_top = replace(level, start=Start((1.5, 2.5, 2.0)))
+    assert reachable(on_top).reaches("exit") == reached
+    # From the floor nobody gets up again.
+    assert not reachable(level).reaches("exit")
+
+
+def test_a_lift_carries() -> None:
+    ledge = Box((7.0, 0.2, 0.0), (11.8, 4.8, 3.0))
+    lift = Mover("lift", (1.0, 1.0, 0.2), ((6.3, 2.5, 0.1), (6.3, 2.5, 2.4)), 1.0)
+    top = (10.5, 2.5, 3.0)
+    assert not reachable(room(ledge, end=top)).reaches("exit")
+    assert reachable(room(ledge, end=top, movers=(lift,))).reaches("exit")
+
+
+def with_barriers(level: Level, place: Point, opened_by: tuple[str, ...], unlocks: tuple[Unlock, ...] = ()) -> Level:
+    door = Barrier("door", "solid", wall(0.0, 4.0), opened_by)
+    return replace(level, switches=(Switch("lever", place, 1.0),), barriers=(door,), unlocks=unlocks)
+
+
+def test_barriers_wait_for_their_switches() -> None:
+    assert reachable(with_barriers(room(), (3.0, 1.0, 0.0), ("lever",))).reaches("exit")
+    behind = reachable(with_barriers(room(), (8.0, 1.0, 0.0), ("lever",)))
+    assert (behind.switches, behind.barriers, behind.reaches("exit")) == ((), (), False)
+    by_chance = with_barriers(room(), (3.0, 1.0, 0.0), (), (Unlock("lever", ("door", "other")),))
+    assert reachable(by_chance).reaches("exit")
+
+
+@pytest.mark.parametrize(("name", "variant"), SHIPPED)
+def test_shipped_levels(name: str, variant: str) -> None:
+    level = load_level(name, variant)
+    reach = reachable(level)
+    if (name, variant) == SHUT:
+        assert reach.switches == ("s1",) and reach.barriers == ("gap",)
+        assert not reach.reaches("s2") and not reach.reaches("exit")
+        # Nothing behind the block: it begins 11.6 m from the west.
+        columns = np.flatnonzero(reach.ground.any(axis=0))
+        assert reach.origin[0] + reach.cell * (columns.max() + 1) < 11.6
+    else:
+        assert all(reach.reaches(entity) for entity in reach.distances)
+        assert len(reach.switches) == len(level.switches) and len(reach.barriers) == len(level.barriers)
+
+
+def test_jumps_in_the_physics_stay_below_the_lift() -> None:
+    lift = highest_lift(PlayerKind())
+    rng = np.random.default_rng(1)
+    for top, possible in ((1.1, True), (lift + 0.02, False)):
+        level = room(Box((6.0, 0.2, 0.0), (11.8, 4.8, top)))
+        reach = reachable(level)
+        assert reach.ground[:, int(8.0 / reach.cell)].any() == possible
+        with closing(World(level)) as world:
+            landed = 0
+            for attempt in range(40):
+                world.reset(None)
+                for step in range(24):
+                    side, crouch = int(rng.integers(3)), int(rng.random() < 0.2)
+                    jumping = step >= attempt % 5
+                    action = (1, side, 1, crouch, attempt % 2) if jumping else (1, 0, 0, 0, 0)
+                    world.step(action)
+                feet, grounded = world.player.position[2], world.player.grounded
+                landed += grounded and feet > top - 0.2
+                assert world.player.position[2] <= lift + (top if possible else 0.0)
+            assert bool(landed) == possible
+
+
+def stands(reach: Reach, x: float, y: float) -> bool:
+    """Whether there is ground to reach in the cell of a place."""
+    return bool(reach.ground[int((y - reach.origin[1]) / reach.cell), int((x - reach.origin[0]) / reach.cell)])
+
+
+@pytest.mark.parametrize(("name", "variant"), SHIPPED)
+def test_nobody_stands_where_nobody_can(name: str, variant: str) -> None:
+    reach = reachable(load_level(name, variant))
+    rng = np.random.default_rng(7)
+    with closing(World(load_level(name, variant))) as world:
+        world.reset(rng)
+        for index in range(len(world.level.barriers)):
+            world.set_open(index, world.level.barriers[index].name in reach.barriers)
+        action = [0, 0, 0, 0, 0]
+        for step in range(300):
+            if step % 6 == 0:
+                action = [int(rng.integers(size)) for size in (3, 3, 2, 2, 2)]
+            world.step(action)
+            x, y, _ = world.player.position
+            if world.player.grounded:
+                assert stands(reach, x, y)
+
+
+def test_a_flood_goes_round_corners_and_through_nothing() -> None:
+    rng = np.random.default_rng(0)
+    free = rng.random((4, 9, 11)) < 0.6
+    seeds = np.zeros_like(free)
+    seeds[2, 4, 5] = free[2, 4, 5] = True
+    found = {(2, 4, 5)}
+    waiting = [(2, 4, 5)]
+    while waiting:
+        z, y, x = waiting.pop()
+        for a, b, c in ((z + 1, y, x), (z - 1, y, x), (z, y + 1, x), (z, y - 1, x), (z, y, x + 1), (z, y, x - 1)):
+            inside = 0 <= a < 4 and 0 <= b < 9 and 0 <= c < 11
+            if inside and free[a, b, c] and (a, b, c) not in found:
+                found.add((a, b, c))
+                waiting.append((a, b, c))
+    assert set(zip(*(axis.tolist() for axis in np.nonzero(flood(free, seeds))), strict=True)) == found
+
+
+def test_distances_between_cells() -> None:
+    field = np.zeros((6, 7), dtype=np.bool_)
+    field[1, 2] = field[5, 6] = True
+    found = distances(field, 5)
+    for row in range(6):
+        for column in range(7):
+            apart = [(max(abs(row - y) - 1, 0), max(abs(column - x) - 1, 0)) for y, x in ((1, 2), (5, 6))]
+            nearest = min(np.hypot(*each) for each in apart)
+            assert found[row, column] == (pytest.approx(nearest) if nearest < 5 else np.inf)

@@ -1,0 +1,118 @@
+"""Rendering through Gymnasium: pictures, a window, and what there is not."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from PIL import Image
+
+import tltl_runtime  # noqa: F401  (registers the environments)
+from tests.runtime.stealth.xvfb import MISSING, screen
+from tltl_runtime.stealth.env import GameEnv, make_env
+
+NAMES = ("tltl/Navigation-v0", "tltl/CoverAndHide-v0", "tltl/Branching-v0")
+SMALL = (96, 64)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_pictures_through_gymnasium(name: str) -> None:
+    env = gymnasium.make(name, render_mode="rgb_array", render_view="top_down", render_size=SMALL)
+    assert env.metadata["render_modes"] == ["human", "rgb_array"] and env.metadata["render_fps"] == 7
+    env.reset(seed=1)
+    before = env.render()
+    assert isinstance(before, np.ndarray) and before.shape == (64, 96, 3) and before.dtype == np.uint8
+    for _ in range(8):
+        env.step(np.array([1, 2, 0, 0, 0]))
+    after = env.render()
+    assert isinstance(after, np.ndarray) and (after != before).any()
+    env.close()
+
+
+def test_lists_of_pictures() -> None:
+    env = gymnasium.make("tltl/Branching-v0", render_mode="rgb_array_list", render_size=SMALL)
+    env.reset(seed=1)
+    for _ in range(3):
+        env.step(env.action_space.sample())
+    frames = env.render()
+    assert isinstance(frames, list) and len(frames) == 4
+    env.close()
+
+
+def test_an_episode_is_the_same_with_pictures() -> None:
+    seen = []
+    for mode in (None, "rgb_array"):
+        env = make_env("cover_and_hide", render_mode=mode, render_size=SMALL)
+        env.reset(seed=5)
+        for _ in range(10):
+            observation, *_ = env.step([1, 1, 0, 0, 1])
+            if mode:
+                env.render()
+        seen.append(observation)
+        env.close()
+    assert all(np.array_equal(seen[0][key], seen[1][key]) for key in seen[0])
+
+
+def test_modes_and_views_that_there_are_not() -> None:
+    with pytest.raises(ValueError, match=r"no render mode 'ansi': there are human, rgb_array"):
+        GameEnv("navigation", render_mode="ansi")
+    with pytest.raises(ValueError, match=r"no view 'side': there are third_person, top_down, overview"):
+        GameEnv("navigation", render_view="side")  # type: ignore[arg-type]
+
+
+def test_no_picture_without_a_mode() -> None:
+    env = GameEnv("navigation")
+    env.reset(seed=0)
+    with pytest.warns(UserWarning, match="render_mode='rgb_array'"):
+        assert env.render() is None
+    env.close()
+
+
+CHECK = """
+import gymnasium, tltl_runtime, warnings
+from gymnasium.utils.env_checker import check_env
+from PIL import Image
+env = gymnasium.make("tltl/CoverAndHide-v0", render_mode="human", render_size=(96, 64))
+with warnings.catch_warnings(record=True) as told:
+    check_env(env.unwrapped, skip_render_check=False)
+assert not [each for each in told if "TLT0830" in str(each.message)]
+env.close()
+print("checked")
+"""
+
+
+@pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
+def test_gymnasiums_own_checks_of_all_modes_with_a_screen(tmp_path: Path) -> None:
+    with screen() as environment:
+        command = [sys.executable, "-c", CHECK]
+        done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+        assert done.stdout.endswith("checked\n"), done.stderr
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_gymnasiums_own_checks_without_a_screen(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They try all render modes, so one without a screen must not fail where there is none."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setenv("SDL_VIDEODRIVER", "x11")
+    env = gymnasium.make(name, render_mode="rgb_array", render_size=SMALL)
+    with pytest.warns(UserWarning, match="TLT0830: no window can be opened here"):
+        check_env(env.unwrapped, skip_render_check=False)
+    env.close()
+
+
+def test_the_pictures_of_the_readme_are_those_that_are_made(tmp_path: Path) -> None:
+    images = Path(__file__).parents[4] / "docs" / "images"
+    subprocess.run([sys.executable, images / "frames.py", tmp_path], check=True, timeout=60, capture_output=True)
+    made = sorted(tmp_path.iterdir())
+    assert [path.name for path in made] == ["branching.png", "cover_and_hide.png", "navigation.png"]
+    for path in made:
+        kept = images / path.name
+        assert kept.stat().st_size < 150_000
+        pictures = [np.asarray(Image.open(each).convert("RGB"), float) for each in (path, kept)]
+        # Another processor may round another way.
+        assert np.abs(pictures[0] - pictures[1]).mean() < 1.0, f"{path.name} is old: make generate"
