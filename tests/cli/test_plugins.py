@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 import zipfile
 from pathlib import Path
 
 import pytest
 
 from tests.cli.conftest import ROOT
+from tltlc.cli.main import OF_THE_RUNTIME
+
+if sys.version_info >= (3, 11):
+    import tomllib as tomli
+else:
+    import tomli
 
 CODE = "import click\n\n@click.command()\ndef command():\n    'Dance.'\n    print('dancing')\n    return 0\n"
 
@@ -36,6 +43,13 @@ def test_help_loads_no_plugin(process, installed: str) -> None:  # type: ignore[
     shown = process("--help", PYTHONPATH=installed)
     assert shown.status == 0
     assert "(needs the extra rl)" in shown.out
+
+
+def test_what_comes_with_tltlc_is_told_and_needs_the_extra_game() -> None:
+    project = tomli.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    groups = project["entry-points"]
+    assert groups["tltlc.commands"].keys() == OF_THE_RUNTIME.keys()
+    assert all(entry.endswith(" [game]") for group in groups.values() for entry in group.values())
 
 
 def test_a_missing_component_is_4(process, installed: str) -> None:  # type: ignore[no-untyped-def]
@@ -106,8 +120,6 @@ def test_levels_that_are_not_installed_are_4(process, knows_levels: str, inside:
 
 
 def test_a_missing_part_of_tltlc_is_4(tltlc, inside: Path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    import sys
-
     monkeypatch.setitem(sys.modules, "rich", None)
     monkeypatch.setitem(sys.modules, "rich.console", None)
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)

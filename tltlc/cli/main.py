@@ -28,6 +28,7 @@ BUILT_IN: Final = {
 }
 
 OF_THE_RUNTIME: Final = {
+    "demonstrate": "Have the scripted expert play a level, and record it.",
     "play": "Play a level with the keyboard, and record it.",
     "replay": "Show recorded episodes: how they went, plans, films, signals.",
 }

@@ -99,4 +99,4 @@ def _levels() -> click.Command:
     for plugin in plugins.find(LEVELS):
         found: click.Command = plugins.load(plugin, "`tltlc check --level`")
         return found
-    raise missing_component("`tltlc check --level`", "tltl_runtime", "tltlc[rl]")
+    raise missing_component("`tltlc check --level`", "tltl_runtime", "tltlc[game]")

@@ -110,7 +110,7 @@ def _levels() -> Iterator[Row]:
         if plugin.name == "levels":
             listed: Callable[[], Iterator[Row]] = plugins.load(plugin, "`tltlc list levels`")
             return listed()
-    raise missing_component("`tltlc list levels`", "tltl_runtime", "tltlc[rl]")
+    raise missing_component("`tltlc list levels`", "tltl_runtime", "tltlc[game]")
 
 
 _LISTS: dict[str, Callable[[], Iterator[Row]]] = {"targets": _targets, "levels": _levels, "codes": _codes}
