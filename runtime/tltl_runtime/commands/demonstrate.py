@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tltl_runtime.commands.quiet import load_pybullet
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.spec_file import split
@@ -54,7 +53,6 @@ def command(level: str, spec: str | None, episodes: int, seed: int, folder: Path
     Writes for each episode the recording LEVEL-VARIANT-SEED.episode.npz and the plan of its way as a .png.
     The exit status is 1 where an episode does not succeed.
     """
-    load_pybullet()
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode

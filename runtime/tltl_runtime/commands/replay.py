@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
-from tltl_runtime.commands.quiet import load_pybullet
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.cli import exits
 from tltlc.cli.report import Report
@@ -140,7 +139,6 @@ def command(
     whether the level, played again from the seed with the same actions, gives the same episode.
     """
     _check_usage(files, path, view, size)
-    load_pybullet()
     from tltl_runtime.stealth.episodes.check import check, check_replay
     from tltl_runtime.stealth.episodes.file import read_episode
     from tltl_runtime.stealth.episodes.summary import summary, summary_text

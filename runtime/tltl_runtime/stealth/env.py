@@ -33,13 +33,14 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     ``reset(seed=...)`` reproduces an episode bit for bit; ``game.seed`` is the seed to give for that, drawn where a
     reset was given none.
 
-    ``render_mode`` ``rgb_array`` makes :meth:`render` return pictures of ``render_size`` (width, height), ``human``
-    shows them in a window as the episode goes on, a decision taking its time; ``render_view`` is one of
-    ``third_person top_down overview``.
+    ``render_mode`` ``rgb_array`` makes :meth:`render` return pictures of ``render_size`` (width, height), each from 16
+    to 4096 pixels, ``human`` shows them in a window as the episode goes on, a decision taking its time;
+    ``render_view`` is one of ``third_person top_down overview``.
 
     Raises:
         TltlError: what :func:`~tltl_runtime.stealth.levels.file.load_level` finds; TLT0815, where ``sensors`` say what
             the level does not have.
+        ValueError: there is no such render mode, view or size.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": list(MODES), "render_fps": round(1 / DECISION)}  # type: ignore[misc]

@@ -14,6 +14,9 @@ from tltlc.record import record
 View = Literal["third_person", "top_down", "overview"]
 VIEWS: tuple[View, ...] = ("third_person", "top_down", "overview")
 
+SMALLEST, LARGEST = 16, 4096
+"""The least and the greatest width and height of a picture, in pixels; pybullet ends the process beyond."""
+
 _FOLLOW = (0.0, -6.6, 8.4)
 """From the player to the eye that follows it: south of it and above, so that north is up in every view."""
 _AHEAD = (0.0, 0.6, 0.6)
@@ -55,6 +58,14 @@ def camera(level: Level, view: View, player: Point, aspect: float) -> Camera:
     if view == "top_down":
         return _top_down(level, aspect)
     return _overview(level, aspect)
+
+
+def check_size(size: object) -> tuple[int, int]:
+    """Width and height of a picture; raises ValueError where that is no pair of whole numbers within the range."""
+    match size:
+        case (int(width), int(height)) if all(SMALLEST <= side <= LARGEST for side in (width, height)):
+            return width, height
+    raise ValueError(f"a picture's size is (width, height) in pixels, each from {SMALLEST} to {LARGEST}, not {size!r}")
 
 
 def sight_lines(camera: Camera, width: int, height: int) -> NDArray[np.float32]:

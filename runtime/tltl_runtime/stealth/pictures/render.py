@@ -9,16 +9,16 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-import pybullet
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.segments import blocked, corners
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
-from tltl_runtime.stealth.pictures.camera import Camera, View, camera, pixels
+from tltl_runtime.stealth.pictures.camera import Camera, View, camera, check_size, pixels
 from tltl_runtime.stealth.pictures.cone import Field
 from tltl_runtime.stealth.pictures.paint import Canvas
 from tltl_runtime.stealth.pictures.scene import Colour, Obstacle, Scene
+from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.player import PlayerKind
 
 LASER: Final[Colour] = (1.0, 0.15, 0.2)
@@ -39,11 +39,16 @@ _OVERHEAD: Final = 1.0
 
 
 class Renderer:
-    """Draws snapshots of a level, ``width`` by ``height`` pixels; each is drawn ``samples`` squared times finer."""
+    """Draws snapshots of a level, ``width`` by ``height`` pixels; each is drawn ``samples`` squared times finer.
+
+    Raises ValueError for a size that :func:`~tltl_runtime.stealth.pictures.camera.check_size` refuses.
+    """
 
     def __init__(self, level: Level, width: int = 640, height: int = 480, samples: int = 1) -> None:
         self.level = level
-        self.width, self.height, self.samples = width, height, samples
+        self.width, self.height = check_size((width, height))
+        self.samples = samples
+        check_size((width * samples, height * samples))
         self._scene = Scene(level)
         self._kind = PlayerKind()
 

@@ -8,16 +8,17 @@ Translucent things, such as lasers, are no bodies: TinyRenderer draws none, so
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from functools import lru_cache
 from itertools import pairwise
 from math import cos, pi, sin
 from typing import Final
 
 import numpy as np
-import pybullet
 
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.world.bodies import UPRIGHT
+from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.geometry import around
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.record import record
@@ -129,7 +130,7 @@ class Scene:
 
     def _lathe(self, profile: Sequence[tuple[float, float]], colour: Colour, place: Point = _AWAY) -> int:
         """A body that is round about the z axis: ``profile`` holds (radius, z) from the bottom to the top."""
-        vertices, normals, indices = _turned(profile)
+        vertices, normals, indices = _turned(tuple(profile))
         shape = pybullet.createVisualShape(
             pybullet.GEOM_MESH,
             vertices=vertices,
@@ -185,10 +186,14 @@ class Scene:
         pybullet.resetBasePositionAndOrientation(body, place, turned, physicsClientId=self.client)
 
 
+@lru_cache(maxsize=32)
 def _turned(
-    profile: Sequence[tuple[float, float]], around: int = 28
+    profile: tuple[tuple[float, float], ...], around: int = 28
 ) -> tuple[list[list[float]], list[list[float]], list[int]]:
-    """Vertices, normals and triangles of a profile turned about the z axis; edges stay sharp."""
+    """Vertices, normals and triangles of a profile turned about the z axis; edges stay sharp.
+
+    Kept, since pybullet never lets go of a list that it was given: new ones would be lost with each scene.
+    """
     vertices: list[list[float]] = []
     normals: list[list[float]] = []
     indices: list[int] = []

@@ -6,7 +6,7 @@ import warnings
 from typing import TYPE_CHECKING, Final
 
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.pictures.camera import VIEWS, View
+from tltl_runtime.stealth.pictures.camera import VIEWS, View, check_size
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -24,7 +24,8 @@ MODES: Final = ("human", "rgb_array")
 class Screen:
     """Pictures of a level for the render mode ``rgb_array``, a window for ``human``.
 
-    ``size`` is width and height in pixels.  Raises ValueError for a mode or a view that there is not.
+    ``size`` is width and height in pixels.  Raises ValueError for a mode or a view that there is not, and for a size
+    that :func:`~tltl_runtime.stealth.pictures.camera.check_size` refuses.
     """
 
     def __init__(self, level: Level, mode: str | None, view: View, size: tuple[int, int]) -> None:
@@ -32,7 +33,8 @@ class Screen:
             raise ValueError(f"there is no render mode {mode!r}: there are {', '.join(MODES)}")
         if view not in VIEWS:
             raise ValueError(f"there is no view {view!r}: there are {', '.join(VIEWS)}")
-        self.level, self.mode, self.view, self.size = level, mode, view, size
+        self.level, self.mode, self.view = level, mode, view
+        self.size = check_size(size)
         self._renderer: Renderer | None = None
         self._window: Window | None = None
         self._unseen = False

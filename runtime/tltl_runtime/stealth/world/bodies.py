@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import pybullet
-
 from tltl_runtime.stealth.level import Point
+from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.geometry import Bounds
 
 COMPOUND = 16

@@ -22,8 +22,6 @@ from collections.abc import Sequence
 from math import cos, floor, pi, sin, sqrt
 from typing import Protocol
 
-import pybullet
-
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.world.bodies import (
     COMPOUND,
@@ -38,6 +36,7 @@ from tltl_runtime.stealth.world.bodies import (
     static_box,
     static_boxes,
 )
+from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.geometry import Bounds, around, cells, contact, depth, inside, parts, reaches, sides
 from tltl_runtime.stealth.world.player import DECISION, PlayerKind, PlayerState, control
 from tltl_runtime.stealth.world.way import Way

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,9 @@ from PIL import Image
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tests.runtime.stealth.xvfb import MISSING, screen
 from tltl_runtime.stealth.env import GameEnv, make_env
+from tltl_runtime.stealth.game import Game
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.window.screen import Screen
 
 NAMES = ("tltl/Navigation-v0", "tltl/CoverAndHide-v0", "tltl/Branching-v0")
 SMALL = (96, 64)
@@ -32,6 +36,34 @@ def test_pictures_through_gymnasium(name: str) -> None:
     after = env.render()
     assert isinstance(after, np.ndarray) and (after != before).any()
     env.close()
+
+
+@pytest.mark.parametrize("size", [(-1, 5), (0, 0), (100_000, 100_000), 64, (10,), (64.0, 48.0), (64, 15), None])
+def test_a_size_that_no_picture_has_is_refused_at_once(size: object) -> None:
+    with pytest.raises(ValueError, match=r"\(width, height\) in pixels, each from 16 to 4096, not "):
+        GameEnv("branching", render_mode="rgb_array", render_size=size)  # type: ignore[arg-type]
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads what Linux says of memory")
+def test_pictures_give_their_memory_back() -> None:
+    def used() -> float:
+        """MB"""
+        return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * resource.getpagesize() / 1e6
+
+    def once() -> None:
+        screen = Screen(level, "rgb_array", "third_person", SMALL)
+        screen.render(snapshot)
+        screen.close()
+
+    game = Game(load_level("branching"))
+    level, snapshot = game.level, game.snapshot()
+    game.close()
+    for _ in range(3):
+        once()
+    before = used()
+    for _ in range(12):
+        once()
+    assert used() - before < 4.0  # where each keeps its meshes, it is 15 and more
 
 
 def test_lists_of_pictures() -> None:

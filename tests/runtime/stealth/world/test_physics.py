@@ -8,11 +8,11 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-import pybullet
 import pytest
 
 from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Solid, Start
 from tltl_runtime.stealth.world.bodies import capsule, static_box, static_boxes
+from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.physics import World, WorldError
 from tltl_runtime.stealth.world.player import DECISION, PlayerKind
 from tltl_runtime.stealth.world.way import Way

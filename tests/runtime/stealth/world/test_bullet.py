@@ -1,0 +1,29 @@
+"""Pybullet is imported in one place, and says nothing there."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import tltl_runtime
+
+_PACKAGE = Path(tltl_runtime.__file__).parent
+
+
+@pytest.mark.parametrize("closed", ["", "2>&-"])
+def test_the_game_is_silent(closed: str) -> None:
+    program = "from tltl_runtime.stealth.env import make_env; make_env('navigation').close(); print('made')"
+    done = subprocess.run(
+        f'"{sys.executable}" -c "{program}" {closed}', shell=True, capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "made\n", "")
+
+
+def test_no_other_module_imports_it() -> None:
+    importing = re.compile(r"^\s*(import|from) pybullet\b", re.MULTILINE)
+    found = [path.name for path in _PACKAGE.rglob("*.py") if importing.search(path.read_text(encoding="utf-8"))]
+    assert found == ["bullet.py"]
