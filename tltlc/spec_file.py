@@ -25,11 +25,16 @@ _PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 def split(argument: str) -> tuple[str, str | None]:
     """The path and the name of ``PATH:NAME``; a path that exists, or a drive letter, is never split."""
     path, colon, name = argument.rpartition(":")
-    if not colon or not path or not _PLAIN_NAME.match(name) or os.path.exists(argument):  # noqa: PTH110
+    if not colon or not path or not is_plain_name(name) or os.path.exists(argument):  # noqa: PTH110
         return argument, None
     if len(path) == 1 and path.isalpha() and os.name == "nt":
         return argument, None
     return STDIN if path == STDIN_NAME else path, name
+
+
+def is_plain_name(text: str) -> bool:
+    """Whether a text can be the NAME of ``PATH:NAME``: a word of ASCII letters, digits and _."""
+    return bool(_PLAIN_NAME.match(text))
 
 
 def read(path: str) -> tuple[SourceFile, bool]:

@@ -28,9 +28,9 @@ def write_files(folder: Path, files: Mapping[str, str | bytes], advice: str = _O
     return _write({folder / name: content for name, content in files.items()}, advice)
 
 
-def write_file(path: Path, content: str | bytes) -> None:
+def write_file(path: Path, content: str | bytes, advice: str = _OPTION) -> None:
     """Write one file into a folder that exists, in the same way; a device or a pipe is written to directly."""
-    _write({path: content})
+    _write({path: content}, advice)
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import sys
 from collections.abc import Iterable
 from contextlib import suppress
@@ -42,6 +43,9 @@ _COMPONENTS: Final = {"graphviz", "pygraphviz", "sympy", "networkx", "rich", "to
 
 _NO_ROOM: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
 """What standard output may say to a write; files that a command names have their own messages."""
+
+
+_NO_NUMBER: Final = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?")
 
 
 class StopQuietlyError(Exception):
@@ -99,9 +103,17 @@ def _usage(error: click.ClickException) -> Diagnostic:
     message = " ".join(error.format_message().rstrip(".").split())
     context = error.ctx if isinstance(error, click.UsageError) else None
     command = context.command_path if context else "tltlc"
+    message = _NO_NUMBER.sub(lambda found: _number_wanted(found[1], found[2]), message)
     if message[1:2].islower():
         message = message[0].lower() + message[1:]
     return Diagnostic("TLT0700", message, help=f"`{command} --help` shows how to use it")
+
+
+def _number_wanted(text: str, kind: str) -> str:
+    """What click says in the words of its types."""
+    wanted = f"`{text}` is no {'whole ' if kind == 'integer' else ''}number"
+    pointed = text.replace(",", ".", 1)
+    return f"{wanted}; write {pointed}" if kind == "float" and re.fullmatch(r"-?\d+\.\d+", pointed) else wanted
 
 
 def _full_output(error: OSError) -> TltlError:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import click
+
 from tltlc.cli.settings import Settings, check_libraries
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.project import Project, project_for
@@ -48,6 +50,9 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
     Errors: TltlError with everything that the file's reading and compilation found.
     """
     path, name = split(argument)
+    if path.endswith(".toml"):
+        message = f"`{path}` is no spec; where it is a level, `tltlc check --level {path}` checks it"
+        raise click.UsageError(message, click.get_current_context(silent=True))
     wanted = (*specs, name) if name else tuple(specs)
     check_libraries(settings.libraries)
     project = project_for(path)

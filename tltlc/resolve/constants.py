@@ -70,7 +70,8 @@ def samples(value: Number, env: Env) -> int:
             "a bound in seconds needs a clock",
             source,
             value.span,
-            advice="declare how often the game is sampled, e.g. `clock 20 Hz`, or write the bound in steps",
+            advice="declare how often the game is sampled, e.g. `clock 20 Hz` (`clock 0.15 s` for levels of tltlc), "
+            "or write the bound in steps",
         )
     # The tolerance keeps 0.15 s at 20 Hz at 3 samples.
     return _counted(found[0] / period - 1e-9, value, env)

@@ -44,6 +44,8 @@ def command(
     plan: Path | None,
 ) -> None:
     """Hold levels against compiled specs, or where there are none against the spec that each is made for."""
+    if plan is not None and plan.suffix.lower() != ".png":
+        raise click.UsageError(f"--plan writes a .png, not `{plan}`", click.get_current_context())
     check = _Check(inputs, settings, report, sensors)
     seen: list[tuple[Level, Reach]] = []
     for path, variant in map(split, levels):
@@ -78,7 +80,8 @@ class _Check:
                 self._add(found)
                 if not found:
                     receiver = f" to `{fspa.name}`" if several else ""
-                    self._say(f"{level.name}:{variant} supplies {_supplied(level, fspa)}{receiver} (nothing to report)")
+                    remark = "" if warnings or opened.diagnostics else " (nothing to report)"
+                    self._say(f"{level.name}:{variant} supplies {_supplied(level, fspa)}{receiver}{remark}")
         self._say(f"{level.name}: the agent senses {_sensed(senses)}")
         return level, reach
 
@@ -110,7 +113,7 @@ def _draw(path: Path, seen: list[tuple[Level, Reach]]) -> None:
     from tltl_runtime.stealth.pictures.plan import draw
 
     level, reach = seen[0]
-    write_file(path, draw(level, reach=reach))
+    write_file(path, draw(level, reach=reach), "name another place with --plan")
 
 
 def _shown(spec: str) -> str:

@@ -13,12 +13,15 @@ from typing import Final
 
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Solid
 from tltl_runtime.stealth.levels import check, overlay, parts
+from tltl_runtime.stealth.levels.room import check_room
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
+from tltl_runtime.stealth.levels.ways import check_ways
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import read_source
 from tltlc.record import replace
 from tltlc.source import SourceFile, Span
+from tltlc.spec_file import is_plain_name
 
 LEVELS: Final = Path(__file__).parents[2] / "levels"
 """The folder of the levels that come with the package."""
@@ -56,21 +59,30 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
     TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay changes what is not there; and those of
     :func:`tltlc.files.read_source`.
     """
-    return read_level(name_or_path, variant)[0]
+    return _Loading(_level_path(name_or_path)).level(variant)
 
 
 def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
-    """A level as :func:`load_level` reads it, and warnings: TLT0809 a mover runs into something."""
-    return _Loading(_level_path(name_or_path)).level(variant)
+    """A level as :func:`load_level` reads it, and warnings: TLT0809 a mover or an enemy has an odd way."""
+    loading = _Loading(_level_path(name_or_path))
+    level = loading.level(variant)
+    return level, check_ways(level, loading.places)
 
 
 def _level_path(name_or_path: str) -> Path:
     if name_or_path.endswith(".toml"):
         return Path(name_or_path)
-    if name_or_path not in level_names():
-        help_ = suggestion(name_or_path, level_names()) + " Files end with `.toml`."
-        raise TltlError([Diagnostic("TLT0800", f"there is no level `{name_or_path}`", help=help_)])
-    return LEVELS / f"{name_or_path}.toml"
+    if name_or_path in level_names():
+        return LEVELS / f"{name_or_path}.toml"
+    title, help_ = f"there is no level `{name_or_path}`", suggestion(name_or_path, level_names())
+    if name_or_path.endswith((".tltl", ".json")):
+        title, help_ = (
+            f"`{name_or_path}` is a spec, not a level",
+            "a level is a `.toml` file, or one of those that come with tltlc",
+        )
+    elif Path(f"{name_or_path}.toml").is_file():
+        help_ = f"did you mean the file `{name_or_path}.toml`?"
+    raise TltlError([Diagnostic("TLT0800", title, help=help_)])
 
 
 class _Loading:
@@ -86,8 +98,8 @@ class _Loading:
         self.table = Table(self.root, f"the level `{path.stem}`", self.log)
         self.variants = self._variants()
 
-    def level(self, variant: str) -> tuple[Level, tuple[Diagnostic, ...]]:
-        """The level in a variant, and warnings."""
+    def level(self, variant: str) -> Level:
+        """The level in a variant."""
         if variant not in self.variants:
             title = f"the level `{self.path.stem}` has no variant `{variant}`"
             label = self.table.place("variants")
@@ -132,9 +144,9 @@ class _Loading:
         self._raise()
         self.log += check.check_names(names, places)
         self.log += check.check_references(level, places)
-        self.log += check.check_room(level, places, table.place("start"))
+        self.log += check_room(level, places, table.place("start"))
         self._raise()
-        return level, tuple(check.check_movers(level, places))
+        return level
 
     def _read(self, path: Path, name: str) -> Entry:
         source = read_source(path, _shown(path))
@@ -151,6 +163,16 @@ class _Loading:
         if table is None:
             return {"v0": ()}
         found = {key: table.names(key) for key in table.entries}
+        if not found:
+            help_ = "give one, e.g. `v0 = []`, or leave `[variants]` out"
+            self.log.append(Diagnostic("TLT0803", "the level has no variants", (table.label,), help_))
+        for key in found:
+            if not is_plain_name(key):
+                title, help_ = (
+                    f"no command could speak of the variant `{key}`",
+                    "a name is one word of letters, digits and _, e.g. `very_hard`",
+                )
+                self.log.append(Diagnostic("TLT0804", title, (table.place(key),), help_))
         self._raise()
         return found
 

@@ -64,6 +64,14 @@ class Places:
         self.names.setdefault(name, label)
         self.spots.setdefault(name, table.place(spot))
 
+    def named(self, name: str) -> tuple[Label, ...]:
+        """Where a thing is named."""
+        return (self.names[name],) if name in self.names else ()
+
+    def at(self, *names: str) -> tuple[Label, ...]:
+        """Where it was said where things stand; the outer walls are said nowhere."""
+        return tuple(self.spots[name] for name in names if name in self.spots)
+
     def refer(self, kind: str, table: Table, key: str, names: tuple[str, ...]) -> None:
         """Remember that a key speaks of things of a kind."""
         self.references.extend((kind, name, table.place(key)) for name in names)
@@ -159,7 +167,7 @@ def barriers(table: Table, places: Places) -> list[Barrier]:
             found.append(Barrier(name, cast(Literal["solid", "laser"], kind), box(item), opened_by, damage))
             places.put(name, item, "at")
             places.refer("switch", item, "opened_by", opened_by)
-            item.done()
+            item.done({"damage": "[[laser]]"})
     return found
 
 

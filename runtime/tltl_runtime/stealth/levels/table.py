@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from typing import Any, Final, TypeVar
 
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.record import EMPTY
 
 T = TypeVar("T")
 
@@ -96,11 +97,11 @@ class Table:
         """Where a key stands; the table's header where it is missing."""
         return self.entries[key].label if key in self.entries else self.label
 
-    def done(self) -> None:
-        """Report the keys that nobody asked for (TLT0802)."""
+    def done(self, elsewhere: Mapping[str, str] = EMPTY) -> None:
+        """Report the keys that nobody asked for (TLT0802); ``elsewhere`` says of what else some of them are keys."""
         for key, entry in self.entries.items():
             if key not in self._asked:
-                help_ = suggestion(key, self._asked)
+                help_ = f"it is a key of `{elsewhere[key]}`" if key in elsewhere else suggestion(key, self._asked)
                 self.log.append(Diagnostic("TLT0802", f"{self.what} has no key `{key}`", (entry.label,), help_))
 
     def _read(
@@ -122,15 +123,16 @@ class Table:
 
 def wrong(entry: Entry, key: str, expected: str) -> Diagnostic:
     """TLT0803: a value of the wrong kind, or out of its range."""
-    return Diagnostic(
-        "TLT0803", f"wrong value for `{key}`: {_shown(entry.value)}", (entry.label,), f"expected {expected}"
-    )
+    help_ = f"expected {expected}"
+    if "[x, y, z]" in expected and _has_decimal_commas(entry.value):
+        help_ += "; these are six numbers: decimals have a point, as in 6.5"
+    return Diagnostic("TLT0803", f"wrong value for `{key}`: {_shown(entry.value)}", (entry.label,), help_)
 
 
 def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
     """A way out for a name that is none of ``known``; ``listed`` stands for the list of them where that is long."""
     names = list(known)
-    close = get_close_matches(name, names, n=1)
+    close = get_close_matches(name, names, n=1) or [known for known in names if known.lower() == name.lower()]
     if close:
         return f"did you mean `{close[0]}`?"
     if listed is not None:
@@ -150,6 +152,11 @@ def _is_point(value: object) -> bool:
     )
 
 
+def _has_decimal_commas(value: object) -> bool:
+    """Whether it looks like a point whose three numbers have a comma for a point: whole numbers, twice as many."""
+    return isinstance(value, list) and len(value) == 6 and all(type(item) is int for item in value)
+
+
 def _point(value: list[float]) -> Point:
     x, y, z = (float(item) for item in value)
     return (x, y, z)
@@ -167,7 +174,7 @@ def _shown(value: object) -> str:
     if isinstance(value, list):
         if value and isinstance(value[0], Entry):
             return "tables"
-        if len(value) <= 4 and all(_is_number(item) for item in value):
+        if len(value) <= 6 and all(_is_number(item) for item in value):
             return f"[{', '.join(str(item) for item in value)}]"
         return "a list"
     return "a date or a time"

@@ -1,0 +1,113 @@
+"""What must hold of the room in a level: everything is inside, and stands where it can."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.levels.parts import Places
+from tltl_runtime.stealth.world.way import Way
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+
+_PLAYER_RADIUS: Final = 0.3
+_ENEMY_RADIUS: Final = 0.35
+"""Half the width of the room that a body needs, in metres."""
+
+_BODY_HEIGHT: Final = 1.8
+_EPSILON: Final = 1e-6
+
+_Boxes = list[tuple[str, Box]]
+
+
+def check_room(level: Level, places: Places, start: Label) -> list[Diagnostic]:
+    """TLT0806 for what is outside the bounds, TLT0807 for who or what stands inside something that stops it."""
+    solids = [(solid.name, solid.box) for solid in level.solids]
+    barriers = [(barrier.name, barrier.box) for barrier in level.barriers]
+    goals = [(switch.name, switch.position) for switch in level.switches]
+    goals += [(exit_.name, exit_.position) for exit_ in level.exits]
+    return [
+        *_outside(level, [*solids, *barriers], goals, places, start),
+        *_start(level, [*solids, *barriers], places, start),
+        *_goals(goals, solids, places),
+        *_routes(level, solids, places),
+    ]
+
+
+def _outside(
+    level: Level, boxes: _Boxes, goals: list[tuple[str, Point]], places: Places, start: Label
+) -> Iterator[Diagnostic]:
+    """What is outside the bounds, each thing once."""
+    moving = [(mover.name, _around(point, mover.size)) for mover in level.movers for point in mover.path]
+    points = [*goals, *((enemy.name, point) for enemy in level.enemies for point in enemy.route)]
+    spots = [(name, Box(point, point)) for name, point in points]
+    bounds = f"the level from {shown(level.bounds.low)} to {shown(level.bounds.high)}"
+    for name, box in {name: box for name, box in (*boxes, *moving, *spots) if not _inside(box, level.bounds)}.items():
+        help_ = f"it reaches from {shown(box.low)} to {shown(box.high)}, {bounds}"
+        yield Diagnostic("TLT0806", f"`{name}` is outside the level's bounds", places.at(name), help_)
+    player = _player(level)
+    if not _inside(player, level.bounds):
+        help_ = f"the player takes from {shown(player.low)} to {shown(player.high)}, {bounds}"
+        yield Diagnostic("TLT0806", "the start is outside the level's bounds", (start,), help_)
+
+
+def _start(level: Level, boxes: _Boxes, places: Places, start: Label) -> Iterator[Diagnostic]:
+    """What is where the player begins, movers included where they begin."""
+    begins = [(mover.name, _around(Way(mover).at(mover.offset), mover.size)) for mover in level.movers]
+    for name, box in (*boxes, *begins):
+        if _overlap(_player(level), box):
+            help_ = "move one of them, or lessen the start's `spread`: the player is 0.6 m wide and 1.8 m high"
+            yield Diagnostic("TLT0807", f"the start is inside `{name}`", (start, *places.at(name)), help_)
+
+
+def _goals(goals: list[tuple[str, Point]], solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
+    for goal, point in goals:
+        for name, box in solids:
+            if _overlap(_body(point, 0.01, 0.1), box):
+                title = f"`{goal}` is inside `{name}`, where nobody reaches it"
+                yield Diagnostic("TLT0807", title, places.at(goal, name), "move one of them")
+
+
+def _routes(level: Level, solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
+    for enemy in level.enemies:
+        for point in enemy.route:
+            for name, box in solids:
+                if _overlap(_body(point, _ENEMY_RADIUS), box):
+                    title = f"`{enemy.name}` cannot walk to {shown(point)}: `{name}` is there"
+                    help_ = f"points of a route keep {_ENEMY_RADIUS} m away from what stands in the level"
+                    yield Diagnostic("TLT0807", title, places.at(enemy.name, name), help_)
+
+
+def _player(level: Level) -> Box:
+    """All the room that the player may take where it begins."""
+    return _body(level.start.position, _PLAYER_RADIUS + level.start.spread)
+
+
+def _body(feet: Point, radius: float, height: float = _BODY_HEIGHT) -> Box:
+    """The room that somebody takes; a little above the floor, so that standing on something is no overlap."""
+    x, y, z = feet
+    return Box((x - radius, y - radius, z + 0.01), (x + radius, y + radius, z + height))
+
+
+def _around(centre: Point, size: Point) -> Box:
+    x, y, z = centre
+    dx, dy, dz = (side / 2 for side in size)
+    return Box((x - dx, y - dy, z - dz), (x + dx, y + dy, z + dz))
+
+
+def _inside(box: Box, bounds: Box) -> bool:
+    return all(
+        bounds.low[axis] - _EPSILON <= box.low[axis] and box.high[axis] <= bounds.high[axis] + _EPSILON
+        for axis in range(3)
+    )
+
+
+def _overlap(one: Box, other: Box) -> bool:
+    return all(
+        one.low[axis] < other.high[axis] - _EPSILON and other.low[axis] < one.high[axis] - _EPSILON for axis in range(3)
+    )
+
+
+def shown(point: Point) -> str:
+    """A point as level files write it."""
+    return f"[{', '.join(f'{value:g}' for value in point)}]"

@@ -1,0 +1,72 @@
+"""What is allowed in a level and hardly meant: warnings about the ways of movers and enemies (TLT0809)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import dist
+from typing import Final, cast
+
+from tltl_runtime.stealth.enemies.segments import Corners, blocked
+from tltl_runtime.stealth.level import Enemy, Level, Mover, Point
+from tltl_runtime.stealth.levels.parts import Places
+from tltl_runtime.stealth.levels.room import shown
+from tltlc.diagnostics.diagnostic import Diagnostic
+
+_EPSILON: Final = 1e-6
+
+
+def check_ways(level: Level, places: Places) -> tuple[Diagnostic, ...]:
+    """A warning for each mover that rests where it should go or goes through a solid, and for enemies.
+
+    Those are warned of that begin in reach of the player, and that do not get to a point of their route.
+    """
+    found = [warning for mover in level.movers for warning in _mover(mover, level, places)]
+    found += [warning for enemy in level.enemies for warning in _enemy(enemy, level, places)]
+    return tuple(found)
+
+
+def _mover(mover: Mover, level: Level, places: Places) -> Iterator[Diagnostic]:
+    stops = [*mover.path, mover.path[0]] if mover.closed else mover.path
+    if any(dist(start, end) < _EPSILON for start, end in pairwise(stops)):
+        title = f"two neighbouring points in the path of `{mover.name}` are the same"
+        yield _warning(title, places, mover.name, help_="for a rest, give a `pause`; else move one of the points")
+    for solid in level.solids:
+        # The box meets the solid where its centre meets the solid that is larger by half of it.
+        larger = (
+            *(a - side / 2 + _EPSILON for a, side in zip(solid.box.low, mover.size, strict=True)),
+            *(b + side / 2 - _EPSILON for b, side in zip(solid.box.high, mover.size, strict=True)),
+        )
+        # Nothing stops a mover but a player, so a door may well slide into a wall; more often it is a mistake.
+        if any(blocked(start, end, [cast(Corners, larger)]) for start, end in pairwise(stops)):
+            help_ = "where that is not meant, shorten its `path`, or move one of them"
+            yield _warning(f"`{mover.name}` runs into `{solid.name}`", places, mover.name, solid.name, help_=help_)
+
+
+def _enemy(enemy: Enemy, level: Level, places: Places) -> Iterator[Diagnostic]:
+    apart = max(0.0, dist(enemy.route[0], level.start.position) - level.start.spread)
+    if apart <= enemy.kind.attack_range:
+        title = f"`{enemy.name}` begins where it can hit the player at once, {apart:.2g} m from the start"
+        help_ = "let its `route` begin elsewhere, out of its sight"
+        yield _warning(title, places, enemy.name, help_=help_)
+    for point in enemy.route[1:]:
+        if not _way(level, enemy.route[0], point, shut=False):
+            title = f"`{enemy.name}` has no way to {shown(point)}"
+            help_ = "it would walk as near as it can; leave the point out, or give it a way 0.7 m wide"
+            yield _warning(title, places, enemy.name, help_=help_)
+        elif not _way(level, enemy.route[0], point, shut=True):
+            title = f"`{enemy.name}` has no way to {shown(point)} until a barrier opens"
+            help_ = "it walks as near as it can; where that is not meant, leave the point out"
+            yield _warning(title, places, enemy.name, help_=help_)
+
+
+def _way(level: Level, start: Point, end: Point, *, shut: bool) -> bool:
+    """Whether an enemy can walk between two points of its route, while all barriers are shut or open."""
+    from tltl_runtime.stealth.enemies.grid import grid_of
+
+    floor = grid_of(level).floor(range(len(level.barriers)) if shut else ())
+    return bool(floor.way(start[:2], end[:2]))
+
+
+def _warning(title: str, places: Places, *names: str, help_: str) -> Diagnostic:
+    return Diagnostic("TLT0809", title, places.at(*names), help_, "warning")
