@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from math import floor, sqrt
 
-from tltl_runtime.stealth.level import Mover, Point
+from tltl_runtime.stealth.level import Point
 
 Bounds = tuple[Point, Point]
 """The low and the high corner of a box."""
+TOUCH = 0.02
+"""How far, in metres, a body may reach into another and still count as free of it."""
 
 
 def parts(boxes: list[Bounds], size: int) -> list[list[Bounds]]:
@@ -63,16 +65,6 @@ def contact(feet: Point, height: float, radius: float, low: Point, high: Point) 
     )
     way, normal = min(ways)
     return radius + way, normal
-
-
-def reaches(feet: Point, height: float, place: Point, mover: Mover, reach: float) -> bool:
-    """Whether the box of a mover is within about ``reach`` of an upright capsule."""
-    (x, y, z), (a, b, c), (width, depth, rise) = feet, place, mover.size
-    return (
-        abs(x - a) <= width / 2 + reach
-        and abs(y - b) <= depth / 2 + reach
-        and c - rise / 2 - reach - height <= z <= c + rise / 2 + reach
-    )
 
 
 def around(centre: Point, size: Point) -> Bounds:

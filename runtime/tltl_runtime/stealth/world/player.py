@@ -17,7 +17,8 @@ Action = tuple[int, int, int, int, int]
 DECISION = 0.15
 """Seconds from one action to the next."""
 
-_SIGN = (0.0, 1.0, -1.0)
+SIGN = (0.0, 1.0, -1.0)
+"""Where the branches x and y of an action lead, by their number."""
 
 
 @record
@@ -74,7 +75,7 @@ def control(kind: PlayerKind, state: PlayerState, action: Sequence[int], crouchi
     Diagonal motion is no faster than straight motion.  Sprinting needs stamina for a whole decision; crouched
     players neither sprint nor jump, and a jump needs ground.
     """
-    x, y = _SIGN[action[0]], _SIGN[action[1]]
+    x, y = SIGN[action[0]], SIGN[action[1]]
     moving = x != 0.0 or y != 0.0
     spent = DECISION / kind.stamina_time
     sprinting = moving and bool(action[4]) and not crouching and state.stamina >= spent - 1e-9

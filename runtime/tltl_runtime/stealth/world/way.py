@@ -20,8 +20,9 @@ class Way:
         self._pause = mover.pause
         self._lap = 0.0
         for start, end in pairwise(stops):
-            length = sqrt(sum((b - a) ** 2 for a, b in zip(start, end, strict=True)))
-            self._legs.append((self._lap, start, end, length / mover.speed))
+            along = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
+            length = sqrt(sum(part**2 for part in along))
+            self._legs.append((self._lap, start, along, length / mover.speed))
             self._lap += mover.pause + length / mover.speed
         self._begins = [leg[0] for leg in self._legs]
 
@@ -30,10 +31,6 @@ class Way:
         if self._lap <= 0.0:
             return self._first
         time = clock % self._lap
-        begin, start, end, duration = self._legs[bisect_right(self._begins, time) - 1]
+        begin, (x, y, z), (dx, dy, dz), duration = self._legs[bisect_right(self._begins, time) - 1]
         share = 0.0 if duration <= 0.0 else min(1.0, max(0.0, (time - begin - self._pause) / duration))
-        return (
-            start[0] + share * (end[0] - start[0]),
-            start[1] + share * (end[1] - start[1]),
-            start[2] + share * (end[2] - start[2]),
-        )
+        return x + share * dx, y + share * dy, z + share * dz

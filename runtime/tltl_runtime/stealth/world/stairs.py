@@ -1,0 +1,54 @@
+"""Stairs, which Bullet alone does not climb: a velocity that is set once a decision is spent at the first edge."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from tltl_runtime.stealth.level import Point
+from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, depth
+from tltl_runtime.stealth.world.player import DECISION, PlayerKind
+
+Room = Callable[[Point, float], bool]
+"""Whether a player with its feet at a point is free, at a height."""
+
+
+def lift(
+    kind: PlayerKind, feet: Point, height: float, velocity: tuple[float, float], boxes: Sequence[Bounds], room: Room
+) -> float:
+    """How high the feet are lifted to walk up a stair that is in the way of this decision; 0 where there is none.
+
+    ``boxes`` are those that could be met.
+    """
+    if velocity == (0.0, 0.0):
+        return 0.0
+    x, y, z = feet
+    stairs = [(low, high) for low, high in boxes if low[2] < z + kind.radius and z + TOUCH < high[2]]
+    if not stairs:
+        return 0.0
+    ahead = (x + velocity[0] * DECISION, y + velocity[1] * DECISION)
+    west, east = min(x, ahead[0]) - kind.radius, max(x, ahead[0]) + kind.radius
+    south, north = min(y, ahead[1]) - kind.radius, max(y, ahead[1]) + kind.radius
+    stairs = [
+        (low, high) for low, high in stairs if low[0] < east and west < high[0] and low[1] < north and south < high[1]
+    ]
+    if not stairs:
+        return 0.0
+    # A wall beside the stairs must not stop who goes up along it, so each direction counts by itself as well.
+    both = velocity[0] and velocity[1]
+    ways = (velocity, (velocity[0], 0.0), (0.0, velocity[1])) if both else (velocity,)
+    return max(_lift_along(kind, feet, height, way, stairs, room) for way in ways)
+
+
+def _lift_along(
+    kind: PlayerKind, feet: Point, height: float, velocity: tuple[float, float], boxes: Sequence[Bounds], room: Room
+) -> float:
+    """The lift onto the first of ``boxes`` that is met, where it is low enough and there is room above it."""
+    x, y, z = feet
+    for share in (1 / 3, 2 / 3, 1.0):
+        ahead = (x + velocity[0] * DECISION * share, y + velocity[1] * DECISION * share)
+        tops = [high[2] for low, high in boxes if depth((*ahead, z), height, kind.radius, low, high) > TOUCH]
+        if tops:
+            step = max(tops) - z + 0.005
+            fits = step <= kind.step_height + TOUCH and all(room((a, b, z + step), height) for a, b in ((x, y), ahead))
+            return step if fits else 0.0
+    return 0.0
