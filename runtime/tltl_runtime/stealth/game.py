@@ -83,7 +83,7 @@ class Game:
         """Play one decision of :data:`~tltl_runtime.stealth.world.player.DECISION` seconds: one number per branch."""
         self.world.step(action)
         self._mover_boxes = self._boxes_of_movers()
-        self.enemies.step(DECISION, self._player_view(), self._mover_boxes)
+        self.enemies.step(DECISION, player_view(self.world.player), self._mover_boxes)
         self.steps += 1
         self.health = max(0.0, self.health - self.enemies.damage - self._burns() * DECISION)
         self._press_switches()
@@ -121,11 +121,6 @@ class Game:
         positions = self.world.mover_positions()
         return [Box(*around(centre, size)) for centre, size in zip(positions, self._sizes, strict=True)]
 
-    def _player_view(self) -> PlayerView:
-        player = self.world.player
-        head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
-        return PlayerView(player.position, head, player.crouching, player.velocity)
-
     def _press_switches(self) -> None:
         """Activate the switches that the player has come to, and open what they open."""
         feet = self.world.player.position
@@ -158,15 +153,21 @@ class Game:
         return sum(
             barrier.damage
             for barrier, is_open in zip(self.level.barriers, self.open, strict=True)
-            if barrier.kind == "laser" and not is_open and _touches(player.position, kind.radius, height, barrier.box)
+            if barrier.kind == "laser" and not is_open and touches(player.position, kind.radius, height, barrier.box)
         )
+
+
+def player_view(player: PlayerState) -> PlayerView:
+    """What enemies can know of the player."""
+    head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
+    return PlayerView(player.position, head, player.crouching, player.velocity)
 
 
 def _distance(a: Point, b: Point) -> float:
     return float(((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2) ** 0.5)
 
 
-def _touches(feet: Point, radius: float, height: float, box: Box) -> bool:
+def touches(feet: Point, radius: float, height: float, box: Box) -> bool:
     """Whether an upright box around the body meets ``box``."""
     return (
         all(box.low[axis] - radius < feet[axis] < box.high[axis] + radius for axis in (0, 1))

@@ -13,6 +13,7 @@ from tltl_runtime.stealth.expert.sneaker import Sneaker
 from tltl_runtime.stealth.expert.walker import STAY, Walker
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.signals import entities
 from tltl_runtime.stealth.world.player import Action
 
 _ROOM: Final = 0.5
@@ -34,6 +35,7 @@ class Expert:
         self.careful = careful
         self._walker = Walker(self.level)
         self._sneaker = Sneaker(self.level)
+        self._places = entities(self.level)
         self._movers = [reach_of(mover) for mover in self.level.movers]
         self.reset()
 
@@ -46,20 +48,20 @@ class Expert:
 
     def act(self) -> Action:
         """What to do now; nothing where the automaton sends the player nowhere."""
-        snapshot = self._game.snapshot()
-        goal = self.goal(snapshot)
+        goal = self.goal()
         if goal is None:
             return STAY
+        snapshot = self._game.snapshot()
         if (goal, snapshot.open) != self._chosen_for:
             self._chosen_for = (goal, snapshot.open)
             self._sneaks = self.careful and bool(self.level.enemies) and self._is_plain(snapshot, goal)
         return (self._sneaker if self._sneaks else self._walker).act(snapshot, goal)
 
-    def goal(self, snapshot: Snapshot) -> Point | None:
+    def goal(self) -> Point | None:
         """Where the automaton sends the player now, None where there is no such place."""
         taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
         state = 0 if taken is None else taken.state
-        places = _places(self.level, snapshot)
+        places = {name: place(self._game) for name, place in self._places.items()}
         goals = next_goals(self._task.fspa, state, sample, self._task.params, places)
         return places[goals[0]] if goals else None
 
@@ -82,20 +84,6 @@ def play_episode(env: gymnasium.Env[Any, Any], expert: Expert, seed: int) -> dic
         _, _, terminated, truncated, info = env.step(expert.act())
         over = terminated or truncated
     return info
-
-
-def _places(level: Level, snapshot: Snapshot) -> dict[str, Point]:
-    """Where each entity is that a player can be sent to."""
-    places = {switch.name: switch.position for switch in level.switches}
-    places |= {way_out.name: way_out.position for way_out in level.exits}
-    places |= {barrier.name: _base(barrier.box) for barrier in level.barriers}
-    places |= {mover.name: place for mover, place in zip(level.movers, snapshot.movers, strict=True)}
-    places |= {enemy.name: place for enemy, place in zip(level.enemies, snapshot.enemies, strict=True)}
-    return places
-
-
-def _base(box: Box) -> Point:
-    return (box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, box.low[2]
 
 
 def _is_within(point: Point, box: Box, metres: float) -> bool:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.segments import Rectangle
 from tltl_runtime.stealth.level import Box, Level, Point
-from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
+from tltl_runtime.stealth.world.player import DECISION, SIGN, Action, PlayerKind
 
 SPACING: Final = 0.4
 MARGIN: Final = 0.03
@@ -24,7 +24,8 @@ MARGIN: Final = 0.03
 FAR: Final = np.float32(1e6)
 """The value of what cannot be."""
 
-Floats = NDArray[np.float32]
+Costs = NDArray[np.float32]
+"""Decisions that the rest of the way costs, [places] where nothing else is said."""
 
 STAND, WALK, SPRINT, DUCK, CRAWL = range(5)
 
@@ -43,7 +44,7 @@ def _actions() -> tuple[list[Action], NDArray[np.float64], list[int]]:
         for x in (0, 1, 2):
             for y in (0, 1, 2):
                 if (x or y) or not sprint:
-                    dx, dy = (0, 1, -1)[x], (0, 1, -1)[y]
+                    dx, dy = SIGN[x], SIGN[y]
                     length = hypot(dx, dy) or 1.0
                     actions.append((x, y, 0, crouch, sprint))
                     ways.append((dx / length * speed * DECISION, dy / length * speed * DECISION))
@@ -101,35 +102,35 @@ class Lattice:
             found[mine] = ~_crossed(starts, ends, self._obstacles[crouched]).reshape(len(mine), -1)
         return found
 
-    def values(self, value: Floats, places: NDArray[Any]) -> Floats:
+    def values(self, value: Costs, places: NDArray[Any]) -> Costs:
         """The value [n] that is known at the lattice's places, at any places [m, 2]; FAR where none is near."""
         corners, shares = self._between(places)
-        found: Floats = (value[corners] * shares).sum(-1)
+        found: Costs = (value[corners] * shares).sum(-1)
         found[shares.sum(-1) == 0] = FAR
         return found
 
-    def best(self, standing: Floats, crouched: Floats, extra: Floats) -> Floats:
+    def best(self, standing: Costs, crouched: Costs, extra: Costs) -> Costs:
         """At each place the least of what the actions lead to: a value where they end, by stance, and ``extra``."""
         both = np.concatenate((standing, crouched))
-        led: Floats = np.einsum("anc,anc->an", both[self._corners], self._shares)
+        led: Costs = np.einsum("anc,anc->an", both[self._corners], self._shares)
         led += self._forbidden
         led += extra[:, None]
-        least: Floats = led.min(axis=0)
+        least: Costs = led.min(axis=0)
         return least
 
-    def way_to(self, goal: Point, within: float) -> Floats:
+    def way_to(self, goal: Point, within: float) -> Costs:
         """Decisions that a walk takes from each place to within a distance of the goal, FAR where there is none."""
         there = np.hypot(*(self.places - goal[:2]).T) <= within
-        found: Floats = np.where(there, np.float32(0), FAR)
+        found: Costs = np.where(there, np.float32(0), FAR)
         extra = np.where(SPRINTS, FAR, np.float32(1))
         for _ in range(10_000):
-            better: Floats = np.where(there, np.float32(0), np.minimum(found, self.best(found, found, extra)))
+            better: Costs = np.where(there, np.float32(0), np.minimum(found, self.best(found, found, extra)))
             if np.abs(better - found).max() < 0.01:
                 break
             found = better
         return found
 
-    def _between(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Floats]:
+    def _between(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
         """The four places around each point [m, 2], and their shares: those that are free, by their nearness."""
         position = (ends - self._low) / SPACING
         base = np.floor(position).astype(np.int64)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.enemy import CHEST, CROUCHED_HEAD, EYES, STANDING_HEAD
-from tltl_runtime.stealth.expert.lattice import Lattice, lattice_of
+from tltl_runtime.stealth.expert.lattice import lattice_of
 from tltl_runtime.stealth.level import Level
 
 ROUNDED: Final = 0.2
@@ -30,13 +30,13 @@ class Lines:
     """Lines of sight to a lattice's places, each found when it is first asked for.  Moving obstacles hide nobody."""
 
     def __init__(self, level: Level, shut: frozenset[int]) -> None:
-        self.lattice: Lattice = lattice_of(level, shut)
         boxes = [each.box for each in level.solids if each.box.high[2] > 0.0]
         boxes += [level.barriers[each].box for each in sorted(shut) if level.barriers[each].kind == "solid"]
         self._low = np.array([box.low for box in boxes], dtype=np.float32).reshape(-1, 3, 1)
         self._high = np.array([box.high for box in boxes], dtype=np.float32).reshape(-1, 3, 1)
+        places = lattice_of(level, shut).places
         steps = np.array(((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))) * _ASIDE
-        self._targets = (self.lattice.places[None] + steps[:, None]).astype(np.float32).reshape(-1, 2)
+        self._targets = (places[None] + steps[:, None]).astype(np.float32).reshape(-1, 2)
         self._kept: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
 
     def seen_from(self, x: float, y: float) -> NDArray[np.float32]:

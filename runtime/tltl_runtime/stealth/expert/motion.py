@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Box
 from tltl_runtime.stealth.world.physics import SUBSTEPS
-from tltl_runtime.stealth.world.player import DECISION, PlayerKind, PlayerState
+from tltl_runtime.stealth.world.player import DECISION, SIGN, PlayerKind, PlayerState
 from tltlc.record import record
 
 Floats = NDArray[np.float64]
@@ -110,7 +110,7 @@ class Motion:
     def _wish(self, poses: Poses, actions: NDArray[np.int64], crouching: Truths) -> tuple[Floats, Floats, Floats]:
         """The speed along x and y that is asked for, and the stamina that is left (``player.control``)."""
         kind = self.kind
-        sign = np.array([0.0, 1.0, -1.0])
+        sign = np.array(SIGN)
         dx, dy = sign[actions[:, 0]], sign[actions[:, 1]]
         spent = DECISION / kind.stamina_time
         sprints = (actions[:, 4] > 0) & ((dx != 0) | (dy != 0)) & ~crouching & (poses.stamina >= spent - 1e-9)

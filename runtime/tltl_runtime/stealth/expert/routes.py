@@ -36,7 +36,6 @@ _GOAL: Final = 0.6
 _CLOSE_TO_WALL: Final = 1.25
 """What a way past a wall with hardly any room costs more."""
 
-
 Kind = Literal["walk", "crouch", "climb", "drop", "leap"]
 
 _KINDS: Final[tuple[Kind, ...]] = ("walk", "crouch", "climb", "drop", "leap")
@@ -106,12 +105,11 @@ class Routes:
                 self._into[target].append((source, cost, kind))
         self._fields: dict[object, Field] = {}
 
-    def field(self, goal: Point, radius: float = _GOAL) -> Field:
-        """The way from everywhere to within ``radius`` of ``goal``."""
-        key = (goal, radius)
-        if key not in self._fields:
-            self._fields[key] = self._field(self.surfaces.near(goal, radius))
-        return self._fields[key]
+    def field(self, goal: Point) -> Field:
+        """The way from everywhere to ``goal``."""
+        if goal not in self._fields:
+            self._fields[goal] = self._field(self.surfaces.near(goal, _GOAL))
+        return self._fields[goal]
 
     def field_from(self, start: Point, goal: Point) -> Field:
         """The way to ``goal``, or where none leads there from ``start`` to the nearest place that one leads to."""
@@ -141,9 +139,8 @@ class Routes:
                     seconds[source], towards[source], kinds[source] = time + cost, place, kind
                     heappush(queue, (time + cost, source))
         shape = self.surfaces.places.shape
-        return Field(
-            self.surfaces, np.array(seconds).reshape(shape), np.array(towards), np.array(kinds, dtype=np.uint8)
-        )
+        columns = np.array(seconds).reshape(shape), np.array(towards), np.array(kinds, dtype=np.uint8)
+        return Field(self.surfaces, *columns)
 
     def _reached(self, start: int) -> set[int]:
         """The places that a way leads to from ``start``."""

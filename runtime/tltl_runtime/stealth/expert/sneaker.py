@@ -14,8 +14,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.expert.lattice import ACTIONS, CROUCHED, FAR, SPRINTS, WAYS, Floats, Lattice, lattice_of
+from tltl_runtime.stealth.expert.lattice import ACTIONS, CROUCHED, FAR, SPRINTS, WAYS, Costs, Lattice, lattice_of
 from tltl_runtime.stealth.expert.lines import Lines, lines_of
+from tltl_runtime.stealth.expert.routes import shut_of
 from tltl_runtime.stealth.expert.watch import Outlook, Watch
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Level, Point
@@ -39,28 +40,27 @@ _WAYS_KEPT: Final = 32
 
 
 class Sneaker:
-    """Finds its way on the floor of a level.  ``price`` 0 is somebody who does not mind being seen."""
+    """Finds its way on the floor of a level, out of sight where it can: ``act`` gives the next action."""
 
-    def __init__(self, level: Level, price: float = PRICE) -> None:
+    def __init__(self, level: Level) -> None:
         self.level = level
-        self.price = price
         self._watch = Watch(level)
         self._angles = [min(enemy.kind.sight_angle / 2 + _WIDER, pi) for enemy in level.enemies]
         self._ranges = [enemy.kind.sight_range + _FURTHER for enemy in level.enemies]
-        self._ways: dict[tuple[frozenset[int], Point], Floats] = {}
+        self._ways: dict[tuple[frozenset[int], Point], Costs] = {}
         self.reset()
 
     def reset(self) -> None:
         """Before an episode."""
         self._watch.reset()
-        self._plan: list[tuple[Floats, Floats]] = []
+        self._plan: list[tuple[Costs, Costs]] = []
         self._age = 0
         self._for: tuple[object, ...] = ()
 
     def act(self, snapshot: Snapshot, goal: Point) -> Action:
         """What to do next on the way to ``goal``."""
         surprised = self._watch.see(snapshot)
-        shut = frozenset(index for index, is_open in enumerate(snapshot.open) if not is_open)
+        shut = shut_of(snapshot)
         lattice = lattice_of(self.level, shut)
         now = (goal, shut, snapshot.modes)
         self._age += 1
@@ -82,14 +82,14 @@ class Sneaker:
             led[SPRINTS] += FAR
         return ACTIONS[int(led.argmin())]
 
-    def _planned(self, lattice: Lattice, lines: Lines, way: Floats) -> list[tuple[Floats, Floats]]:
+    def _planned(self, lattice: Lattice, lines: Lines, way: Costs) -> list[tuple[Costs, Costs]]:
         """For each decision from now on what its end costs from there on, by place, standing and crouched."""
-        seen = self._seen(lattice, lines, self._watch.outlook(HORIZON)) if self.price else None
+        seen = self._seen(lattice, lines, self._watch.outlook(HORIZON))
         there = way <= 0.0
-        plan: list[tuple[Floats, Floats]] = []
+        plan: list[tuple[Costs, Costs]] = []
         rest = way
         for decision in reversed(range(HORIZON)):
-            standing, crouched = (rest, rest) if seen is None else (rest + seen[decision, 0], rest + seen[decision, 1])
+            standing, crouched = rest + seen[decision, 0], rest + seen[decision, 1]
             plan.append((standing, crouched))
             rest = np.where(there, np.float32(0), lattice.best(standing, crouched, _EXTRA))
         return plan[::-1]
@@ -108,10 +108,10 @@ class Sneaker:
                 free = np.stack([lines.seen_from(a, b) for a, b, *_ in poses])
                 danger = free * cone[:, None]
                 danger += (flat < _NEAR)[:, None]
-                price += danger * np.float32(share * self.price)
+                price += danger * np.float32(share * PRICE)
         return price
 
-    def _way(self, lattice: Lattice, shut: frozenset[int], goal: Point) -> Floats:
+    def _way(self, lattice: Lattice, shut: frozenset[int], goal: Point) -> Costs:
         """Decisions from each place to the goal, where nobody watches."""
         key = (shut, goal)
         if key not in self._ways:

@@ -28,17 +28,14 @@ _TOUCH: Final = 1e-6
 class Surfaces:
     """The places of a level while the barriers with the indices ``shut`` are shut, lasers included.
 
-    ``heights`` [layers] are those of the tops, in metres, upwards.  Of each layer, row and column, ``supported`` says
-    whether something ends there under the cell's centre; ``standing``, ``crouched`` and ``leaping`` whether the room
-    above is free for a body that stands, is crouched, or stands and jumps, with ``margin`` metres (less than 0 where
-    one rather sees too much room than too little) to all sides.  What rises no higher than a stair is no obstacle.
+    ``heights`` [layers] are those of the tops, in metres, upwards; ``xs`` [columns] and ``ys`` [rows] the middles of
+    the cells.  Of each layer, row and column, ``places`` says whether it is one; ``standing``, ``crouched`` and
+    ``leaping`` whether the room above is free for a body that stands, is crouched, or stands and jumps, with ``margin``
+    metres to all sides.  What rises no higher than a stair is no obstacle.
     """
 
-    def __init__(
-        self, level: Level, shut: Collection[int] = (), *, kind: PlayerKind | None = None, margin: float = 0.04
-    ) -> None:
-        self.level = level
-        self.kind = kind or PlayerKind()
+    def __init__(self, level: Level, shut: Collection[int] = (), *, margin: float = 0.04) -> None:
+        self.kind = PlayerKind()
         (x0, y0, _), (x1, y1, ceiling) = level.bounds.low, level.bounds.high
         self.origin = (x0, y0)
         columns, rows = ceil((x1 - x0) / CELL - _TOUCH), ceil((y1 - y0) / CELL - _TOUCH)
@@ -48,11 +45,10 @@ class Surfaces:
         boxes = solids + [level.barriers[index].box for index in sorted(shut)]
         self.heights = np.array(sorted({box.high[2] for box in solids if box.high[2] < ceiling - _TOUCH}))
         apex = self.kind.jump_speed**2 / (2 * self.kind.gravity)
-        self.supported = self._supported(solids)
         self.standing = self._free(boxes, self.kind.height, margin)
         self.crouched = self._free(boxes, self.kind.crouched_height, margin)
         self.leaping = self._free(boxes, self.kind.height + apex, margin)
-        self.places: Cells = self.supported & self.crouched & ~self._buried(boxes)
+        self.places: Cells = self._supported(solids) & self.crouched & ~self._buried(boxes)
         layer, row, column = np.nonzero(self.places)
         self._flat = np.flatnonzero(self.places)
         self._points = np.stack([self.xs[column], self.ys[row], self.heights[layer]], axis=1)
@@ -92,7 +88,7 @@ class Surfaces:
             dy = np.maximum(np.maximum(box.low[1] - self.ys, self.ys - box.high[1]), 0.0)
             meets = dx[None, :] ** 2 + dy[:, None] ** 2 < radius * radius - _TOUCH
             layers = (box.high[2] > self.heights + self.kind.step_height + _TOUCH) & (
-                box.low[2] < self.heights + height + max(margin, 0.0) - _TOUCH
+                box.low[2] < self.heights + height + margin - _TOUCH
             )
             taken[layers] |= meets[None]
         return ~taken

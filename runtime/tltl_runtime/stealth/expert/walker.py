@@ -17,11 +17,10 @@ from tltl_runtime.stealth.expert.movers import Clocks
 from tltl_runtime.stealth.expert.routes import Field, routes_of, shut_of
 from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
-from tltl_runtime.stealth.world.player import Action, PlayerKind
+from tltl_runtime.stealth.world.player import SIGN, Action, PlayerKind
 
 STAY: Final[Action] = (0, 0, 0, 0, 0)
 
-_SIGN: Final = (0, 1, -1)
 _DIRECTIONS: Final = tuple((x, y) for x, y in product(range(3), range(3)) if x or y)
 _WALKS: Final = (STAY, *((x, y, 0, 0, sprint) for x, y in _DIRECTIONS for sprint in (0, 1)))
 _CROUCHES: Final = ((0, 0, 0, 1, 0), *((x, y, 0, 1, 0) for x, y in _DIRECTIONS))
@@ -44,9 +43,8 @@ _ASTRAY: Final = 0.08
 class Walker:
     """Finds the way to a goal, whatever enemies do: ``act`` gives the next action, decision by decision."""
 
-    def __init__(self, level: Level, kind: PlayerKind | None = None) -> None:
+    def __init__(self, level: Level) -> None:
         self.level = level
-        self.kind = kind or PlayerKind()
         self.reset()
 
     def reset(self) -> None:
@@ -79,7 +77,7 @@ class Walker:
         shut = shut_of(snapshot)
         field = routes_of(self.level, shut).field_from(here, goal)
         boxes = [solid.box for solid in self.level.solids] + [self.level.barriers[index].box for index in sorted(shut)]
-        motion = Motion(self.kind, [box for box in boxes if _away(box, here) <= _BOXES])
+        motion = Motion(PlayerKind(), [box for box in boxes if _away(box, here) <= _BOXES])
         moves = self._moves(field, snapshot)
         ahead, kept = _LONG if len(moves) > len(_WALKS) else _SHORT
         swept = [self._clocks.swept(step) for step in range(ahead + LONGEST_FALL)]
@@ -108,7 +106,7 @@ def _headings(start: Point, legs: list[tuple[bool, Point]]) -> set[tuple[int, in
     for (counts, place), before in zip(legs, [start, *(place for _, place in legs)], strict=False):
         dx, dy = place[0] - before[0], place[1] - before[1]
         for x, y in _DIRECTIONS if counts else ():
-            along = (_SIGN[x] * dx + _SIGN[y] * dy) / (hypot(_SIGN[x], _SIGN[y]) * max(hypot(dx, dy), 1e-9))
+            along = (SIGN[x] * dx + SIGN[y] * dy) / (hypot(SIGN[x], SIGN[y]) * max(hypot(dx, dy), 1e-9))
             if along > 0.7:
                 found.add((x, y))
     return found

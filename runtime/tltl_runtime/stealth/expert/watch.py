@@ -9,20 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import hypot, pi, remainder
-from typing import TYPE_CHECKING, Final, cast
+from typing import Final, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, Guard, Mode, PlayerView
+from tltl_runtime.stealth.enemies.enemy import Guard, Mode, PlayerView
 from tltl_runtime.stealth.enemies.grid import Floor, grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, corners
+from tltl_runtime.stealth.game import Snapshot, player_view
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.record import record
-
-if TYPE_CHECKING:
-    from tltl_runtime.stealth.game import Snapshot
 
 MODELS: Final = 12
 """Of each enemy."""
@@ -66,7 +64,7 @@ class Watch:
         """Take in what there is to see now; returns whether an enemy did what no model had foreseen."""
         surprised = False
         if snapshot.time > self._time:
-            player = view(snapshot)
+            player = player_view(snapshot.player)
             for models in self.models:
                 for model in models:
                     model.step(DECISION, player, self.boxes)
@@ -143,14 +141,6 @@ class Watch:
         self.boxes: list[Corners] = [corners(each.box) for each in level.solids if each.box.high[2] > 0.0]
         self.boxes += [corners(level.barriers[each].box) for each in shut if level.barriers[each].kind == "solid"]
         return grid_of(level).floor(shut)
-
-
-def view(snapshot: Snapshot) -> PlayerView:
-    """What enemies can know of the player of a snapshot."""
-    player = snapshot.player
-    if not player.crouching:
-        return PlayerView(player.position, velocity=player.velocity)
-    return PlayerView(player.position, CROUCHED_HEAD, True, player.velocity)
 
 
 def _is_at(model: Guard, pose: tuple[float, float, float]) -> bool:

@@ -10,6 +10,7 @@ from tests.runtime.stealth.enemy_levels import box, level
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.expert.sneaker import Sneaker
+from tltl_runtime.stealth.expert.walker import Walker
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.level import Level, Solid, Start
 from tltl_runtime.stealth.recording import RecordEpisode
@@ -25,11 +26,11 @@ def guarded() -> Level:
     return replace(made, start=Start((3.6, 7.2, 0.0)))
 
 
-def passed(price: float) -> tuple[bool, int, int]:
+def passed(player: type[Sneaker] | type[Walker]) -> tuple[bool, int, int]:
     """Whether the goal was reached unseen, after how many decisions, and in how many of them crouched."""
     with closing(Game(guarded())) as game:
         game.reset(0)
-        sneaker = Sneaker(game.level, price)
+        playing = player(game.level)
         seen, crouched = False, 0
         for decision in range(60):
             snapshot = game.snapshot()
@@ -38,18 +39,18 @@ def passed(price: float) -> tuple[bool, int, int]:
             x, y, _ = snapshot.player.position
             if abs(x - GOAL[0]) < 1.0 and abs(y - GOAL[1]) < 1.0:
                 return not seen, decision, crouched
-            game.step(sneaker.act(snapshot, GOAL))
+            game.step(playing.act(snapshot, GOAL))
     raise AssertionError("the goal was not reached")
 
 
 def test_it_crouches_where_only_that_hides() -> None:
-    unseen, decisions, crouched = passed(price=12.0)
+    unseen, decisions, crouched = passed(Sneaker)
     assert unseen
     assert crouched > 0.5 * decisions
 
 
 def test_who_does_not_mind_runs_and_is_seen() -> None:
-    unseen, _, crouched = passed(price=0.0)
+    unseen, _, crouched = passed(Walker)
     assert not unseen
     assert crouched == 0
 
