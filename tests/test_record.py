@@ -94,3 +94,21 @@ def test_a_field_without_default_must_come_first() -> None:
 def test_the_empty_mapping_stays_empty() -> None:
     with pytest.raises(TypeError):
         EMPTY["a"] = 1  # type: ignore[index]
+
+
+def test_a_record_checks_itself() -> None:
+    @record
+    class Share:
+        """A number in [0, 1]."""
+
+        value: float = 0.5
+
+        def __post_init__(self) -> None:
+            if not 0.0 <= self.value <= 1.0:
+                raise ValueError(f"{self.value} is no share")
+
+    assert Share().value == 0.5 and Share(1.0) == replace(Share(), value=1.0)
+    with pytest.raises(ValueError, match="2 is no share"):
+        Share(2)
+    with pytest.raises(ValueError, match="-1 is no share"):
+        replace(Share(), value=-1)

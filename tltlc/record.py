@@ -32,8 +32,8 @@ def record(cls: type[R]) -> type[R]:
     """Class decorator: the annotated fields, in order, become slots and the arguments of the constructor.
 
     A value given in the class is a field's default.  Records compare and hash by class and fields,
-    cannot be changed, can be pickled, and match positionally.  Raises TypeError where a field without
-    default follows one with a default.
+    cannot be changed, can be pickled, and match positionally.  A method ``__post_init__`` checks the fields of a new
+    one.  Raises TypeError where a field without default follows one with a default.
     """
     names = tuple(cls.__annotations__)
     body = {key: value for key, value in cls.__dict__.items() if key not in (*names, "__dict__", "__weakref__")}
@@ -55,8 +55,12 @@ def record(cls: type[R]) -> type[R]:
         for put, value in zip(fill, given, strict=True):
             put(self, value)
 
+    def initialise_checked(self: Any, *given: Any, **named: Any) -> None:
+        initialise(self, *given, **named)
+        self.__post_init__()
+
     methods = {
-        "__init__": initialise,
+        "__init__": initialise_checked if "__post_init__" in body else initialise,
         "__eq__": lambda self, other: values_of(self) == values_of(other) if type(other) is made else NotImplemented,
         "__hash__": lambda self: hash((made, values_of(self))),
         "__reduce__": lambda self: (made, values_of(self)),

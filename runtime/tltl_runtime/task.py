@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,9 +11,11 @@ from typing import Final
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import Monitor, RewardOptions
-from tltlc.pipeline import CompileOptions, compile_source, compile_text, read_artefact, unknown_spec
+from tltlc.monitor.arguments import reward_options
+from tltlc.pipeline import CompileOptions, compile_source, read_artefact, unknown_spec
 from tltlc.project import project_for
 from tltlc.record import EMPTY, record
+from tltlc.resolve.spec import Spec
 from tltlc.source import SourceFile
 from tltlc.spec_file import read, split
 
@@ -52,31 +55,43 @@ def load_task(
     Raises:
         TltlError: whatever reading and compiling finds; TLT0720 no spec of that name, TLT0721 not exactly one spec,
             TLT0503 a spec about infinite traces, TLT0307 and TLT0308 for params that do not fit.
+        TypeError: ``spec``, ``params`` or ``reward`` is of another type.
     """
-    fspa = spec if isinstance(spec, Fspa) else _compiled(spec)
+    if not isinstance(params, Mapping):
+        raise TypeError(f"params map names to numbers, e.g. {{'top_speed': 0.06}}; {params!r:.60} does not")
+    fspa, _ = read_spec(spec)
     if fspa.semantics == "infinite":
         title = f"`{fspa.name}` is about infinite traces, and an episode ends"
         raise TltlError([Diagnostic("TLT0503", title, help="compile it without `semantics infinite`")])
     known = {param.name for param in fspa.params}
     values = {name: value for name, value in offered.items() if name in known}
-    task = Task(fspa, {**values, **params}, reward or RewardOptions())
+    task = Task(fspa, {**values, **params}, reward_options(reward))
     task.monitor()
     return task
 
 
-def _compiled(spec: str | Path) -> Fspa:
+def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
+    """The automaton that ``spec`` describes, and its source where there is one; errors as of :func:`load_task`."""
+    if isinstance(spec, Fspa):
+        return spec, None
+    if not isinstance(spec, (str, os.PathLike)) or not str(spec).strip():
+        one = ": give one of them, e.g. the first, `[0]`" if isinstance(spec, (tuple, list)) else ""
+        raise TypeError(f"a spec is a path, a text or an automaton, not {spec!r:.60}{one}")
     if isinstance(spec, str) and _is_text(spec):
-        source = SourceFile("<text>", spec)
-        return read_artefact(source) if _is_artefact(source) else _only(compile_text(spec), source.name)
-    path, name = split(str(spec))
-    source, is_artefact = read(path)
+        source, path, name = SourceFile("<text>", spec), "<text>", None
+        is_artefact = _is_artefact(source)
+    else:
+        path, name = split(os.fspath(spec))
+        source, is_artefact = read(path)
     if is_artefact:
         fspa = read_artefact(source)
         if name not in (None, fspa.name):
             raise TltlError([unknown_spec(str(name), [fspa.name], path)])
-        return fspa
-    options = CompileOptions(library_dirs=project_for(path).libraries, specs=(name,) if name else ())
-    return _only(compile_source(source, options).automata, path)
+        return fspa, None
+    libraries = () if path == "<text>" else project_for(path).libraries
+    compiled = compile_source(source, CompileOptions(library_dirs=libraries, specs=(name,) if name else ()))
+    fspa = _only(compiled.automata, path)
+    return fspa, next(each for each in compiled.program.specs if each.name == fspa.name)
 
 
 def _is_text(spec: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import pytest
 from hypothesis import given
@@ -199,3 +199,31 @@ def test_an_episode_that_is_cut_off() -> None:
     assert step.reward == pytest.approx(0.25 - 1)
     literal = Monitor(automaton(f.eventually(A), 4), reward=RewardOptions(termination="paper"))
     assert (literal.step_atoms((1.0,), last=True).done, literal.success) == (True, True)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"mode": "Sparse"}, "mode is one of 'progress', 'sparse', 'edge', 'potential', not 'Sparse'"),
+        ({"mode": ""}, "mode is one of"),
+        ({"mode": "os"}, "mode is one of"),
+        ({"mode": None}, "mode is one of"),
+        ({"termination": "zzz"}, "termination is one of 'entry', 'paper', not 'zzz'"),
+        ({"terminal_penalty": "zzz"}, "terminal_penalty is one of 'undiscounted', 'discounted', not 'zzz'"),
+        ({"gamma": 2}, "gamma is a number above 0, and 1 at most, not 2"),
+        ({"gamma": 0.0}, "gamma is a number"),
+        ({"gamma": float("nan")}, "gamma is a number"),
+        ({"gamma": "1"}, "gamma is a number"),
+    ],
+)
+def test_options_that_there_are_not_are_refused(options: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        RewardOptions(**options)
+
+
+def test_a_monitor_takes_an_automaton_and_options() -> None:
+    fspa = cover_and_hide()
+    with pytest.raises(TypeError, match=r"RewardOptions\(mode=\"sparse\"\), not 'sparse'"):
+        Monitor(fspa, reward="sparse")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"an automaton is needed, not 'plan\.tltl'"):
+        Monitor("plan.tltl")  # type: ignore[arg-type]

@@ -6,6 +6,7 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -133,3 +134,22 @@ def test_the_import_loads_little() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=60)
     assert done.stdout == "[]\n"
+
+
+@pytest.mark.parametrize("spec", [(), [], {}, b"plan.tltl", 3, None, "", " "])
+def test_what_is_no_spec_is_not_read_as_a_path(spec: Any) -> None:
+    with pytest.raises(TypeError, match="a spec is a path, a text or an automaton, not"):
+        load_task(spec)
+
+
+def test_of_the_automata_of_a_file_one_is_taken() -> None:
+    with pytest.raises(TypeError, match=r"give one of them, e\.g\. the first, `\[0\]`"):
+        load_task(tltlc.compile_text("signal a: bool\nspec s = F a"))  # type: ignore[arg-type]
+
+
+def test_params_and_reward_of_another_type_are_refused() -> None:
+    spec = "signal a: bool\nspec s = F a"
+    with pytest.raises(TypeError, match="params map names to numbers"):
+        load_task(spec, [("a", 1.0)])  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="RewardOptions"):
+        load_task(spec, reward="sparse")  # type: ignore[arg-type]

@@ -151,6 +151,7 @@ def test_the_papers_numbers() -> None:
         "limiting": None,
         "atoms": {"near(s1)": -1.0, "near(s2)": -1.0, "near(exit)": 1.0, "alive": 1.0},
     }
+            "env_reward": 100.0,
 
 
 def test_the_size_of_the_level_moves_equation_2() -> None:
@@ -269,7 +270,7 @@ def test_a_missing_signal_is_named_at_once() -> None:
     assert said.code == "TLT0611"
     given = "`distance(s1)`, `distance(s2)`, `distance(exid)`, `health`"
     assert said.title == f"after the reset: no value for `distance(exit)`; `signals` gave {given}"
-    assert said.help == "did you mean `distance(exit)` by `distance(exid)`?"
+    assert said.help == "is `distance(exid)` what the spec calls `distance(exit)`?"
 
 
 def test_a_signal_that_goes_missing_leaves_the_automaton_as_it_was() -> None:
@@ -364,3 +365,28 @@ def test_the_constructors_arguments_are_pickled_with_the_env_spec() -> None:
     again = gymnasium.make(pickle.loads(pickle.dumps(spec)))
     assert isinstance(again, TltlEnv)
     assert again.task == make_mountain_car().task
+
+
+def test_a_signal_is_one_number() -> None:
+    with pytest.raises(MonitorError, match="TLT0612: after the reset: the signal `health` is an array, not a number"):
+        played([{**FAR, "health": np.ones(1)}], cover_and_hide()).reset()  # type: ignore[dict-item]
+    played([{**FAR, "health": np.float32(1)}], cover_and_hide()).reset()
+
+
+def test_signals_are_a_function_or_the_environments_own() -> None:
+    with pytest.raises(TypeError, match=r"`signals` is a function of the environment, not .*health"):
+        TltlEnv(Played([FAR]), cover_and_hide(), {"health": 1.0})  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="give `signals`, a function of the environment"):
+        TltlEnv(Played([FAR]), cover_and_hide())
+
+    class Own(Played):
+        def tltl_signals(self) -> Row:
+            return current(self)
+
+    assert TltlEnv(Own([FAR]), cover_and_hide()).reset()[1]["state"] == 0
+
+
+def test_the_environments_own_reward_is_in_the_info() -> None:
+    env = TltlEnv(gymnasium.make("CartPole-v1"), BALANCE, lambda env: {"angle": env.unwrapped.state[2]})  # type: ignore[attr-defined]
+    assert env.reset(seed=1)[1]["env_reward"] == 0.0
+    assert env.step(0)[4]["env_reward"] == 1.0

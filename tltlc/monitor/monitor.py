@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, SupportsFloat
 
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.monitor.arguments import automaton, reward_options
 from tltlc.monitor.guards import bounding_atom, holds, robustness
 from tltlc.monitor.reward import RewardOptions, RewardStep, reward_step
 from tltlc.monitor.samples import Samples, check_exclusive
@@ -43,16 +44,17 @@ class Monitor:
 
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
+        TypeError: ``fspa`` is no automaton, or ``reward`` no options.
     """
 
     def __init__(
         self, fspa: Fspa, params: Mapping[str, float] | None = None, reward: RewardOptions | None = None
     ) -> None:
-        self.fspa = fspa
+        self.fspa = automaton(fspa)
         self.notices: list[Diagnostic] = []
         self._samples = Samples(fspa, params, self.notices)
         self._tables = tables(fspa)
-        self._options = reward or RewardOptions()
+        self._options = reward_options(reward)
         self._names = tuple(atom.name for atom in fspa.atoms)
         self.reset()
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, get_args
 
 from tltlc.monitor.guards import robustness
 from tltlc.monitor.tables import Tables
 from tltlc.record import record
 
 Mode = Literal["progress", "sparse", "edge", "potential"]
+Termination = Literal["entry", "paper"]
+TerminalPenalty = Literal["undiscounted", "discounted"]
 
 
 @record
@@ -19,13 +21,21 @@ class RewardOptions:
     ``mode`` names the reward; those beside ``progress`` are in :mod:`tltlc.monitor.reward_modes`.
     ``termination``: ``entry`` ends an episode on entry into an accepting or trap state, ``paper`` one step
     later as the listing does, judged at the goal whatever the spec says.  ``gamma`` in (0, 1] is the discount of
-    mode ``potential`` and of the ``discounted`` terminal penalty.
+    mode ``potential`` and of the ``discounted`` terminal penalty.  Raises ValueError for anything else.
     """
 
     mode: Mode = "progress"
-    termination: Literal["entry", "paper"] = "entry"
-    terminal_penalty: Literal["undiscounted", "discounted"] = "undiscounted"
+    termination: Termination = "entry"
+    terminal_penalty: TerminalPenalty = "undiscounted"
     gamma: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, choice in (("mode", Mode), ("termination", Termination), ("terminal_penalty", TerminalPenalty)):
+            given, there = getattr(self, name), get_args(choice)
+            if given not in there:
+                raise ValueError(f"{name} is one of {', '.join(map(repr, there))}, not {given!r:.40}")
+        if not isinstance(self.gamma, (float, int)) or not 0.0 < self.gamma <= 1.0:
+            raise ValueError(f"gamma is a number above 0, and 1 at most, not {self.gamma!r:.40}")
 
 
 @record

@@ -51,7 +51,7 @@ class Samples:
 
     def _number(self, signal: Signal, given: SupportsFloat, step: int) -> float:
         """The value of a signal as a number in its range."""
-        value = _finite(signal, given, step)
+        value = number(signal, given, step)
         low, high = signal.low, signal.high
         if signal.type == "bool":
             if value not in (0.0, 1.0):
@@ -144,20 +144,27 @@ def listed(names: Sequence[str]) -> str:
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
 
 
-def _finite(signal: Signal, given: SupportsFloat, step: int) -> float:
-    value = given if type(given) is float else _as_float(signal, given, step)
+def number(signal: Signal, given: SupportsFloat, when: int | str) -> float:
+    """The value of a signal as a finite number; ``when``, the number of the step or a word for it, is for messages.
+
+    Raises:
+        MonitorError: TLT0612 it is none.
+    """
+    value = given if type(given) is float else _as_float(signal, given, when)
     if not isfinite(value):
-        raise _error("TLT0612", step, f"the signal `{signal.name}` is {value}, not a finite number")
+        raise _error("TLT0612", when, f"the signal `{signal.name}` is {value}, not a finite number")
     return value
 
 
-def _as_float(signal: Signal, given: SupportsFloat, step: int) -> float:
+def _as_float(signal: Signal, given: SupportsFloat, when: int | str) -> float:
+    if getattr(given, "ndim", 0):
+        raise _error("TLT0612", when, f"the signal `{signal.name}` is an array, not a number")
     if isinstance(given, str) or not hasattr(given, "__float__"):
-        raise _error("TLT0612", step, f"the signal `{signal.name}` is no number")
+        raise _error("TLT0612", when, f"the signal `{signal.name}` is no number")
     try:
         return float(given)
     except OverflowError:
-        raise _error("TLT0612", step, f"the signal `{signal.name}` is too large for a number") from None
+        raise _error("TLT0612", when, f"the signal `{signal.name}` is too large for a number") from None
 
 
 WAYS_OUT: Final = {
@@ -171,5 +178,6 @@ WAYS_OUT: Final = {
 """What helps against each problem with a sample."""
 
 
-def _error(code: str, step: int, text: str) -> MonitorError:
-    return MonitorError([Diagnostic(code, f"step {step}: {text}", help=WAYS_OUT[code])])
+def _error(code: str, when: int | str, text: str) -> MonitorError:
+    place = when if isinstance(when, str) else f"step {when}"
+    return MonitorError([Diagnostic(code, f"{place}: {text}", help=WAYS_OUT[code])])

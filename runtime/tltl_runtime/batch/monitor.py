@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import cached_property
 
 import torch
+from numpy.typing import ArrayLike
 from torch import Tensor
 
 from tltl_runtime.batch.guards import PrimeSets, Transitions
@@ -13,6 +14,7 @@ from tltl_runtime.batch.rewards import VERDICTS, EdgeMode, Outcomes, PotentialMo
 from tltl_runtime.batch.samples import BatchSamples
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
+from tltlc.monitor.arguments import automaton, reward_options
 
 
 class BatchStep:
@@ -74,6 +76,7 @@ class BatchMonitor:
 
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
+        TypeError: ``fspa`` is no automaton, or ``reward`` no options.
         ValueError: ``count`` is below 1.
     """
 
@@ -87,10 +90,10 @@ class BatchMonitor:
         device: torch.device | str = "cpu",
         dtype: torch.dtype = torch.float64,
     ) -> None:
-        self.fspa, self.count, self.device, self.dtype = fspa, count, torch.device(device), dtype
+        self.fspa, options = automaton(fspa), reward_options(reward)
+        self.count, self.device, self.dtype = count, torch.device(device), dtype
         if count < 1:
             raise ValueError(f"at least one environment is needed, not {count}")
-        options = reward or RewardOptions()
         self._samples = BatchSamples(fspa, count, params, self.device, dtype)
         self.signal_names, self.clamped = self._samples.names, self._samples.clamped
         self._transitions = Transitions(fspa, self.device)
@@ -106,39 +109,41 @@ class BatchMonitor:
         self._sparse = SparseMode(fspa, self.device, dtype) if options.mode == "sparse" else None
         self.reset()
 
-    def reset(self, mask: Tensor | None = None) -> None:
+    def reset(self, mask: ArrayLike | Tensor | None = None) -> None:
         """Take the environments of a mask (bool [N], None: all) back to the state before the first sample."""
         fresh = self._start()
         if mask is not None:
-            chosen = mask.to(self.device)
+            chosen = torch.as_tensor(mask, device=self.device)
             if chosen.shape != (self.count,) or chosen.dtype != torch.bool:
-                raise ValueError(f"a bool tensor of shape {(self.count,)} is needed")
+                wanted = f"{self.count} bools are needed, one for each environment"
+                raise ValueError(f"{wanted}, not {tuple(chosen.shape)} of {chosen.dtype}")
             fresh = tuple(torch.where(chosen, new, old) for new, old in zip(fresh, self._episode(), strict=True))
         self.state, self.steps, self.progress, self._done, self._success, self._memory = fresh
 
-    def step(self, signals: Mapping[str, Tensor] | Tensor) -> BatchStep:
-        """Take one sample of each environment: a tensor [N] per name of a signal, or one [N, signals].
+    def step(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> BatchStep:
+        """Take one sample of each environment: an array [N] per name of a signal, or one [N, signals].
 
-        Numbers are in SI units; bools count as 0 and 1.  The order in a tensor is ``signal_names``; names that no
-        atom uses are ignored.
+        Tensors, NumPy arrays and lists will do; numbers are in SI units, bools count as 0 and 1.  The order in one
+        array is ``signal_names``; names that no atom uses are ignored.
 
         Raises:
             MonitorError: TLT0611 missing and TLT0612 unusable signals, TLT0613 an atom without a value,
                 TLT0614 exclusive atoms that hold at once.  No environment moves.
-            ValueError: a tensor of another shape.
+            ValueError: an array of another shape.
         """
         return self._take(self._samples.atom_values(signals))
 
-    def step_atoms(self, values: Tensor) -> BatchStep:
+    def step_atoms(self, values: ArrayLike | Tensor) -> BatchStep:
         """Take one sample that is given as the values of the atoms, shape [N, atoms], each in [-1, 1].
 
         Raises:
             MonitorError: TLT0614 exclusive atoms that hold at once.  No environment moves.
             ValueError: a value is not in [-1, 1], or another shape.
         """
-        if values.shape != (self.count, len(self.fspa.atoms)) or not bool((values.abs() <= 1.0).all()):
+        given = torch.as_tensor(values)
+        if given.shape != (self.count, len(self.fspa.atoms)) or not bool((given.abs() <= 1.0).all()):
             raise ValueError(f"values in [-1, 1] of shape {(self.count, len(self.fspa.atoms))} are needed")
-        return self._take(values.to(self.device, self.dtype).t().contiguous())
+        return self._take(given.to(self.device, self.dtype).t().contiguous())
 
     def one_hot(self, dtype: torch.dtype = torch.float32) -> Tensor:
         """The states as rows with a single 1, shape [N, states]."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import torch
+from numpy.typing import ArrayLike
 from torch import Tensor
 
 from tltl_runtime.batch.expressions import Program
@@ -41,16 +42,16 @@ class BatchSamples:
         self._high = torch.tensor(high, dtype=dtype, device=device)[:, None]
         self._bools = [row for row, signal in enumerate(fspa.signals) if signal.type == "bool"]
 
-    def atom_values(self, signals: Mapping[str, Tensor] | Tensor) -> Tensor:
+    def atom_values(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
         """The values of the atoms, each in [-1, 1], shape [atoms, N].
 
-        ``signals``: a tensor [N] for each name (names that no atom uses are ignored), or one of shape
+        ``signals``: an array [N] for each name (names that no atom uses are ignored), or one of shape
         [N, signals] in the order of ``names``.
 
         Raises:
             MonitorError: TLT0611 signals are missing, TLT0612 one has no finite value or is no truth value, TLT0613
                 an atom has no value; the message names the environments.
-            ValueError: a tensor has another shape.
+            ValueError: an array has another shape.
         """
         columns = self._columns(signals)
         if self.names and not self._in_range(columns):
@@ -67,19 +68,18 @@ class BatchSamples:
             self._check_atoms(columns, raw, values, failures)
         return values
 
-    def _columns(self, signals: Mapping[str, Tensor] | Tensor) -> Tensor:
+    def _columns(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
         """The signals that the atoms use, shape [signals, N], a contiguous row each."""
-        if isinstance(signals, Tensor):
-            if signals.shape != (self._count, len(self.names)):
-                raise ValueError(
-                    f"signals of shape {(self._count, len(self.names))} needed, not {tuple(signals.shape)}"
-                )
-            columns = signals.t()
+        if not isinstance(signals, Mapping):
+            given = torch.as_tensor(signals)
+            if given.shape != (self._count, len(self.names)):
+                raise ValueError(f"signals of shape {(self._count, len(self.names))} needed, not {tuple(given.shape)}")
+            columns = given.t()
             if columns.is_contiguous():
                 return columns.to(self._device, self._dtype)
             # Twice as fast as `contiguous`.
             result = torch.empty(columns.shape, dtype=self._dtype, device=self._device)
-            result.t().copy_(signals)
+            result.t().copy_(given)
             return result
         missing = [name for name in self.names if name not in signals]
         if missing:

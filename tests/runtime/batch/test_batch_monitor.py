@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from typing import Any
 
+import numpy as np
 import pytest
 import torch
 from hypothesis import given, settings
@@ -16,7 +17,7 @@ from tests.monitor.strategies import atom_traces, automata
 from tltl_runtime.batch import BatchMonitor, BatchStep
 from tltl_runtime.batch import guards as batch_guards
 from tltl_runtime.batch.rewards import VERDICTS
-from tltlc import compile_file
+from tltlc import compile_file, compile_text
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.logic import formula as f
@@ -240,3 +241,28 @@ def test_truth_values() -> None:
     for wrong in (0.5, 2.0):
         text = f"environment 1: the signal `p` is {wrong:g}, not true or false"
         assert refused(batch, {"p": tensor([1.0, wrong])}) == ("TLT0612", text)
+
+
+def test_arrays_and_lists_are_as_good_as_tensors() -> None:
+    (fspa,) = compile_text("signal x in [-1, 1]\npredicate p in [-1, 1] = x\nspec s { limit 9 steps reach p then !p }")
+    monitor = BatchMonitor(fspa, 2)
+    rows = [[0.5], [-0.25]]
+    for signals in (rows, np.array(rows), torch.tensor(rows), {"x": [0.5, -0.25]}, {"x": np.array([0.5, -0.25])}):
+        monitor.reset()
+        assert monitor.step(signals).values.tolist() == [[0.5, -0.25]]
+    before = monitor.state.tolist()
+    monitor.reset([True, False])
+    assert monitor.state.tolist() == [0, before[1]]
+    monitor.reset(np.array([False, True]))
+    assert monitor.state.tolist() == [0, 0]
+    with pytest.raises(ValueError, match=r"2 bools are needed, one for each environment, not \(3,\)"):
+        monitor.reset([True] * 3)
+    with pytest.raises(ValueError, match=r"signals of shape \(2, 1\) needed, not \(2,\)"):
+        monitor.step([0.5, 0.5])
+
+
+def test_what_is_no_automaton_or_no_reward_is_refused() -> None:
+    with pytest.raises(TypeError, match=r"an automaton is needed, not 'plan\.tltl'"):
+        BatchMonitor("plan.tltl", 3)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="RewardOptions"):
+        BatchMonitor(cover_and_hide(), 3, reward="sparse")  # type: ignore[arg-type]

@@ -92,6 +92,8 @@ def _record(kind: Any, data: object, where: str) -> object:
     try:
         made: object = kind(**values)
         return made
+    except ValueError as error:
+        raise RecordJsonError(f"`{where}`: {error}") from None
     except TypeError:
         missing = [name for name in kinds if name not in values]
         raise RecordJsonError(f"`{where}` lacks one of the keys {', '.join(missing)}") from None
