@@ -40,7 +40,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
     Observation: ``automaton``, the state as a one-hot vector, and ``progress``, the best so far, shape (1,), in
     [0, 1], both float32, join the keys of a Dict space; what is in any other space becomes ``observation`` beside them.
 
-    Reward: that of ``reward``'s mode; the environment's own is ``info["env_reward"]``.  The episode is ``terminated`` by
+    Reward: that of its mode; the environment's own is ``info["env_reward"]``.  The episode is ``terminated`` by
     success, by violation and by the environment, ``truncated`` at the spec's limit and by the environment.  Where the
     environment ends it before the spec does, that is a success iff the trace so far is accepted and the spec is not
     one to be outlived up to a limit; where there is a limit, a failure costs the step penalties that it left

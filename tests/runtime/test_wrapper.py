@@ -150,8 +150,8 @@ def test_the_papers_numbers() -> None:
         "success": True,
         "limiting": None,
         "atoms": {"near(s1)": -1.0, "near(s2)": -1.0, "near(exit)": 1.0, "alive": 1.0},
+        "env_reward": 100.0,
     }
-            "env_reward": 100.0,
 
 
 def test_the_size_of_the_level_moves_equation_2() -> None:
