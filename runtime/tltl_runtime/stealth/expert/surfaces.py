@@ -42,13 +42,15 @@ class Surfaces:
         self.xs = x0 + CELL * (np.arange(columns) + 0.5)
         self.ys = y0 + CELL * (np.arange(rows) + 0.5)
         solids = [solid.box for solid in level.solids]
-        boxes = solids + [level.barriers[index].box for index in sorted(shut)]
-        self.heights = np.array(sorted({box.high[2] for box in solids if box.high[2] < ceiling - _TOUCH}))
+        barriers = [level.barriers[index] for index in sorted(shut)]
+        boxes = solids + [barrier.box for barrier in barriers]
+        grounds = solids + [barrier.box for barrier in barriers if barrier.kind == "solid"]
+        self.heights = np.array(sorted({box.high[2] for box in grounds if box.high[2] < ceiling - _TOUCH}))
         apex = self.kind.jump_speed**2 / (2 * self.kind.gravity)
         self.standing = self._free(boxes, self.kind.height, margin)
         self.crouched = self._free(boxes, self.kind.crouched_height, margin)
         self.leaping = self._free(boxes, self.kind.height + apex, margin)
-        self.places: Cells = self._supported(solids) & self.crouched & ~self._buried(boxes)
+        self.places: Cells = self._supported(grounds) & self.crouched & ~self._buried(boxes)
         layer, row, column = np.nonzero(self.places)
         self._flat = np.flatnonzero(self.places)
         self._points = np.stack([self.xs[column], self.ys[row], self.heights[layer]], axis=1)

@@ -46,6 +46,29 @@ name = "out"
 at = [14.5, 1.0, 0.0]
 """
 
+BLOCK = """
+doc = "A start on top of a barrier that is shut, too wide for one step to lead off it."
+spec = "block.tltl:block"
+[bounds]
+at = [8.0, 4.0, -0.5]
+size = [16.0, 8.0, 6.5]
+[start]
+at = [5.0, 4.0, 1.0]
+[variants]
+v0 = []
+[[barrier]]
+name = "gate"
+at = [5.0, 4.0, 0.0]
+size = [4.0, 4.0, 1.0]
+opened_by = ["lever"]
+[[switch]]
+name = "lever"
+at = [14.5, 7.0, 0.0]
+[[exit]]
+name = "out"
+at = [14.5, 1.0, 0.0]
+"""
+
 
 @contextmanager
 def _expert(level: str, variant: str = "v0", careful: bool = True) -> Iterator[tuple[RecordEpisode, Expert]]:
@@ -135,3 +158,13 @@ def test_it_plays_a_level_it_was_not_made_for(tmp_path: Path) -> None:
     with _expert(str(tmp_path / "tower.toml")) as (env, expert):
         episode = _played(env, expert, 0)
     assert episode.success and len(episode.actions) < 60
+
+
+def test_it_comes_down_from_a_barrier_that_is_shut(tmp_path: Path) -> None:
+    (tmp_path / "block.tltl").write_text(
+        "import spatial\nentity out\nspec block { limit 40 steps\n reach near(out) }\n"
+    )
+    (tmp_path / "block.toml").write_text(BLOCK)
+    with _expert(str(tmp_path / "block.toml")) as (env, expert):
+        episode = _played(env, expert, 0)
+    assert episode.success
