@@ -2,7 +2,7 @@
 
 A level is one of stealth where the second fails.  Episodes are told apart by the barrier that opened by chance.
 
-``python -m benchmarks.expert LEVEL VARIANT careful|careless EPISODES`` plays one variant in a process of its own.
+``python -m benchmarks.expert LEVEL VARIANT careful|careless [EPISODES]`` plays one variant in a process of its own.
 """
 
 from __future__ import annotations
@@ -11,13 +11,11 @@ import json
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator
-from importlib.util import find_spec
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from benchmarks.measure import run
-from benchmarks.store import ROOT, Record, Store, source_digest
-from benchmarks.wander import variants_of_all
+from benchmarks.store import Record, Store, source_digest
+from benchmarks.variants import measure_each, variants_of_all
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.expert.expert import Expert
@@ -34,18 +32,7 @@ Z = 1.959964
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
     """Play what the store does not have yet, or what failed."""
-    if find_spec("pybullet") is None:
-        store.put(SECTION, "left out", {"left_out": "pybullet is not installed (the extra `rl`)"})
-        return
-    for level, variant, care in _cases():
-        name = f"{level} {variant} {care}"
-        if "source" not in store.section(SECTION).get(name, {}):
-            episodes = str(EPISODES.get(variant, OTHERS))
-            command = [sys.executable, "-m", "benchmarks.expert", level, variant, care, episodes]
-            made = run(command, TIMEOUT_S, cwd=ROOT)
-            record = json.loads(made.output) if made.status == 0 else {"failed": f"exit status {made.status}"}
-            store.put(SECTION, name, record)
-            say(f"{name}: {json.dumps(record)}")
+    measure_each(store, SECTION, _cases, TIMEOUT_S, say)
 
 
 def played(level: str, variant: str, care: str, episodes: int) -> Record:
@@ -76,7 +63,7 @@ def wilson(successes: int, episodes: int) -> tuple[float, float]:
     return max(0.0, middle - half), min(1.0, middle + half)
 
 
-def _cases() -> Iterator[tuple[str, str, str]]:
+def _cases() -> Iterator[Sequence[str]]:
     """Each variant with each kind of care that makes a difference there."""
     from tltl_runtime.stealth.levels.file import load_level
 
@@ -118,5 +105,6 @@ def _summary(outcomes: list[dict[str, float]]) -> Record:
 
 
 if __name__ == "__main__":
-    _, asked, in_variant, with_care, times = sys.argv
-    print(json.dumps(played(asked, in_variant, with_care, int(times))))
+    asked, in_variant, with_care, *times = sys.argv[1:]
+    count = int(times[0]) if times else EPISODES.get(in_variant, OTHERS)
+    print(json.dumps(played(asked, in_variant, with_care, count)))

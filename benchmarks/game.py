@@ -15,14 +15,14 @@ import os
 import sys
 import time
 from collections.abc import Callable, Sequence
-from importlib.util import find_spec
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from benchmarks.measure import median, quartiles, run
-from benchmarks.store import ROOT, Record, Store, source_digest
-from benchmarks.wander import actions, variants_of_all
+from benchmarks.measure import median, quartiles
+from benchmarks.store import Record, Store, source_digest
+from benchmarks.variants import measure_each, variants_of_all
+from benchmarks.wander import actions
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.env import GameEnv
@@ -46,16 +46,7 @@ IDLE_CORES = 1.8
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
     """Measure each variant that the store does not have yet, or that failed, then the workers."""
-    if find_spec("pybullet") is None:
-        store.put(SECTION, "left out", {"left_out": "pybullet is not installed (the extra `rl`)"})
-        return
-    for arguments in [*variants_of_all(), (WORKERS,)]:
-        name = " ".join(arguments)
-        if "source" not in store.section(SECTION).get(name, {}):
-            made = run([sys.executable, "-m", "benchmarks.game", *arguments], TIMEOUT_S, cwd=ROOT)
-            record = json.loads(made.output) if made.status == 0 else {"failed": f"exit status {made.status}"}
-            store.put(SECTION, name, record)
-            say(f"{name}: {json.dumps(record)}")
+    measure_each(store, SECTION, lambda: [*variants_of_all(), (WORKERS,)], TIMEOUT_S, say)
 
 
 def compared(level: str, variant: str) -> Record:
@@ -129,7 +120,7 @@ def _map_us(env: GameEnv) -> tuple[float, float]:
     from tltl_runtime.stealth.senses.semantic_map import SemanticMap
 
     semantic_map, game = SemanticMap(env.level), env.game
-    given = (game.world.player.position, False, game.mover_boxes(), game.enemies.positions)
+    given = (game.world.player.position, False, game.world.mover_boxes(), game.enemies.positions)
 
     def look() -> None:
         for _ in range(DECISIONS):

@@ -23,13 +23,11 @@ from tltlc.record import record
 if TYPE_CHECKING:
     from tltl_runtime.stealth.level import Point
     from tltl_runtime.stealth.world.physics import World
-    from tltl_runtime.stealth.world.player import PlayerState
+    from tltl_runtime.stealth.world.player import Action, PlayerState
 
 CELL_M = 0.2
 SPEED_BUCKET = 3.0
 """Metres a second of rising or falling that count as alike: what gravity does to a decision."""
-
-Action = tuple[int, int, int, int, int]
 
 
 @record

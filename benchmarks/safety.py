@@ -3,7 +3,7 @@
 Half of the episodes begin at the level's start, half anywhere on its floors.  At each reset and at each end of an
 episode the world checks its walls, by rays, and its collision filters; it does so with filters after each crouch.
 
-``python -m benchmarks.safety LEVEL VARIANT STEPS`` tries one variant in a process of its own.
+``python -m benchmarks.safety LEVEL VARIANT [STEPS]`` tries one variant in a process of its own.
 """
 
 from __future__ import annotations
@@ -14,12 +14,11 @@ import sys
 import time
 import zlib
 from collections.abc import Callable, Iterable
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
-from benchmarks.measure import run
-from benchmarks.store import ROOT, Record, Store, source_digest
-from benchmarks.wander import actions, variants_of_all
+from benchmarks.store import Record, Store, source_digest
+from benchmarks.variants import measure_each, variants_of_all
+from benchmarks.wander import actions
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,16 +41,7 @@ class Violation(AssertionError):
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
     """Try each variant that the store does not have yet, or that failed."""
-    if find_spec("pybullet") is None:
-        store.put(SECTION, "left out", {"left_out": "pybullet is not installed (the extra `rl`)"})
-        return
-    for level, variant in variants_of_all():
-        name = f"{level} {variant}"
-        if "steps" not in store.section(SECTION).get(name, {}):
-            made = run([sys.executable, "-m", "benchmarks.safety", level, variant, str(STEPS)], TIMEOUT_S, cwd=ROOT)
-            record = json.loads(made.output) if made.status == 0 else {"failed": f"exit status {made.status}"}
-            store.put(SECTION, name, record)
-            say(f"{name}: {json.dumps(record)}")
+    measure_each(store, SECTION, variants_of_all, TIMEOUT_S, say)
 
 
 def tried(level: str, variant: str, steps: int) -> Record:
@@ -160,9 +150,9 @@ def main() -> None:
     """Try what the command line names; a violation is told in the record."""
     from tltl_runtime.stealth.world.physics import WorldError
 
-    level, variant, steps = sys.argv[1:]
+    level, variant, *steps = sys.argv[1:]
     try:
-        record = tried(level, variant, int(steps))
+        record = tried(level, variant, int(steps[0]) if steps else STEPS)
     except (Violation, WorldError) as error:
         record = {"failed": str(error)}
     print(json.dumps(record))

@@ -37,11 +37,17 @@ class Store:
 
 
 def measure_missing(
-    store: Store, section: str, names: Iterable[str], measured: Callable[[str], Record], say: Callable[[str], None]
+    store: Store,
+    section: str,
+    names: Iterable[str],
+    measured: Callable[[str], Record],
+    say: Callable[[str], None],
+    *,
+    done: str = "steps_per_s",
 ) -> None:
-    """Put the record of each name that has no ``steps_per_s`` in the store yet: not measured, or failed."""
+    """Put the record of each name that has no ``done`` in the store yet: not measured, or failed."""
     for name in names:
-        if "steps_per_s" not in store.section(section).get(name, {}):
+        if done not in store.section(section).get(name, {}):
             record = measured(name)
             store.put(section, name, record)
             say(f"{name}: {json.dumps(record)}")

@@ -12,16 +12,9 @@ HELD = 6
 """Decisions for which an action is held, on average."""
 
 
-def variants_of_all() -> list[tuple[str, str]]:
-    """Each shipped level in each of its variants."""
-    from tltl_runtime.stealth.levels.file import level_names, variants
-
-    return [(level, variant) for level in level_names() for variant in variants(level)]
-
-
 def actions(rng: np.random.Generator) -> Iterator[tuple[int, ...]]:
     """Actions without end, each held for a while."""
-    from tltl_runtime.stealth.game import BRANCHES
+    from tltl_runtime.stealth.snapshot import BRANCHES
 
     while True:
         action = tuple(int(rng.integers(size)) for size in BRANCHES)

@@ -14,11 +14,10 @@ from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Soli
 from tltl_runtime.stealth.world.bodies import capsule, static_box, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.physics import World, WorldError
-from tltl_runtime.stealth.world.player import DECISION, PlayerKind
+from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 from tltl_runtime.stealth.world.way import Way
 from tltlc.record import replace
 
-Action = tuple[int, int, int, int, int]
 EAST, WEST, NORTH, STAY, JUMP, CROUCH = (
     (1, 0, 0, 0, 0),
     (2, 0, 0, 0, 0),
