@@ -56,12 +56,14 @@ def command(level: str, spec: str | None, episodes: int, seed: int, folder: Path
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
+    from tltl_runtime.stealth.supply.feasible import warnings
 
     with Report() as report:
         path, variant = split(level)
         env = RecordEpisode(make_env(path, variant or "v0", spec), "careless expert" if careless else "expert")
         succeeded = 0
         try:
+            report.add(warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
             expert = Expert(env, careful=not careless)
             for number in range(seed, seed + episodes):
                 play_episode(env, expert, number)

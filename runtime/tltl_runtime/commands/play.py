@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from pathlib import Path
 from tempfile import gettempdir
 from typing import Any
@@ -18,7 +19,9 @@ from tltl_runtime.stealth.pictures.camera import VIEWS, View
 from tltl_runtime.stealth.pictures.hud import KEYS
 from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.supply.feasible import warnings
 from tltl_runtime.stealth.window.window import Window
+from tltlc.cli.report import show
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.spec_file import split
 
@@ -64,6 +67,7 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
         files = Files(out, f"{shown.name}-{shown.variant}")
         # A spec that asks for what the level does not have is told before there is a window.
         env.reset()
+        show(warnings(shown, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
         window = Window(f"{shown.name} {shown.variant}", _SIZE, side=True)
         renderer = Renderer(shown, *_SIZE)
         try:

@@ -39,3 +39,15 @@ def test_a_level_that_is_not_there(tltlc, tmp_path: Path, level: str, status: in
     found: Outcome = tltlc("demonstrate", level, "-o", str(tmp_path))
     assert (found.status, found.out) == (status, "")
     assert "error[TLT08" in found.err
+
+
+def test_what_nobody_can_do_is_said_before_it_is_tried(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    (tmp_path / "far.tltl").write_text("import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }")
+    found: Outcome = tltlc(
+        "demonstrate", "navigation:v2", "--spec", str(tmp_path / "far.tltl"), "-o", str(tmp_path), "--careless"
+    )
+    assert found.status == 1
+    assert found.err == (
+        "warning[TLT0814]: nobody reaches `exit` in `navigation:v2`, so nobody can do what `far` asks\n"
+        "  help: the way ends at `corridor_block_2`, which is 2.2 m high\n"
+    )

@@ -9,10 +9,10 @@ from __future__ import annotations
 import hashlib
 import re
 from pathlib import Path
-from typing import Final
 
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Solid
 from tltl_runtime.stealth.levels import check, overlay, parts
+from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
 from tltl_runtime.stealth.levels.room import check_room
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
@@ -22,12 +22,6 @@ from tltlc.files import read_source
 from tltlc.record import replace
 from tltlc.source import SourceFile, Span
 from tltlc.spec_file import is_plain_name
-
-LEVELS: Final = Path(__file__).parents[2] / "levels"
-"""The folder of the levels that come with the package."""
-
-_SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
-"""Where their specs lie: in an installed package, and in a checkout."""
 
 
 def level_names() -> tuple[str, ...]:
@@ -76,10 +70,8 @@ def _level_path(name_or_path: str) -> Path:
         return LEVELS / f"{name_or_path}.toml"
     title, help_ = f"there is no level `{name_or_path}`", suggestion(name_or_path, level_names())
     if name_or_path.endswith((".tltl", ".json")):
-        title, help_ = (
-            f"`{name_or_path}` is a spec, not a level",
-            "a level is a `.toml` file, or one of those that come with tltlc",
-        )
+        title = f"`{name_or_path}` is a spec, not a level"
+        help_ = "a level is a `.toml` file, or one of those that `tltlc list levels` shows"
     elif Path(f"{name_or_path}.toml").is_file():
         help_ = f"did you mean the file `{name_or_path}.toml`?"
     raise TltlError([Diagnostic("TLT0800", title, help=help_)])
@@ -105,7 +97,7 @@ class _Loading:
             label = self.table.place("variants")
             raise TltlError([Diagnostic("TLT0800", title, (label,), suggestion(variant, self.variants))])
         table, places = self.table, self.places
-        doc, spec = table.text("doc"), self._spec()
+        doc, spec = table.text("doc"), made_for(table, self.path)
         bounds = self._bounds()
         start = table.table("start")
         uses, assets = self._assets(variant)
@@ -149,7 +141,7 @@ class _Loading:
         return level
 
     def _read(self, path: Path, name: str) -> Entry:
-        source = read_source(path, _shown(path))
+        source = read_source(path, shown(path))
         self.files.append((name, hashlib.sha256(source.text.encode()).hexdigest()))
         return Entry(read_tree(source), Label(source, _first_line(source)))
 
@@ -168,10 +160,8 @@ class _Loading:
             self.log.append(Diagnostic("TLT0803", "the level has no variants", (table.label,), help_))
         for key in found:
             if not is_plain_name(key):
-                title, help_ = (
-                    f"no command could speak of the variant `{key}`",
-                    "a name is one word of letters, digits and _, e.g. `very_hard`",
-                )
+                title = f"no command could speak of the variant `{key}`"
+                help_ = "a name is one word of letters, digits and _, e.g. `very_hard`"
                 self.log.append(Diagnostic("TLT0804", title, (table.place(key),), help_))
         self._raise()
         return found
@@ -187,28 +177,6 @@ class _Loading:
             help_ = "expected the floor, at height 0, inside: `at` below 0, `at` and `size` above it"
             self.log.append(Diagnostic("TLT0803", "the bounds hold no floor", (table.place("at"),), help_))
         return box
-
-    def _spec(self) -> str:
-        """The spec's file, found beside the level or among the examples, and its name."""
-        text = self.table.text("spec", "")
-        file, colon, name = text.rpartition(":")
-        if not text:
-            return ""
-        if not file.endswith(".tltl") or not name:
-            self.log.append(wrong(self.table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
-            return ""
-        label = self.table.place("spec")
-        for folder in (self.path.parent, *_SPECS):
-            if (folder / file).is_file():
-                specs = _specs(folder / file)
-                if name not in specs:
-                    title = f"`{file}` holds no spec `{name}`"
-                    self.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, specs)))
-                return f"{folder / file}{colon}{name}"
-        title = f"there is no spec file `{file}`"
-        help_ = f"put it beside `{self.path.name}`"
-        self.log.append(Diagnostic("TLT0805", title, (label,), help_))
-        return ""
 
     def _assets(self, variant: str) -> tuple[list[Table], dict[str, Table]]:
         """The level's uses of parts, and its assets by name, with the overlays of the variant."""
@@ -290,24 +258,7 @@ class _Loading:
         return found
 
 
-def _specs(path: Path) -> list[str]:
-    """The names of the specs in a file, whatever else is wrong with it."""
-    from tltlc.grammar.parser import parse
-    from tltlc.grammar.tree import SpecDecl
-
-    declarations = parse(read_source(path, _shown(path)))[0].declarations
-    return [declaration.name for declaration in declarations if isinstance(declaration, SpecDecl)]
-
-
 def _first_line(source: SourceFile) -> Span:
     """The first line of a text that says something: where messages about the whole file point."""
     found = re.search(r"^[ \t]*[^#\s].*$", source.text, re.MULTILINE)
     return Span(*found.span()) if found else Span(0, 0)
-
-
-def _shown(path: Path) -> str:
-    """The path, relative to the current folder where it lies inside."""
-    try:
-        return str(path.absolute().relative_to(Path.cwd()))
-    except ValueError:
-        return str(path)

@@ -10,11 +10,12 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.supply.offer import offers
 from tltl_runtime.stealth.supply.reach import Reach, highest_lift, reachable
 from tltl_runtime.stealth.supply.spec_places import SpecPlaces
-from tltl_runtime.stealth.supply.supply import given_params, used_entities
+from tltl_runtime.stealth.supply.supply import check_supply, given_params, used_entities
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.diagnostics.diagnostic import Diagnostic, Severity
 from tltlc.expression import Expression, Param, Signal
+from tltlc.record import replace
 from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases
 from tltlc.resolve.predicate_check.interval import Interval, UndefinedError
 from tltlc.resolve.predicate_check.region import Region, Variable, bound
@@ -32,13 +33,25 @@ def check_reach(level: Level, reach: Reach, fspa: Fspa, places: SpecPlaces) -> l
     if not far:
         return []
     doable = _doable(fspa, _impossible(level, reach, fspa))
-    end = _end(level, reach, far[0])
+    ways = _Ways(level, reach)
     found = []
     for name in far:
         title = f"nobody reaches `{name}` in `{level.name}:{level.variant}`"
         title += "" if doable else f", so nobody can do what `{fspa.name}` asks"
-        found.append(Diagnostic("TLT0814", title, places.entity(name), end, "warning" if doable else "error"))
+        severity: Severity = "warning" if doable else "error"
+        found.append(Diagnostic("TLT0814", title, places.entity(name), ways.end(name), severity))
     return found
+
+
+def warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
+    """TLT0814 for who is about to play: as warnings, since one may well play what cannot be finished.
+
+    Nothing is said of a level that does not supply all that the spec speaks of: nobody can play that.
+    """
+    places = SpecPlaces(None)
+    if any(found.severity == "error" for found in check_supply(level, fspa, places)):
+        return []
+    return [replace(found, severity="warning") for found in check_reach(level, reachable(level), fspa, places)]
 
 
 def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
@@ -96,16 +109,50 @@ def _doable(fspa: Fspa, impossible: frozenset[int]) -> bool:
 # --- where the way ends ------------------------------------------------------------------------------
 
 
-def _end(level: Level, reach: Reach, entity: str) -> str:
-    """What is in the way to an entity: the solid that is got over first where jumps are higher and higher."""
-    lift = normal = highest_lift(PlayerKind())
-    higher = reach
-    while lift < level.bounds.high[2] and not higher.reaches(entity):
-        lift += _TALLER
-        higher = reachable(level, lift=lift)
-    heights = {solid.name: solid.box.high[2] - solid.box.low[2] for solid in level.solids}
-    if higher.reaches(entity):
-        for name, height in heights.items():
-            if normal < height <= lift and reachable(level, without=[name]).reaches(entity):
-                return f"the way ends at `{name}`, which is {height:g} m high"
-    return f"one gets no nearer to it than {reach.distances[entity]:.1f} m"
+class _Ways:
+    """What would be reached in a level if it were another one."""
+
+    def __init__(self, level: Level, reach: Reach) -> None:
+        self._level, self._reach = level, reach
+        self._higher: dict[float, Reach] = {highest_lift(PlayerKind()): reach}
+        self._without: dict[str, Reach] = {}
+
+    def end(self, entity: str) -> str:
+        """What is in the way to an entity that nobody reaches."""
+        nearest = f"one gets no nearer to it than {self._reach.distances[entity]:.1f} m"
+        return self._shut(entity) or self._too_high(entity) or nearest
+
+    def _shut(self, entity: str) -> str:
+        """The barrier that is in the way, and why it stays shut; nothing where none is."""
+        stays = [each for each in self._level.barriers if each.name not in self._reach.barriers]
+        chance = {name: (unlock.switch,) for unlock in self._level.unlocks for name in unlock.barriers}
+        for barrier in stays:
+            switches = barrier.opened_by or chance[barrier.name]
+            missing = next((name for name in switches if name not in self._reach.switches), None)
+            if barrier.kind == "solid" and missing and self._is_behind(entity, barrier.name):
+                where = "which lies behind it" if self._is_behind(missing, barrier.name) else "which nobody reaches"
+                return f"`{barrier.name}` stays shut: it is opened by `{missing}`, {where}"
+        return ""
+
+    def _too_high(self, entity: str) -> str:
+        """The solid that is got over first where jumps are higher and higher; nothing where none is."""
+        lift = normal = highest_lift(PlayerKind())
+        while lift < self._level.bounds.high[2] and not self._jumping(lift).reaches(entity):
+            lift += _TALLER
+        if self._jumping(lift).reaches(entity):
+            for solid in self._level.solids:
+                height = solid.box.high[2] - solid.box.low[2]
+                if normal < height <= lift and self._is_behind(entity, solid.name):
+                    return f"the way ends at `{solid.name}`, which is {height:g} m high"
+        return ""
+
+    def _jumping(self, lift: float) -> Reach:
+        if lift not in self._higher:
+            self._higher[lift] = reachable(self._level, lift=lift)
+        return self._higher[lift]
+
+    def _is_behind(self, entity: str, obstacle: str) -> bool:
+        """Whether an entity would be reached without a solid or a barrier."""
+        if obstacle not in self._without:
+            self._without[obstacle] = reachable(self._level, without=[obstacle])
+        return self._without[obstacle].reaches(entity)

@@ -69,7 +69,7 @@ def reachable(
     """Everything that a player may reach from anywhere where an episode begins.
 
     ``lift`` is how much higher than the ground that was left the next may be, in metres, by default
-    :func:`highest_lift`; solids ``without`` are not there.
+    :func:`highest_lift`; solids and barriers ``without`` are not there.
     """
     kind = kind or PlayerKind()
     search = _Search(level, kind, highest_lift(kind) if lift is None else lift, without)
@@ -123,7 +123,12 @@ class _Search:
     def __init__(self, level: Level, kind: PlayerKind, lift: float, without: Collection[str]) -> None:
         self.level, self.kind, self.lift = level, kind, lift
         self._solids = [solid.box for solid in level.solids if solid.name not in without]
-        barriers = [barrier.box for barrier in level.barriers if barrier.kind == "solid"]
+        self._barriers = {
+            barrier.name: barrier.box
+            for barrier in level.barriers
+            if barrier.kind == "solid" and barrier.name not in without
+        }
+        barriers = self._barriers.values()
         tops = [_Top(box, box.high[2], box.high[2]) for box in (*self._solids, *barriers)]
         tops += [_ride(mover, kind.gravity) for mover in level.movers]
         start = level.start.position
@@ -149,9 +154,7 @@ class _Search:
 
     def spread(self, opened: Collection[str]) -> Space:
         """The space that the feet can be in, while these barriers are open."""
-        shut = [
-            barrier.box for barrier in self.level.barriers if barrier.kind == "solid" and barrier.name not in opened
-        ]
+        shut = [box for name, box in self._barriers.items() if name not in opened]
         free = self.grid.free([*self._solids, *shut])
         waiting = {height: ground.copy() for height, ground in self._ground.items() if ground.any()}
         while waiting:

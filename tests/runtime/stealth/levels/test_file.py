@@ -16,7 +16,8 @@ import pytest
 import tltlc
 from tltl_runtime.stealth.level import Box, Level, Solid
 from tltl_runtime.stealth.levels.check import entities
-from tltl_runtime.stealth.levels.file import LEVELS, level_names, load_level, variants
+from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
 

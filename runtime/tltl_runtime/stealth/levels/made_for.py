@@ -1,0 +1,63 @@
+"""Where levels lie, and the specs that they are made for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.files import read_source
+
+LEVELS: Final = Path(__file__).parents[2] / "levels"
+"""The folder of the levels that come with the package."""
+
+_SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
+"""Where their specs lie: in an installed package, and in a checkout."""
+
+
+def made_for(table: Table, level: Path) -> str:
+    """The spec under the key ``spec`` of a level's file: ``FILE:NAME``, the file beside the level or of the package.
+
+    It is empty where there is none, or where something is wrong with it: TLT0803, TLT0805.
+    """
+    text = table.text("spec", "")
+    file, _, name = text.rpartition(":")
+    if not text:
+        return ""
+    if not file.endswith(".tltl") or not name:
+        table.log.append(wrong(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
+        return ""
+    label = table.place("spec")
+    path = next((folder / file for folder in (level.parent, *_SPECS) if (folder / file).is_file()), None)
+    if path is None:
+        help_ = f"put it beside `{level.name}`"
+        table.log.append(Diagnostic("TLT0805", f"there is no spec file `{file}`", (label,), help_))
+        return ""
+    specs = _specs(path)
+    if name not in specs:
+        title = f"`{file}` holds no spec `{name}`"
+        table.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, specs)))
+    return f"{path}:{name}"
+
+
+def comes_with_the_package(spec: str) -> bool:
+    """Whether a file of specs is one that shipped levels are made for."""
+    return Path(spec).absolute().parent in _SPECS
+
+
+def shown(path: Path) -> str:
+    """The path, relative to the current folder where it lies inside."""
+    try:
+        return str(path.absolute().relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)
+
+
+def _specs(path: Path) -> list[str]:
+    """The names of the specs in a file, whatever else is wrong with it."""
+    from tltlc.grammar.parser import parse
+    from tltlc.grammar.tree import SpecDecl
+
+    declarations = parse(read_source(path, shown(path)))[0].declarations
+    return [declaration.name for declaration in declarations if isinstance(declaration, SpecDecl)]
