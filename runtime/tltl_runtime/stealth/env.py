@@ -10,12 +10,13 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.game import BRANCHES, Game
+from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.pictures.camera import View
 from tltl_runtime.stealth.senses.observation import Senses
 from tltl_runtime.stealth.senses.sensors import SensorChoice
 from tltl_runtime.stealth.signals import Signals
+from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.stealth.window.screen import MODES, Screen
 from tltl_runtime.stealth.world.player import DECISION

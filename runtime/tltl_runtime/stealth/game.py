@@ -6,40 +6,16 @@ Same level, seed and actions give the same episode, bit for bit.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from math import dist
 
 import numpy as np
 
-from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, STANDING_HEAD, Enemies, PlayerView
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.enemies.enemy import Enemies
+from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.signals import Signals, readers
-from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.snapshot import Snapshot, player_view, touches
 from tltl_runtime.stealth.world.physics import World
-from tltl_runtime.stealth.world.player import DECISION, PlayerState
-from tltlc.record import record
-
-BRANCHES: Final = (3, 3, 2, 2, 2)
-"""Of an action: x and y (0 stay, 1 towards greater, 2 towards smaller values), jump, crouch, sprint."""
-
-
-@record
-class Snapshot:
-    """What there is to see at one moment, for logs and pictures; tuples are in the level's order.
-
-    ``modes`` are those of the enemies (``patrol``, ``chase``, ``search``, ``return``), ``sees`` whether the player is
-    in their sight.
-    """
-
-    time: float
-    player: PlayerState
-    health: float
-    enemies: tuple[Point, ...]
-    yaws: tuple[float, ...]
-    modes: tuple[str, ...]
-    sees: tuple[bool, ...]
-    movers: tuple[Point, ...]
-    active: tuple[bool, ...]
-    open: tuple[bool, ...]
+from tltl_runtime.stealth.world.player import DECISION
 
 
 class Game:
@@ -58,7 +34,7 @@ class Game:
         self.enemies = Enemies(level)
         self.readers = readers(level)
         self._unlocks = {unlock.switch: unlock.barriers for unlock in level.unlocks}
-        self._sizes = [mover.size for mover in level.movers]
+        self._lasers = [index for index, barrier in enumerate(level.barriers) if barrier.kind == "laser"]
         self._barriers = {barrier.name: index for index, barrier in enumerate(level.barriers)}
         self.reset(0)
 
@@ -77,13 +53,11 @@ class Game:
         self.health = 1.0
         self.active = [False] * len(self.level.switches)
         self.open = [False] * len(self.level.barriers)
-        self._mover_boxes = self._boxes_of_movers()
 
     def step(self, action: Sequence[int]) -> None:
         """Play one decision of :data:`~tltl_runtime.stealth.world.player.DECISION` seconds: one number per branch."""
         self.world.step(action)
-        self._mover_boxes = self._boxes_of_movers()
-        self.enemies.step(DECISION, player_view(self.world.player), self._mover_boxes)
+        self.enemies.step(DECISION, player_view(self.world.player), self.world.mover_boxes())
         self.steps += 1
         self.health = max(0.0, self.health - self.enemies.damage - self._burns() * DECISION)
         self._press_switches()
@@ -96,10 +70,6 @@ class Game:
     def signals(self) -> Signals:
         """The signals that specs may use, by name; they stay those of this moment only until the next step."""
         return Signals(self)
-
-    def mover_boxes(self) -> list[Box]:
-        """Where the moving obstacles are now."""
-        return self._mover_boxes
 
     def snapshot(self) -> Snapshot:
         """What there is to see now."""
@@ -117,16 +87,12 @@ class Game:
             open=tuple(self.open),
         )
 
-    def _boxes_of_movers(self) -> list[Box]:
-        positions = self.world.mover_positions()
-        return [Box(*around(centre, size)) for centre, size in zip(positions, self._sizes, strict=True)]
-
     def _press_switches(self) -> None:
         """Activate the switches that the player has come to, and open what they open."""
         feet = self.world.player.position
         pressed = False
         for index, switch in enumerate(self.level.switches):
-            if not self.active[index] and _distance(feet, switch.position) <= switch.radius:
+            if not self.active[index] and dist(feet, switch.position) <= switch.radius:
                 self.active[index] = pressed = True
                 choices = self._unlocks.get(switch.name)
                 if choices:
@@ -148,28 +114,9 @@ class Game:
 
     def _burns(self) -> float:
         """The health a second that lasers take from where the player's body is."""
+        lasers = [self.level.barriers[index] for index in self._lasers if not self.open[index]]
+        if not lasers:
+            return 0.0
         player, kind = self.world.player, self.world.kind
         height = kind.crouched_height if player.crouching else kind.height
-        return sum(
-            barrier.damage
-            for barrier, is_open in zip(self.level.barriers, self.open, strict=True)
-            if barrier.kind == "laser" and not is_open and touches(player.position, kind.radius, height, barrier.box)
-        )
-
-
-def player_view(player: PlayerState) -> PlayerView:
-    """What enemies can know of the player."""
-    head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
-    return PlayerView(player.position, head, player.crouching, player.velocity)
-
-
-def _distance(a: Point, b: Point) -> float:
-    return float(((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2) ** 0.5)
-
-
-def touches(feet: Point, radius: float, height: float, box: Box) -> bool:
-    """Whether an upright box around the body meets ``box``."""
-    return (
-        all(box.low[axis] - radius < feet[axis] < box.high[axis] + radius for axis in (0, 1))
-        and box.low[2] - height < feet[2] < box.high[2]
-    )
+        return sum(each.damage for each in lasers if touches(player.position, kind.radius, height, each.box))

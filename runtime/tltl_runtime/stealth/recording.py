@@ -12,8 +12,8 @@ from gymnasium.utils import RecordConstructorArgs
 from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.episodes.episode import End, Episode
 from tltl_runtime.stealth.episodes.versions import versions
-from tltl_runtime.stealth.game import BRANCHES, Snapshot
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.monitor import Step
 

@@ -2,8 +2,21 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tltl_runtime.vector.env import WorkerVectorEnv
 from tltl_runtime.vector.errors import Playing, WorkerError
-from tltl_runtime.vector.game import make_vec
+
+if TYPE_CHECKING:
+    from tltl_runtime.vector.game import make_vec
 
 __all__ = ["Playing", "WorkerError", "WorkerVectorEnv", "make_vec"]
+
+
+def __getattr__(name: str) -> object:
+    if name != "make_vec":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    # The game needs pybullet, and anybody's environments do not.
+    from tltl_runtime.vector.game import make_vec
+
+    return make_vec

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 import tltlc
-from tltl_runtime.stealth.game import BRANCHES, Game
+from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltl_runtime.stealth.snapshot import BRANCHES
 
 ROOT = Path(__file__).parents[3]
 

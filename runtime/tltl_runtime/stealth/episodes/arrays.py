@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.game import BRANCHES, Snapshot
 from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltl_runtime.stealth.world.player import PlayerState
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record

@@ -6,8 +6,6 @@ from collections.abc import Iterator
 
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.versions import versions
-from tltl_runtime.stealth.game import Game
-from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import Monitor
 
@@ -33,8 +31,12 @@ def check(episode: Episode) -> tuple[Diagnostic, ...]:
 def resimulate(episode: Episode) -> int | None:
     """Play the actions again from the seed: the first row that is not the same bit for bit, None where all are.
 
-    Row 0 is the moment of the reset.  Beside the snapshots, signals are compared that the game itself has.
+    Row 0 is the moment of the reset.  Beside the snapshots, signals are compared that the game itself has.  Raises
+    TltlError: TLT0730 without pybullet, which nothing else here needs.
     """
+    from tltl_runtime.stealth.game import Game
+    from tltl_runtime.stealth.world.physics import WorldError
+
     names = [(column, signal.name) for column, signal in enumerate(episode.fspa.signals)]
     row = 0
     game = None

@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
 from tltlc.record import EMPTY, record

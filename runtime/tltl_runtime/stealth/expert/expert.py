@@ -11,9 +11,9 @@ from tltl_runtime.stealth.expert.movers import reach_of
 from tltl_runtime.stealth.expert.routes import Leg, routes_of, shut_of
 from tltl_runtime.stealth.expert.sneaker import Sneaker
 from tltl_runtime.stealth.expert.walker import STAY, Walker
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.signals import entities
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import Action
 
 _ROOM: Final = 0.5

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Box
-from tltl_runtime.stealth.world.physics import SUBSTEPS
-from tltl_runtime.stealth.world.player import DECISION, SIGN, PlayerKind, PlayerState
+from tltl_runtime.stealth.world.player import DECISION, SIGN, SUBSTEPS, PlayerKind, PlayerState
 from tltlc.record import record
 
 Floats = NDArray[np.float64]

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from math import dist
 from typing import Final
 
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Mover, Point
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.geometry import around
-from tltl_runtime.stealth.world.physics import SUBSTEPS
-from tltl_runtime.stealth.world.player import DECISION
+from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS
 from tltl_runtime.stealth.world.way import Way
 
 _SEEN: Final = 1e-6

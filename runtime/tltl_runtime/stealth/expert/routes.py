@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.expert.surfaces import CELL, Cells, Surfaces
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.record import record
 
 Seconds = NDArray[np.float64]

@@ -18,8 +18,8 @@ from tltl_runtime.stealth.expert.lattice import ACTIONS, CROUCHED, FAR, SPRINTS,
 from tltl_runtime.stealth.expert.lines import Lines, lines_of
 from tltl_runtime.stealth.expert.routes import shut_of
 from tltl_runtime.stealth.expert.watch import Outlook, Watch
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 
 HORIZON: Final = 80

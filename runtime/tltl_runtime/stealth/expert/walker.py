@@ -15,8 +15,8 @@ from tltl_runtime.stealth.expert.foresight import LONGEST_FALL, Foresight, Move,
 from tltl_runtime.stealth.expert.motion import Motion
 from tltl_runtime.stealth.expert.movers import Clocks
 from tltl_runtime.stealth.expert.routes import Field, routes_of, shut_of
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import SIGN, Action, PlayerKind
 
 STAY: Final[Action] = (0, 0, 0, 0, 0)

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.enemies.enemy import Guard, Mode, PlayerView
 from tltl_runtime.stealth.enemies.grid import Floor, grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, corners
-from tltl_runtime.stealth.game import Snapshot, player_view
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.snapshot import Snapshot, player_view
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.record import record
 

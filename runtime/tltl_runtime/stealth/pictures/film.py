@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.pictures.camera import VIEWS
 from tltl_runtime.stealth.pictures.camera import View as Rendered
 from tltl_runtime.stealth.pictures.interpolation import between
 from tltl_runtime.stealth.pictures.plan import BARRIERS, backdrop, state_colour
 from tltl_runtime.stealth.pictures.render import Renderer
+from tltl_runtime.stealth.snapshot import Snapshot
 
 View = Literal["third_person", "top_down", "overview", "plan"]
 FILM_VIEWS: Final[tuple[View, ...]] = (*VIEWS, "plan")

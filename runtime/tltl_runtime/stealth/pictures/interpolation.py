@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Point
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.record import replace
 
 

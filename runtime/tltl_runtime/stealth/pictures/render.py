@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.segments import blocked, corners
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.pictures.camera import Camera, View, camera, check_size, pixels
 from tltl_runtime.stealth.pictures.cone import Field
 from tltl_runtime.stealth.pictures.paint import Canvas
 from tltl_runtime.stealth.pictures.scene import Colour, Obstacle, Scene
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.player import PlayerKind
 

@@ -15,8 +15,8 @@ from typing import Final
 
 import numpy as np
 
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.bodies import UPRIGHT
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.geometry import around

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from tltl_runtime.stealth.game import Snapshot
     from tltl_runtime.stealth.pictures.render import Renderer
+    from tltl_runtime.stealth.snapshot import Snapshot
     from tltl_runtime.stealth.window.window import Window
 
 MODES: Final = ("human", "rgb_array")

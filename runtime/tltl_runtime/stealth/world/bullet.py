@@ -1,6 +1,7 @@
 """Pybullet, imported without the line that it writes to standard error, where messages for programs may go.
 
-No other module imports pybullet by itself: the first import is the one that speaks, and it does so from C.
+No other module imports pybullet by itself: the first import is the one that speaks, and it does so from C.  Where it is
+not installed, importing this module raises TltlError, TLT0730.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 @contextmanager
@@ -31,7 +34,17 @@ def _silence() -> Iterator[None]:
         os.close(kept)
 
 
-with _silence():
-    import pybullet
+def _missing() -> TltlError:
+    way_out = "pip install 'tltlc[game]'"
+    if sys.version_info >= (3, 12):
+        way_out = "it comes ready to use for Python 3.10 and 3.11 alone: install 'tltlc[game]' with one of these"
+    return TltlError([Diagnostic("TLT0730", "the game needs `pybullet`, which is not installed", help=way_out)])
+
+
+try:
+    with _silence():
+        import pybullet
+except ModuleNotFoundError:
+    raise _missing() from None
 
 __all__ = ["pybullet"]

@@ -39,11 +39,8 @@ from tltl_runtime.stealth.world.bodies import (
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, cells, depth, inside, parts, sides
 from tltl_runtime.stealth.world.moving import Moving, push
-from tltl_runtime.stealth.world.player import DECISION, PlayerKind, PlayerState, control
+from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS, PlayerKind, PlayerState, control
 from tltl_runtime.stealth.world.stairs import lift
-
-SUBSTEPS = 9
-"""Physics steps in a decision."""
 
 _GIVE = 0.2
 """How far below the bounds the feet may be: a landing reaches up to one physics step of a fall into the floor."""
@@ -150,11 +147,11 @@ class World:
 
     def mover_positions(self) -> tuple[Point, ...]:
         """The centres of the level's movers, in its order."""
-        return tuple(mover.place for mover in self._movers)
+        return tuple(mover.place for mover in self.movers)
 
     def mover_boxes(self) -> list[Bounds]:
         """The corners of the level's movers, in its order."""
-        return [mover.box for mover in self._movers]
+        return [mover.box for mover in self.movers]
 
     def is_open(self, barrier: int) -> bool:
         """Whether a barrier is open."""
@@ -226,7 +223,7 @@ class World:
             static_boxes(client, [(barrier.box.low, barrier.box.high)]) if barrier.kind == "solid" else None
             for barrier in self.level.barriers
         ]
-        self._movers = [Moving(client, mover) for mover in self.level.movers]
+        self.movers = [Moving(client, mover) for mover in self.level.movers]
         low, high = self.level.bounds.low, self.level.bounds.high
         self._parking = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] - 10.0)
         self._bodies = {
@@ -303,7 +300,7 @@ class World:
     def _movers_near(self) -> list[Moving]:
         """The movers that the player may meet in this decision; the others go on by all of it."""
         near = []
-        for mover in self._movers:
+        for mover in self.movers:
             if mover.is_near(self._state.position, self.kind.height):
                 near.append(mover)
             else:
@@ -343,4 +340,4 @@ class World:
             for barrier, is_open in zip(self.level.barriers, self._open, strict=True)
             if barrier.kind == "solid" and not is_open
         ]
-        return shut + [mover.box for mover in self._movers if mover is not but]
+        return shut + [mover.box for mover in self.movers if mover is not but]

@@ -16,6 +16,8 @@ Action = tuple[int, int, int, int, int]
 
 DECISION = 0.15
 """Seconds from one action to the next."""
+SUBSTEPS = 9
+"""Physics steps in a decision."""
 
 SIGN = (0.0, 1.0, -1.0)
 """Where the branches x and y of an action lead, by their number."""

@@ -12,8 +12,8 @@ import pytest
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
-from tltl_runtime.stealth.game import BRANCHES
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.snapshot import BRANCHES
 
 TOWER = """
 doc = "Two platforms, a gap of 2.5 m, and a third."

@@ -11,13 +11,14 @@ import pytest
 from numpy.typing import NDArray
 
 from tltl_runtime.stealth.enemies.enemy import Enemies, PlayerView
-from tltl_runtime.stealth.game import Game, Snapshot
+from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.level import Box
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.pictures.camera import VIEWS, View, camera, pixels, sight_lines
 from tltl_runtime.stealth.pictures.cone import Field
 from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.pictures.scene import PLAYER
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import PlayerState
 
 SIZE = (240, 160)

@@ -1,0 +1,47 @@
+"""What is done in one decision of the game, and what there is to see after it; it needs no physics."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, STANDING_HEAD, PlayerView
+from tltl_runtime.stealth.level import Box, Point
+from tltl_runtime.stealth.world.player import PlayerState
+from tltlc.record import record
+
+BRANCHES: Final = (3, 3, 2, 2, 2)
+"""Of an action: x and y (0 stay, 1 towards greater, 2 towards smaller values), jump, crouch, sprint."""
+
+
+@record
+class Snapshot:
+    """What there is to see at one moment, for logs and pictures; tuples are in the level's order.
+
+    ``modes`` are those of the enemies (``patrol``, ``chase``, ``search``, ``return``), ``sees`` whether the player is
+    in their sight.
+    """
+
+    time: float
+    player: PlayerState
+    health: float
+    enemies: tuple[Point, ...]
+    yaws: tuple[float, ...]
+    modes: tuple[str, ...]
+    sees: tuple[bool, ...]
+    movers: tuple[Point, ...]
+    active: tuple[bool, ...]
+    open: tuple[bool, ...]
+
+
+def player_view(player: PlayerState) -> PlayerView:
+    """What enemies can know of the player."""
+    head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
+    return PlayerView(player.position, head, player.crouching, player.velocity)
+
+
+def touches(feet: Point, radius: float, height: float, box: Box) -> bool:
+    """Whether an upright box around the body meets ``box``."""
+    return (
+        all(box.low[axis] - radius < feet[axis] < box.high[axis] + radius for axis in (0, 1))
+        and box.low[2] - height < feet[2] < box.high[2]
+    )

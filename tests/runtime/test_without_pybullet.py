@@ -1,0 +1,67 @@
+"""Where pybullet is not installed: what plays the game says so plainly, and all else works."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.file import write_episode
+from tltl_runtime.stealth.recording import RecordEpisode
+
+PROGRAM = "import sys; sys.modules['pybullet'] = None; "
+COMMAND = PROGRAM + "from tltlc.cli.main import main; main()"
+
+
+def run(program: str, *arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    words = [sys.executable, "-c", program, *map(str, arguments)]
+    return subprocess.run(words, cwd=cwd, capture_output=True, text=True, timeout=60)
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    env = RecordEpisode(make_env("navigation"))
+    env.reset(seed=1)
+    env.step([1, 0, 0, 0, 0])
+    path = tmp_path_factory.mktemp("recorded") / "run.episode.npz"
+    write_episode(path, env.episode)
+    env.close()
+    return path
+
+
+@pytest.mark.parametrize("command", ["demonstrate navigation", "play navigation", "replay {} --check"])
+def test_what_plays_says_what_it_lacks(command: str, recording: Path, tmp_path: Path) -> None:
+    done = run(COMMAND, *command.format(recording).split(), cwd=tmp_path)
+    assert done.returncode == 4
+    assert "error[TLT0730]: the game needs `pybullet`, which is not installed" in done.stderr
+
+
+@pytest.mark.parametrize("output", ["", "run.png", "run.csv"])
+def test_recordings_are_read_and_drawn(output: str, recording: Path, tmp_path: Path) -> None:
+    done = run(COMMAND, "replay", recording, *(["-o", output] if output else []), cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, f"wrote {output}\n" if output else "")
+    assert not output or (tmp_path / output).stat().st_size > 0
+
+
+def test_levels_are_checked() -> None:
+    done = run(COMMAND, "check", "--level", "navigation:v0")
+    assert done.returncode == 0 and "nothing to report" in done.stderr
+
+
+def test_gymnasium_says_what_it_lacks() -> None:
+    done = run(PROGRAM + "import gymnasium, tltl_runtime; gymnasium.make('tltl/Navigation-v0')")
+    assert done.stderr.splitlines()[-1].endswith("TLT0730: the game needs `pybullet`, which is not installed")
+
+
+def test_the_workers_take_other_environments() -> None:
+    program = """
+import gymnasium
+from tltl_runtime.vector import WorkerVectorEnv
+envs = WorkerVectorEnv([lambda: gymnasium.make("CartPole-v1")] * 2, workers=1)
+print(envs.reset(seed=1)[0].shape)
+envs.close()
+"""
+    assert run(PROGRAM + program).stdout == "(2, 4)\n"
