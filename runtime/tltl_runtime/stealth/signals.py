@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 _EYES: Final = 0.15
 """Metres from the top of the body down to its eyes."""
 
-_Reader = Callable[["Game"], float]
+Reader = Callable[["Game"], float]
 _Place = Callable[["Game"], Point]
 
 
@@ -44,9 +44,9 @@ class Signals(Mapping[str, float]):
         return len(self._readers)
 
 
-def readers(level: Level) -> dict[str, _Reader]:
+def readers(level: Level) -> dict[str, Reader]:
     """How each signal of a level is read, by name."""
-    found: dict[str, _Reader] = {
+    found: dict[str, Reader] = {
         "health": lambda game: game.health,
         "stamina": lambda game: game.world.player.stamina,
         "time": lambda game: game.time,
@@ -96,7 +96,7 @@ def entities(level: Level) -> dict[str, _Place]:
 # --- readers, each for one thing of the level -------------------------------------------------------
 
 
-def _of_entity(name: str, place: _Place) -> dict[str, _Reader]:
+def _of_entity(name: str, place: _Place) -> dict[str, Reader]:
     return {
         f"distance({name})": lambda game: dist(game.world.player.position, place(game)),
         f"bearing({name})": lambda game: _bearing(game, place(game)),
@@ -104,11 +104,11 @@ def _of_entity(name: str, place: _Place) -> dict[str, _Reader]:
     }
 
 
-def _active(switch: int) -> _Reader:
+def _active(switch: int) -> Reader:
     return lambda game: game.active[switch]
 
 
-def _open(barrier: int) -> _Reader:
+def _open(barrier: int) -> Reader:
     return lambda game: game.open[barrier]
 
 
@@ -117,11 +117,11 @@ def _at(place: Point) -> _Place:
 
 
 def _enemy(index: int) -> _Place:
-    return lambda game: game.enemies.positions[index]
+    return lambda game: game.enemies.guards[index].position
 
 
 def _mover(index: int) -> _Place:
-    return lambda game: game.world.mover_positions()[index]
+    return lambda game: game.world.movers[index].place
 
 
 def _bearing(game: Game, place: Point) -> float:

@@ -42,6 +42,11 @@ def box(x0: float, y0: float, x1: float, y1: float, z0: float = 0.0, z1: float =
     return Box((x0, y0, z0), (x1, y1, z1))
 
 
+def bounds(x0: float, y0: float, x1: float, y1: float) -> tuple[Point, Point]:
+    """The corners of a box, as those of movers are told."""
+    return (x0, y0, 0.0), (x1, y1, 3.0)
+
+
 def wall(x0: float, y0: float, x1: float, y1: float) -> Solid:
     return Solid("wall", "wall", box(x0, y0, x1, y1))
 

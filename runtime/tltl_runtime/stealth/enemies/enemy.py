@@ -16,7 +16,8 @@ import numpy as np
 from tltl_runtime.stealth.enemies.branches import tree
 from tltl_runtime.stealth.enemies.grid import Floor, Grid, Place, grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, blocked, corners
-from tltl_runtime.stealth.level import Box, Enemy, Level, Point
+from tltl_runtime.stealth.level import Enemy, Level, Point
+from tltl_runtime.stealth.world.geometry import Bounds
 from tltlc.record import record
 
 Mode = Literal["patrol", "chase", "search", "return"]
@@ -74,9 +75,9 @@ class Enemies:
             guard.floor = floor
             guard.forget_way()
 
-    def step(self, dt: float, player: PlayerView, movers: Sequence[Box] = ()) -> None:
+    def step(self, dt: float, player: PlayerView, movers: Sequence[Bounds] = ()) -> None:
         """Advance by ``dt`` seconds; ``movers`` are boxes that stop sight beside those of the level."""
-        boxes = [*self._boxes, *map(corners, movers)] if movers else self._boxes
+        boxes = [*self._boxes, *((*low, *high) for low, high in movers)] if movers else self._boxes
         self.damage = 0.0
         for guard in self.guards:
             self.damage += guard.step(dt, player, boxes)
@@ -84,7 +85,7 @@ class Enemies:
     @property
     def positions(self) -> tuple[Point, ...]:
         """Of their feet."""
-        return tuple((guard.x, guard.y, 0.0) for guard in self.guards)
+        return tuple([guard.position for guard in self.guards])
 
     @property
     def yaws(self) -> tuple[float, ...]:
@@ -171,6 +172,11 @@ class Guard:
     def state(self) -> tuple[object, ...]:
         """Where it is, looks and wants to, and what it is at: of guards without added branches, all that counts."""
         return (self.x, self.y, self.yaw, self.mode, self.leg, self.back, self.search_left > 0.0)
+
+    @property
+    def position(self) -> Point:
+        """Of its feet."""
+        return (self.x, self.y, 0.0)
 
     def go(self, goal: Place, speed: float) -> None:
         """From now on walk to a place, or to the nearest that can be reached, at a speed in m/s."""

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.senses.semantic_map import SemanticMap
 from tltl_runtime.stealth.senses.sensors import SensorChoice, chosen
-from tltl_runtime.stealth.signals import entities, readers
+from tltl_runtime.stealth.signals import Reader, entities, readers
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.game import Game
@@ -39,7 +38,7 @@ class Senses:
         self.sensors = sensors = chosen(level, sensors)
         places, signals = entities(level), readers(level)
         self._places = [places[name] for name in sensors.entities]
-        self._variables = [(signals[name], *_scale(name, level)) for name in sensors.variables]
+        self._variables = [_scaled(name, level, signals[name]) for name in sensors.variables]
         self._diagonal = dist(level.bounds.low, level.bounds.high)
         self._map = SemanticMap(level, sensors.map) if sensors.map else None
         self._open: tuple[bool, ...] = ()
@@ -47,16 +46,18 @@ class Senses:
 
     def look(self, game: Game) -> dict[str, Any]:
         """What is sensed now, in ``space``."""
+        x, y, z = game.world.player.position
+        vectors = [part for place in self._places for px, py, pz in (place(game),) for part in (px - x, py - y, pz - z)]
+        values = [read(game) for read in self._variables]
+        row = np.array(vectors + values, dtype=np.float32)
+        row[: len(vectors)] /= self._diagonal
+        # A fifth of the time of `np.clip`.
+        np.minimum(np.maximum(row, -1.0, row), 1.0, row)
         found: dict[str, Any] = {}
-        if self._places:
-            x, y, z = game.world.player.position
-            vectors = [
-                part for place in self._places for px, py, pz in (place(game),) for part in (px - x, py - y, pz - z)
-            ]
-            found["entities"] = _clamped(np.array(vectors, dtype=np.float32) / self._diagonal)
-        if self._variables:
-            values = [_share(read(game), low, size) for read, low, size in self._variables]
-            found["variables"] = _clamped(np.array(values, dtype=np.float32))
+        if vectors:
+            found["entities"] = row[: len(vectors)]
+        if values:
+            found["variables"] = row[len(vectors) :]
         if self._map is not None:
             found["map"] = self._see(game, self._map)
         return found
@@ -70,7 +71,7 @@ class Senses:
                     semantic_map.set_open(barrier, True)
             self._open = opened
         player = game.world.player
-        ids = semantic_map.look(player.position, player.crouching, game.mover_boxes(), game.enemies.positions)
+        ids = semantic_map.look(player.position, player.crouching, game.world.mover_boxes(), game.enemies.positions)
         return semantic_map.one_hot(ids)
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
@@ -85,26 +86,17 @@ class Senses:
         return found
 
 
-def _clamped(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """``values`` themselves, put into [-1, 1]; a fifth of the time of ``np.clip``."""
-    np.maximum(values, -1.0, out=values)
-    np.minimum(values, 1.0, out=values)
-    return values
-
-
-def _share(value: float, low: float, size: float) -> float:
-    """A value as a share of what it can be; of no size, as a share of an open end."""
-    return (value - low) / size if size else value / (value + _HALF_TIME_S)
-
-
-def _scale(name: str, level: Level) -> tuple[float, float]:
-    """The least value and the size of the range in which a signal is sensed; size 0 where it has no end."""
+def _scaled(name: str, level: Level, read: Reader) -> Reader:
+    """How a signal is sensed: as a share of its range; time, which has no end, as what is over of a longer one."""
     low, high = level.bounds.low, level.bounds.high
     if name == "time":
-        return 0.0, 0.0
+        return lambda game: game.time / (game.time + _HALF_TIME_S)
     if name.startswith("position."):
         axis = "xyz".index(name[-1])
-        return low[axis], high[axis] - low[axis]
+        return lambda game: (read(game) - low[axis]) / (high[axis] - low[axis])
     if name.startswith("distance("):
-        return 0.0, dist(low, high)
-    return 0.0, pi if name.startswith("bearing(") else 1.0
+        diagonal = dist(low, high)
+        return lambda game: read(game) / diagonal
+    if name.startswith("bearing("):
+        return lambda game: read(game) / pi
+    return read

@@ -14,8 +14,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.stealth.level import Box, Level, MapSensor, Point
+from tltl_runtime.stealth.level import Level, MapSensor, Point
 from tltl_runtime.stealth.senses.voxels import BELOW, CROUCHED, LAYER, STANDING, Voxels
+from tltl_runtime.stealth.world.geometry import Bounds
 
 _ENEMY_RADIUS: Final = 0.3
 _ENEMY_HEIGHT: Final = 1.8
@@ -61,13 +62,13 @@ class SemanticMap:
         self,
         position: Point,
         crouching: bool = False,
-        movers: Sequence[Box] = (),
+        movers: Sequence[Bounds] = (),
         enemies: Sequence[Point] = (),
     ) -> NDArray[np.uint8]:
         """The ids of types around feet at ``position``, uint8 [extent, extent]: 0, or 1 + the type's index.
 
-        ``movers`` are where they are now, ``enemies`` the positions of their feet.  From outside the bounds it is
-        the map of the nearest cell inside.
+        ``movers`` are the corners of their boxes now, ``enemies`` the positions of their feet.  From outside the bounds
+        it is the map of the nearest cell inside.
         """
         x, y, z = position
         x0, y0, z0 = self._origin
@@ -80,8 +81,7 @@ class SemanticMap:
         west, south = x0 + column / scale, y0 + row / scale
         bottom, top = z - BELOW, z + (CROUCHED if crouching else STANDING)
         if self._mover:
-            for box in movers:
-                (a, b, c), (d, e, f) = box.low, box.high
+            for (a, b, c), (d, e, f) in movers:
                 if c < top and f > bottom:
                     self._stamp(found, a - west, b - south, d - west, e - south, self._mover)
         if self._enemy:

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.runtime.stealth.enemies.test_grid import distance_to_boxes
-from tests.runtime.stealth.enemy_levels import GUARD, box, level, low, places, solids, wall
+from tests.runtime.stealth.enemy_levels import GUARD, bounds, box, level, low, places, solids, wall
 from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, Enemies, PlayerView
 from tltl_runtime.stealth.enemies.grid import RADIUS
 from tltl_runtime.stealth.level import Barrier, Box, Enemy, Level, Solid
@@ -108,9 +108,9 @@ def test_shut_doors_stop_sight_and_lasers_do_not() -> None:
 
 def test_movers_stop_sight() -> None:
     enemies = begin(level(routes=STILL))
-    enemies.step(DT, standing(6.0, 4.0), [box(5.0, 3.0, 5.2, 5.0)])
+    enemies.step(DT, standing(6.0, 4.0), [bounds(5.0, 3.0, 5.2, 5.0)])
     assert enemies.sees == (False,)
-    enemies.step(DT, standing(6.0, 4.0), [box(5.0, 5.0, 5.2, 6.0)])
+    enemies.step(DT, standing(6.0, 4.0), [bounds(5.0, 5.0, 5.2, 6.0)])
     assert enemies.sees == (True,)
 
 

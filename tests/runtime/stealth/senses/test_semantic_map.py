@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.runtime.stealth.enemy_levels import box, level, low, solids, wall
+from tests.runtime.stealth.enemy_levels import bounds, box, level, low, solids, wall
 from tltl_runtime.stealth.level import Barrier, MapSensor, Point, Solid, Switch
 from tltl_runtime.stealth.levels.parts import CELL_TYPES
 from tltl_runtime.stealth.senses.semantic_map import SemanticMap
@@ -34,7 +34,7 @@ def test_a_map_tells_types_where_they_are_north_up() -> None:
         map_sensor=SENSOR,
     )
     around = SemanticMap(game)
-    found = around.look((5.2, 4.2, 0.0), movers=[box(7.0, 3.0, 7.5, 3.5)], enemies=[(5.25, 2.75, 0.0)])
+    found = around.look((5.2, 4.2, 0.0), movers=[bounds(7.0, 3.0, 7.5, 3.5)], enemies=[(5.25, 2.75, 0.0)])
     assert found.shape == (11, 11)
     assert found.dtype == np.uint8
     expected = {
@@ -120,7 +120,7 @@ def test_a_map_is_what_meets_each_cell(
 ) -> None:
     sensor = MapSensor(("floor", "wall", "mover"), cell, 5)
     game = level(*things)
-    movers = [box(x, y, x + size, y + size) for x, y, size in moving]
+    movers = [bounds(x, y, x + size, y + size) for x, y, size in moving]
     found = SemanticMap(game, sensor).look(position, crouching, movers)
     x, y = (min(max(position[i], 0.0), game.bounds.high[i] - 1e-9) for i in range(2))
     feet = min(max(floor(position[2] * 4 + 0.5), -4), 15) / 4
@@ -140,9 +140,9 @@ def test_a_map_is_what_meets_each_cell(
                     at_height = solid.box.high[2] > feet - 0.1 and solid.box.low[2] < feet + height
                     if at_height and covers(solid.box.low, solid.box.high, slack):
                         expected = max(expected, 1 if solid.kind == "floor" else 2)
-                for mover in movers:
-                    at_height = mover.low[2] < position[2] + height and mover.high[2] > position[2] - 0.1
-                    if at_height and covers(mover.low, mover.high, slack):
+                for low, high in movers:
+                    at_height = low[2] < position[2] + height and high[2] > position[2] - 0.1
+                    if at_height and covers(low, high, slack):
                         expected = 3
                 if slack > 0:
                     assert number >= expected
