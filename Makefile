@@ -21,6 +21,7 @@ demo: $(VENV)/.installed-game
 	else \
 		echo "The game is not played: its physics, pybullet, needs Python 3.10 or 3.11 (make demo PYTHON=python3.11)."; \
 	fi
+	@echo "The command is $(BIN)/tltlc; after 'source $(BIN)/activate' it is tltlc."
 
 test: lint
 	$(BIN)/python -m pytest -q -rs -n 2

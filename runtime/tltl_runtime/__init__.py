@@ -1,7 +1,7 @@
 """The runtime of .tltl specifications: a stealth game, environments that reward by a spec, and many automata at once.
 
 Importing this package registers the environments ``tltl/Navigation-v0``, ``tltl/CoverAndHide-v0`` and
-``tltl/Branching-v0`` and loads neither torch nor pybullet.  It needs the extra ``rl``.
+``tltl/Branching-v0`` and loads neither torch nor pybullet.  It needs the extra ``game``, ``batch`` the extra ``rl``.
 """
 
 from __future__ import annotations
