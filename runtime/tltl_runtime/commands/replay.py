@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
+from tltl_runtime.commands.notation import notation_option
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.cli import exits
 from tltlc.cli.report import Report
@@ -19,6 +20,7 @@ from tltlc.record import record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
+    from tltl_runtime.stealth.episodes.summary import Notation
     from tltl_runtime.stealth.pictures.film import View
 
 T = TypeVar("T")
@@ -26,6 +28,16 @@ T = TypeVar("T")
 _VIEWS: Final = ("third_person", "top_down", "overview", "plan")
 _FILMS: Final = (".gif", ".mp4")
 _ENDINGS: Final = (".png", *_FILMS, ".csv")
+_ONLY_FOR: Final = {
+    "view": _FILMS,
+    "speed": _FILMS,
+    "rate": _FILMS,
+    "size": (".png", *_FILMS),
+    "start": (*_FILMS, ".csv"),
+    "stop": (*_FILMS, ".csv"),
+}
+"""The endings of what each option is for."""
+
 _SIZES: Final = (160, 4096)
 """The least and the greatest width and height, in pixels."""
 
@@ -42,6 +54,7 @@ class Film:
     speed: float
     rate: float | None
     size: tuple[int, int] | None
+    notation: Notation
 
 
 def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int, int] | None:
@@ -85,9 +98,7 @@ Examples:
     "--speed",
     type=click.FloatRange(0.05, 100.0),
     callback=_finite,
-    default=1.0,
-    show_default=True,
-    help="Of a film: 2 is twice as fast as the game.",
+    help="Of a film (default: 1): 2 is twice as fast as the game.",
 )
 @click.option(
     "--fps",
@@ -113,6 +124,7 @@ Examples:
     callback=_finite,
     help="End a film or the signals here.",
 )
+@notation_option
 @click.option("--check", "checked", is_flag=True, help="Judge the episode again, and play it again.")
 @click.option(
     "--format",
@@ -121,15 +133,18 @@ Examples:
     show_default=True,
     help="Of the summary, and of messages.",
 )
+@click.pass_context
 def command(
+    context: click.Context,
     files: tuple[str, ...],
     path: Path | None,
     view: View | None,
-    speed: float,
+    speed: float | None,
     rate: float | None,
     size: tuple[int, int] | None,
     start: float | None,
     stop: float | None,
+    notation: Notation,
     checked: bool,
     format: str,  # noqa: A002
 ) -> int:
@@ -138,12 +153,12 @@ def command(
     --check says whether the atoms, states and rewards of the recording follow from its signals by the spec, and
     whether the level, played again from the seed with the same actions, gives the same episode.
     """
-    _check_usage(files, path, view, size)
+    _check_usage(context, files, path, size)
     from tltl_runtime.stealth.episodes.check import check, check_replay
     from tltl_runtime.stealth.episodes.file import read_episode
-    from tltl_runtime.stealth.episodes.summary import summary, summary_text
+    from tltl_runtime.stealth.episodes.summary import judged_with, summary, summary_text
 
-    film = Film(view or "third_person", speed, rate, size)
+    film = Film(view or "third_person", speed or 1.0, rate, size, notation)
     summaries: list[dict[str, Any]] = []
     with Report(format, results=True) as report:
         for name in files:
@@ -152,7 +167,7 @@ def command(
             except TltlError as error:
                 report.add(error.diagnostics)
                 continue
-            said = {"file": name, **summary(episode)}
+            said = {"file": name, **summary(episode, notation)}
             if checked:
                 judged, played = check(episode), check_replay(episode)
                 report.add((*judged, *played))
@@ -160,6 +175,8 @@ def command(
             if path is not None:
                 _write(path, episode, _span(episode, start, stop), film)
                 report.say(f"wrote {path}")
+                if path.suffix.lower() == ".csv":
+                    report.say(f"judge it with: {judged_with(episode, str(path))}")
             elif format == "text":
                 print(f"{name}\n{summary_text(said)}{_checked_text(said)}")
             summaries.append(said)
@@ -168,18 +185,26 @@ def command(
     return report.status
 
 
-def _check_usage(files: tuple[str, ...], path: Path | None, view: str | None, size: tuple[int, int] | None) -> None:
-    if path is None:
-        return
-    ending = path.suffix.lower()
-    if ending not in _ENDINGS:
+def _check_usage(
+    context: click.Context, files: tuple[str, ...], path: Path | None, size: tuple[int, int] | None
+) -> None:
+    """Refuse what would be ignored."""
+    ending = None if path is None else path.suffix.lower()
+    if ending is not None and ending not in _ENDINGS:
         raise click.UsageError(f"the ending of `{path}` says no kind of output: use one of {', '.join(_ENDINGS)}")
-    if len(files) > 1:
+    for option in context.command.params:
+        kinds = _ONLY_FOR.get(option.name or "", ())
+        if kinds and context.params[option.name or ""] is not None and ending not in kinds:
+            raise click.UsageError(f"{option.opts[0]} is for what -o writes to a {_listed(kinds)}")
+    if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one FILE")
-    if view and ending not in _FILMS:
-        raise click.UsageError(f"--view is for films: {', '.join(_FILMS)}")
     if ending == ".mp4" and size and (size[0] % 2 or size[1] % 2):
         raise click.UsageError("the width and the height of an .mp4 are even numbers")
+
+
+def _listed(names: Sequence[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} or {last}"
 
 
 def _checked_text(said: dict[str, Any]) -> str:
@@ -211,7 +236,7 @@ def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film) 
     elif ending == ".png":
         from tltl_runtime.stealth.pictures.plan import draw_episode
 
-        write_file(path, draw_episode(episode, film.size))
+        write_file(path, draw_episode(episode, film.size, film.notation))
     else:
         _write_film(path, episode, span, film)
 
@@ -225,7 +250,7 @@ def _write_film(path: Path, episode: Episode, span: tuple[float, float], film: F
     start, stop = span
     count = int((stop - start) / film.speed * rate + 1e-6) + 1
     times = [start + number * film.speed / rate for number in range(count)]
-    pictures = _counted(frames(episode, times, film.view, film.size or _FILM_SIZE), count)
+    pictures = _counted(frames(episode, times, film.view, film.size or _FILM_SIZE, film.notation), count)
     write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
     try:
         with replaced(path) as temporary:

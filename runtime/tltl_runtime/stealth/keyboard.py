@@ -7,13 +7,14 @@ from time import monotonic
 from typing import Any, Final
 
 from tltl_runtime.stealth.env import GameEnv
+from tltl_runtime.stealth.episodes.cause import cause
 from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.game import Snapshot
 from tltl_runtime.stealth.pictures.camera import VIEWS, View
-from tltl_runtime.stealth.pictures.hud import Hud, beginning, ending, how_it_ended, hud
+from tltl_runtime.stealth.pictures.hud import Hud, beginning, ending, hud
 from tltl_runtime.stealth.pictures.interpolation import between
 from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.window.window import Keys, Window
 from tltl_runtime.stealth.world.player import DECISION
 
@@ -84,10 +85,8 @@ class KeyboardPlayer:
     def _end(self, snapshot: Snapshot, info: dict[str, Any]) -> Keys:
         """The end screen, until the player stops or plays again."""
         episode = self._env.episode
-        states = int(episode.states[-2]), int(episode.states[-1])
-        said = how_it_ended(episode.fspa, episode.end, snapshot.time, states)
         file = self._saved() or ""
-        return self._still(snapshot, ending(hud(snapshot, info, episode.fspa), said, episode.success, file))
+        return self._still(snapshot, ending(hud(snapshot, info, episode.fspa), cause(episode), file))
 
     def _still(self, snapshot: Snapshot, shown: Hud, begins: bool = False) -> Keys:
         """Stand still until the player stops or begins again; where it ``begins``, until any key is held."""

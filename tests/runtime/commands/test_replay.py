@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
+import shlex
 import subprocess
 import sys
 from io import BytesIO, StringIO
 from itertools import count
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -16,11 +18,14 @@ from PIL import Image
 
 import tltl_runtime.stealth.pictures.film as film
 from tests.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
+from tltl_runtime.commands.notation import NOTATIONS
 from tltl_runtime.commands.replay import _VIEWS
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import write_episode
+from tltl_runtime.stealth.episodes.summary import Notation, judged_with
 from tltl_runtime.stealth.pictures.film import STRIP, frames
+from tltl_runtime.stealth.pictures.film_file import write_gif
 from tltl_runtime.stealth.pictures.plan import draw_episode, state_colour
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltlc.monitor import Monitor
@@ -60,7 +65,9 @@ def test_a_summary(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-de
     assert lines[2].startswith("  player   hand, seed ")
     assert lines[3] == "  end      stopped, pending, after 20 of 600 steps, 3.00 s"
     changes = lines[lines.index("    time  state  progress  what remains") + 1 :]
-    assert changes[0].startswith("    0.00      0     0.000  ◇(near(s1) ∧ ")
+    assert changes[0].startswith("    0.00      0     0.000  Reach near(s1), then ")
+    assert lines[4].startswith("  why      stopped after 3.00 s, remaining: Reach near(s2), then ")
+    assert "◇(near(s1) ∧ " in tltlc("replay", FILE, "--notation", "unicode").out
     assert changes[1].split()[1:3] == ["1", "0.250"] and len(changes) == 2 + 1  # and a blank line
 
 
@@ -72,6 +79,7 @@ def test_a_summary_for_programs(tltlc, recorded: Path, episode: Episode) -> None
     assert first["follows_from_spec"] and first["plays_again"]
     assert first["reward"] == pytest.approx(episode.rewards.sum())
     assert [each["state"] for each in first["changes"]] == [0, 1]
+    assert first["cause"]["kind"] == "stopped" and first["cause"]["by"] == []
 
 
 def test_a_check_that_fails(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
@@ -92,6 +100,10 @@ def test_a_file_that_is_broken_hides_no_other(tltlc, recorded: Path) -> None:  #
 
 def test_the_views_are_those_that_there_are() -> None:
     assert _VIEWS == film.FILM_VIEWS
+
+
+def test_the_notations_are_those_that_there_are() -> None:
+    assert get_args(Notation) == NOTATIONS
 
 
 def test_messages_for_programs_are_json(recorded: Path) -> None:
@@ -131,6 +143,18 @@ def test_a_gif(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] #
         assert gif.n_frames == 4  # at 1, 1.15, 1.3 and 1.45 s
 
 
+@pytest.mark.parametrize("view", film.FILM_VIEWS)
+def test_a_gif_has_the_colours_of_its_frames(tmp_path: Path, episode: Episode, view: film.View) -> None:
+    """Those that come late and are few, too: the switch turns green, and the strip shows the second state."""
+    pictures = list(frames(episode, [0.0, 1.5, 3.0], view, (320, 240)))
+    write_gif(tmp_path / "run.gif", pictures, 0.15)
+    with Image.open(tmp_path / "run.gif") as gif:
+        for number, picture in enumerate(pictures):
+            gif.seek(number)
+            away = np.abs(np.asarray(gif.convert("RGB"), int) - picture).max(axis=2)
+            assert np.percentile(away, 99.9) <= 20
+
+
 def test_an_mp4(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     from imageio_ffmpeg import count_frames_and_secs, read_frames
 
@@ -164,7 +188,8 @@ def test_between_decisions_bodies_are_on_their_ways(episode: Episode) -> None:
 
 
 def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    assert tltlc("replay", FILE, "-o", "run.csv").status == 0
+    written: Outcome = tltlc("replay", FILE, "-o", "run.csv")
+    assert (written.status, written.err.splitlines()[1]) == (0, f"judge it with: {judged_with(episode, 'run.csv')}")
     lines = Path("run.csv").read_bytes().splitlines(keepends=True)
     monitor = Monitor(episode.fspa, episode.params)
     for row, sample in enumerate(read_trace(lines, "run.csv", episode.fspa.signals), start=1):
@@ -172,10 +197,12 @@ def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Epis
         assert (step.state, step.progress) == (episode.states[row], episode.progress[row])
         assert step.reward == episode.rewards[row - 1]
     assert row == STEPS
-    size = f"level_size={episode.params['level_size']!r} m"
-    judged: Outcome = tltlc("monitor", ROOT / "examples/branching.tltl:branching", "run.csv", "--param", size)
+    program, *words = shlex.split(judged_with(episode, "run.csv"))
+    assert program == "tltlc" and words[1] == "SPEC.tltl:branching"
+    judged: Outcome = tltlc(words[0], ROOT / "examples/branching.tltl:branching", *words[2:])
     rows = [each for each in csv.DictReader(StringIO(judged.out)) if each["step"].isdecimal()]
     assert [int(each["state"]) for each in rows] == episode.states[1:].tolist()
+    assert float(rows[-1]["progress"]) == pytest.approx(episode.progress[-1], abs=1e-6)
     assert tltlc("replay", FILE, "-o", "part.csv", "--from", "2.9").status == 0
     assert len(Path("part.csv").read_text().splitlines()) == 2
 
@@ -185,7 +212,11 @@ def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Epis
     [
         (("-o", "run.avi"), "the ending of `run.avi` says no kind of output: use one of .png, .gif, .mp4, .csv"),
         (("-o", "run.gif", FILE), "-o takes one FILE"),
-        (("-o", "run.png", "--view", "plan"), "--view is for films"),
+        (("-o", "run.png", "--view", "plan"), "--view is for what -o writes to a .gif or .mp4"),
+        (("-o", "run.png", "--from", "1"), "--from is for what -o writes to a .gif, .mp4 or .csv"),
+        (("-o", "run.png", "--speed", "3"), "--speed is for what -o writes to a .gif or .mp4"),
+        (("-o", "run.csv", "--size", "500x400"), "--size is for what -o writes to a .png, .gif or .mp4"),
+        (("--speed", "2"), "--speed is for what -o writes"),
         (("-o", "run.mp4", "--size", "321x240"), "the width and the height of an .mp4 are even"),
         (("--size", "9x9"), "write WIDTHxHEIGHT, each from 160 to 4096"),
         (("--size", "big"), "write WIDTHxHEIGHT"),

@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 import csv
+import shlex
 from io import StringIO
 from math import inf
-from typing import Any, Final
+from typing import Any, Final, Literal
 
+from tltl_runtime.stealth.episodes.cause import cause
 from tltl_runtime.stealth.episodes.episode import Episode
+from tltlc.resolve.spec import ValueType
 
+Notation = Literal["english", "unicode", "ascii"]
+"""Of formulas, where people read them."""
+
+_UNITS: Final[dict[ValueType, str]] = {"length": " m", "time": " s", "speed": " m/s", "angle": " rad"}
 _INSTANT: Final = 1e-6
 """Seconds that count as none."""
 
 
-def summary(episode: Episode) -> dict[str, Any]:
-    """How an episode went, as JSON can say it; ``changes`` has a row for the start and for each change of state."""
-    level, fspa, count = episode.level, episode.fspa, len(episode.actions)
+def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
+    """How an episode went, as JSON can say it; ``changes`` has a row for the start and for each change of state.
+
+    ``notation`` is that of what remains to be satisfied in each state.
+    """
+    level, fspa, count, why = episode.level, episode.fspa, len(episode.actions), cause(episode)
     states = episode.states.tolist()
     rows = [row for row in range(count + 1) if row == 0 or states[row] != states[row - 1]]
     return {
@@ -29,6 +39,7 @@ def summary(episode: Episode) -> dict[str, Any]:
         "limit_steps": fspa.limit_steps,
         "end": episode.end,
         "success": episode.success,
+        "cause": {"kind": why.kind, "by": why.by, "time": why.time, "place": why.place, "text": why.text},
         "verdict": episode.verdict,
         "progress": float(episode.progress[-1]),
         "reward": float(episode.rewards.sum()),
@@ -42,7 +53,7 @@ def summary(episode: Episode) -> dict[str, Any]:
                 "time": episode.snapshots[row].time,
                 "state": states[row],
                 "progress": float(episode.progress[row]),
-                "label": fspa.states[states[row]].label.unicode,
+                "label": getattr(fspa.states[states[row]].label, notation),
             }
             for row in rows
         ],
@@ -56,6 +67,7 @@ def summary_text(said: dict[str, Any]) -> str:
         f"  level    {said['level']} {said['variant']}, spec {said['spec']}",
         f"  player   {said['player']}, seed {said['seed']}",
         f"  end      {said['end']}, {said['verdict']}, after {said['steps']}{limit} steps, {said['seconds']:.2f} s",
+        *([] if said["success"] else [f"  why      {said['cause']['text']}"]),
         f"  reward   {said['reward']:.3f}, progress {said['progress']:.3f}",
         f"  health   {said['health']:.2f}, in sight of an enemy for {said['seen_steps']} steps",
         "",
@@ -65,6 +77,15 @@ def summary_text(said: dict[str, Any]) -> str:
         f"{each['time']:8.2f}  {each['state']:5}  {each['progress']:8.3f}  {each['label']}" for each in said["changes"]
     ]
     return "\n".join(lines) + "\n"
+
+
+def judged_with(episode: Episode, trace: str) -> str:
+    """The command that judges the signals of an episode, in the file ``trace``, with the params that it had."""
+    words = ["tltlc", "monitor", f"SPEC.tltl:{episode.fspa.name}", trace]
+    for param in episode.fspa.params:
+        if param.name in episode.params:
+            words += ["--param", f"{param.name}={episode.params[param.name]!r}{_UNITS.get(param.type, '')}"]
+    return shlex.join(words)
 
 
 def trace_csv(episode: Episode, start: float = 0.0, stop: float = inf) -> str:

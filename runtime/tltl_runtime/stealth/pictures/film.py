@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.episodes.summary import Notation
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.pictures.camera import VIEWS
 from tltl_runtime.stealth.pictures.camera import View as Rendered
@@ -29,7 +30,7 @@ Picture = NDArray[np.uint8]
 Moment = tuple[int, Snapshot]
 Pixel = Callable[[Point], tuple[float, float]]
 
-STRIP: Final = 44
+STRIP: Final = 60
 """Height of the strip below the view, in pixels."""
 
 _INSTANT: Final = 1e-6
@@ -37,7 +38,11 @@ _INSTANT: Final = 1e-6
 
 _TEXT: Final = 12
 _BAR: Final = 90
-"""Width of a bar, in pixels."""
+"""Greatest width of a bar, in pixels."""
+_BARS_FROM: Final = 80
+_GAP: Final = 6
+_LINES: Final = (25, 41)
+"""Where in the strip the lines stand that say what remains."""
 
 _PAPER: Final = "#0f172a"
 _PALE: Final = "#e2e8f0"
@@ -48,7 +53,9 @@ _MODES: Final = {"patrol": "#7f1d1d", "chase": "#ff0000", "search": "#f97316", "
 _FONT: Final = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
 
 
-def frames(episode: Episode, times: Sequence[float], view: View, size: tuple[int, int]) -> Iterator[Picture]:
+def frames(
+    episode: Episode, times: Sequence[float], view: View, size: tuple[int, int], notation: Notation = "english"
+) -> Iterator[Picture]:
     """One picture for each of ``times``, in seconds from the reset and rising, ``size`` pixels wide and high, RGB.
 
     Between two decisions bodies are on their ways, and the automaton is where the earlier one left it.
@@ -59,7 +66,7 @@ def frames(episode: Episode, times: Sequence[float], view: View, size: tuple[int
     inner = (width, height - STRIP)
     pictures = _plans(episode, moments, inner) if view == "plan" else _rendered(episode, moments, view, inner)
     for moment, picture in zip(moments, pictures, strict=True):
-        yield _framed(picture, episode, moment, font)
+        yield _framed(picture, episode, moment, font, notation)
 
 
 def _moment(episode: Episode, time: float) -> Moment:
@@ -132,7 +139,9 @@ def _figure(draw: ImageDraw.ImageDraw, at: tuple[float, float], yaw: float, radi
 # --- the strip --------------------------------------------------------------------------------------
 
 
-def _framed(view: Picture, episode: Episode, moment: Moment, font: ImageFont.FreeTypeFont) -> Picture:
+def _framed(
+    view: Picture, episode: Episode, moment: Moment, font: ImageFont.FreeTypeFont, notation: Notation
+) -> Picture:
     """The view with the strip below it: time, bars of progress and health, and what remains to be satisfied."""
     height, width, _ = view.shape
     picture = Image.new("RGB", (width, height + STRIP), _PAPER)
@@ -140,28 +149,37 @@ def _framed(view: Picture, episode: Episode, moment: Moment, font: ImageFont.Fre
     draw = ImageDraw.Draw(picture)
     row, shot = moment
     state = episode.fspa.states[int(episode.states[row])]
-    top, bottom = height + 5, height + 25
+    top = height + 5
     draw.text((8, top), f"{shot.time:6.2f} s", _PALE, font)
     bars = (("progress", float(episode.progress[row]), _GREEN), ("health", episode.snapshots[row].health, _RED))
-    x = 80
+    words = sum(int(font.getlength(text)) + 3 * _GAP for text in ("progress", "health", episode.end))
+    bar = max(2 * _GAP, min(_BAR, (width - _BARS_FROM - words) // 2))
+    x = _BARS_FROM
     for name, share, colour in bars:
         draw.text((x, top), name, _PALE, font)
-        x += int(font.getlength(name)) + 6
-        draw.rectangle((x, top + 3, x + _BAR, top + 12), fill=_EMPTY)
+        x += int(font.getlength(name)) + _GAP
+        draw.rectangle((x, top + 3, x + bar, top + 12), fill=_EMPTY)
         if share > 0.0:
-            draw.rectangle((x, top + 3, x + round(_BAR * share), top + 12), fill=colour)
-        x += _BAR + 16
+            draw.rectangle((x, top + 3, x + round(bar * share), top + 12), fill=colour)
+        x += bar + 2 * _GAP
     if row == len(episode.actions):
         draw.text((x, top), episode.end, _PALE, font)
-    draw.rectangle((8, bottom + 2, 16, bottom + 12), fill=state_colour(state.id))
-    draw.text((22, bottom), _fitting(state.label.unicode, width - 30, font), _PALE, font)
+    draw.rectangle((8, height + _LINES[0] + 2, 16, height + _LINES[0] + 12), fill=state_colour(state.id))
+    lines = _fitting(getattr(state.label, notation), width - 30, font)
+    for line, y in zip(lines, _LINES, strict=False):
+        draw.text((22, height + y), line, _PALE, font)
     return np.asarray(picture)
 
 
-def _fitting(text: str, width: int, font: ImageFont.FreeTypeFont) -> str:
-    """As much of the text as there is room for."""
-    if font.getlength(text) <= width:
-        return text
-    while text and font.getlength(text + "…") > width:
-        text = text[:-1]
-    return text + "…"
+def _fitting(text: str, width: int, font: ImageFont.FreeTypeFont) -> list[str]:
+    """As much of the text as there is room for in the lines of the strip."""
+    lines: list[str] = []
+    while text and len(lines) < len(_LINES):
+        line = text
+        while font.getlength(line) > width:
+            line = line.rpartition(" ")[0] if " " in line else line[:-1]
+        text = text[len(line) :].lstrip()
+        lines.append(line)
+    if text:
+        lines[-1] = lines[-1][:-1] + "…"
+    return lines

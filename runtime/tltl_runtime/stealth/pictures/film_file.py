@@ -18,16 +18,19 @@ class NoEncoderError(RuntimeError):
 
 
 def write_gif(path: Path, frames: Iterable[Picture], seconds: float) -> None:
-    """A GIF that shows each frame for ``seconds`` (counted in hundredths) and begins anew at its end."""
-    pictures = map(Image.fromarray, frames)
-    first = next(pictures).quantize(method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    # One palette for all, from the first: less flicker, and a tenth of the size.
-    rest = (picture.quantize(palette=first, dither=Image.Dither.NONE) for picture in pictures)
-    first.save(
+    """A GIF that shows each frame for ``seconds`` (counted in hundredths) and begins anew at its end.
+
+    Each frame has a palette of its own, so that what appears late has its colours, too.  By octrees: the other methods
+    lose colours of few pixels, such as those of a switch.
+    """
+    pictures = (
+        Image.fromarray(frame).quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE) for frame in frames
+    )
+    next(pictures).save(
         path,
         "GIF",
         save_all=True,
-        append_images=rest,
+        append_images=pictures,
         duration=max(20, round(100 * seconds) * 10),
         loop=0,
         optimize=False,

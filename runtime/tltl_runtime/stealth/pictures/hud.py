@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from textwrap import wrap
 from typing import Any, Final, Literal
 
-from tltl_runtime.stealth.game import Snapshot
+from tltl_runtime.stealth.episodes.cause import Cause, Kind
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.snapshot import Snapshot
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record
 
@@ -16,6 +17,14 @@ Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
 
 KEYS: Final = ("WASD or arrows: walk   shift: sprint   C: crouch   space: jump", "V: view   R: again   Esc: stop")
 
+_TITLES: Final[dict[Kind, str]] = {
+    "success": "success",
+    "killed": "you died",
+    "violated": "the spec is violated",
+    "limit": "time is up",
+    "no way": "time is up",
+    "stopped": "stopped",
+}
 _WIDTH: Final = 36
 _LONG: Final = 72
 _MOST_LINES: Final = 10
@@ -74,18 +83,12 @@ def beginning(shown: Hud, level: Level, fspa: Fspa) -> Hud:
     )
 
 
-def ending(shown: Hud, said: str, success: bool, file: str) -> Hud:
-    """The screen after the last step: ``said`` is how it ended, ``file`` where it was recorded."""
-    return _with_title(shown, said, "good" if success else "bad", (f"recorded: {file}", "R: again   Esc: close"))
-
-
-def how_it_ended(fspa: Fspa, end: str, seconds: float, states: tuple[int, int]) -> str:
-    """``success after 43.2 s``, ``violated after 3.0 s: !alive``; ``states``: before and after the last step."""
-    if end == "violation":
-        guards = [edge.guard.text for edge in fspa.edges if (edge.source, edge.target) == states]
-        return f"violated after {seconds:.1f} s: {guards[0]}" if guards else f"violated after {seconds:.1f} s"
-    words = {"success": "success", "limit": "time is up", "stopped": "stopped"}
-    return f"{words[end]} after {seconds:.1f} s"
+def ending(shown: Hud, why: Cause, file: str) -> Hud:
+    """The screen after the last step: how it ended, and ``file``, where it was recorded."""
+    tone: Tone = "good" if why.kind == "success" else "bad"
+    return _with_title(
+        shown, _TITLES[why.kind], tone, (*wrap(why.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
+    )
 
 
 def _seen(snapshot: Snapshot) -> Line:

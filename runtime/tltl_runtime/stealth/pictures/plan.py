@@ -12,17 +12,23 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, Rectangle
+from matplotlib.patches import Circle, Patch, Rectangle
 from numpy.typing import NDArray
 
+from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.episodes.episode import End, Episode
-from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.episodes.summary import Notation
+from tltl_runtime.stealth.level import Box, Enemy, Level, Point
 from tltl_runtime.stealth.supply.reach import Reach
 
 _SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
 BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
+_SOLID_NAMES: Final = {"floor": "floor", "platform": "platform", "low": "low obstacle", "wall": "wall"}
+_BARRIER_NAMES: Final = {"solid": "gate", "laser": "laser"}
 _STATES: Final = ("#2563eb", "#9333ea", "#0d9488", "#ca8a04", "#db2777", "#65a30d", "#0284c7", "#ea580c")
 _INK: Final = "#0f172a"
+_SWITCH, _EXIT, _MOVER, _ROUTE = "#facc15", "#16a34a", "#7c3aed", "#dc2626"
+_UNREACHED: Final = (0.86, 0.0, 0.0, 0.3)
 _ENDS: Final[dict[End, tuple[str, str]]] = {
     "success": ("D", "#16a34a"),
     "violation": ("X", "#dc2626"),
@@ -39,6 +45,9 @@ _LONGEST_SIDE: Final = 40.0
 _LINE: Final = 0.22
 """Height of a line of the legend, in inches."""
 
+_ROOMY: Final = 6.0
+"""Inches to a side from which letters have their full size."""
+
 _MOST_LISTED: Final = 12
 """Of the states of an episode, as many are in the legend."""
 
@@ -54,15 +63,18 @@ def draw(level: Level, path: Sequence[Point] = (), states: Sequence[int] = (), *
     """
     if states and len(states) != len(path):
         raise ValueError(f"{len(path)} points need as many states, not {len(states)}")
-    figure = Figure(figsize=_natural_size(level), dpi=_DPI, layout="constrained")
+    width, height = _natural_size(level)
+    figure = Figure(figsize=(width, height + 4 * _LINE), dpi=_DPI, layout="constrained")
     axes = _level_axes(figure, level)
     _add_way(axes, path, states or [0] * len(path))
     if reach is not None:
         _add_reach(axes, reach)
+    handles = _key(level, reach is not None)
+    figure.legend(handles=handles, loc="outside lower left", ncols=4, fontsize=8 * _shrunk(figure), frameon=False)
     return _png(figure)
 
 
-def draw_episode(episode: Episode, size: tuple[int, int] | None = None) -> bytes:
+def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
     """The plan of an episode as a PNG, ``size`` pixels wide and high: its way, where the state changed, how it ended.
 
     The legend says what remained to be satisfied in each state.
@@ -75,9 +87,11 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None) -> bytes
     inches = (size[0] / _DPI, size[1] / _DPI) if size else (width, height + below)
     figure = Figure(figsize=inches, dpi=_DPI, layout="constrained")
     axes = _level_axes(figure, episode.level, start=False)
-    axes.set_title(
-        f"{episode.level.name} {episode.level.variant}, {episode.player}, seed {episode.seed}: {episode.end}"
-    )
+    shrunk = _shrunk(figure)
+    title = f"{episode.level.name} {episode.level.variant}, {episode.player}, seed {episode.seed}: {episode.end}"
+    # A letter is about 0.65 of its height wide.
+    axes.set_title("")
+    figure.suptitle(title, fontsize=min(12.0, inches[0] * 72 / (0.65 * len(title))))
     _add_way(axes, path, states)
     marks = [_mark(axes, path[0], "o", "white", "start")]
     for row in (row for row in range(1, len(states)) if states[row] != states[row - 1]):
@@ -87,12 +101,12 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None) -> bytes
     if died is not None:
         marks.append(_mark(axes, path[died], "P", "#dc2626", "without health"))
     marks.append(_mark(axes, path[-1], *_ENDS[episode.end], f"end: {episode.end}"))
-    letters = int(inches[0] * _LETTERS_PER_INCH)
+    letters = int(inches[0] * _LETTERS_PER_INCH / shrunk)
     lines = [
-        Line2D([], [], color=state_colour(state), linewidth=3, label=_label(episode, state, letters))
+        Line2D([], [], color=state_colour(state), linewidth=3, label=_label(episode, state, letters, notation))
         for state in visited
     ]
-    figure.legend(handles=[*lines, *marks], loc="outside lower left", fontsize=8, frameon=False)
+    figure.legend(handles=[*lines, *marks], loc="outside lower left", fontsize=8 * shrunk, frameon=False)
     return _png(figure)
 
 
@@ -120,10 +134,29 @@ def _add_reach(axes: Any, reach: Reach) -> None:
     """Red over the cells without ground that can be reached."""
     rows, columns = reach.ground.shape
     west, south = reach.origin
-    red = np.zeros((rows, columns, 4))
-    red[..., 0], red[..., 3] = 0.86, np.where(reach.ground, 0.0, 0.3)
+    red = np.where(reach.ground[..., None], 0.0, _UNREACHED)
     extent = (west, west + columns * reach.cell, south, south + rows * reach.cell)
     axes.imshow(red, origin="lower", extent=extent, interpolation="nearest", zorder=2)
+
+
+def _key(level: Level, reach: bool) -> list[Any]:
+    """What the colours of a level's plan mean, those that there are in it."""
+    kinds = {solid.kind for solid in level.solids}
+    handles: list[Any] = [Patch(facecolor=_SOLIDS[kind], label=_SOLID_NAMES[kind]) for kind in _SOLIDS if kind in kinds]
+    barriers = {barrier.kind for barrier in level.barriers}
+    handles += [Patch(facecolor=BARRIERS[kind], label=_BARRIER_NAMES[kind]) for kind in BARRIERS if kind in barriers]
+    if reach:
+        handles.append(Patch(facecolor=_UNREACHED, label="nobody stands there"))
+    handles.append(Line2D([], [], marker="o", linestyle="", color=_INK, label="start"))
+    if level.switches:
+        handles.append(Line2D([], [], marker="o", linestyle="", color=_SWITCH, markersize=10, label="switch"))
+    if level.exits:
+        handles.append(Line2D([], [], marker="*", linestyle="", color=_EXIT, markersize=12, label="exit"))
+    if level.enemies:
+        handles.append(Line2D([], [], linestyle="--", color=_ROUTE, label="route of an enemy"))
+    if level.movers:
+        handles.append(Line2D([], [], linestyle=":", color=_MOVER, label="way of a moving obstacle"))
+    return handles
 
 
 def _natural_size(level: Level) -> tuple[float, float]:
@@ -134,8 +167,16 @@ def _natural_size(level: Level) -> tuple[float, float]:
     return width * shrink, height * shrink + 0.4
 
 
+def _shrunk(figure: Figure) -> float:
+    """How much smaller letters are than in a plan of a natural size, so that a small one has room for them."""
+    return float(min(1.0, max(0.6, min(figure.get_size_inches() / _ROOMY))))
+
+
 def _level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = True) -> Any:
-    """Axes in metres with all that a level has; what moves is drawn where it begins."""
+    """Axes in metres with all that a level has; what moves is drawn where it begins.
+
+    Without room for letters of full size, only switches and exits have their names.
+    """
     (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
     axes: Any = figure.add_subplot(
         xlim=(x0, x1),
@@ -145,28 +186,46 @@ def _level_axes(figure: Figure, level: Level, moving: bool = True, start: bool =
         xlabel="x, m",
         ylabel="y, m",
     )
+    shrunk = _shrunk(figure)
+    roomy = shrunk == 1.0
+    axes.tick_params(labelsize=10 * shrunk)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.label.set_size(10 * shrunk)
     for solid in sorted(level.solids, key=lambda solid: solid.box.high[2]):
         axes.add_patch(_area(solid.box, facecolor=_SOLIDS[solid.kind], edgecolor="#94a3b8", linewidth=0.4))
     for barrier in level.barriers:
         axes.add_patch(_area(barrier.box, facecolor=BARRIERS[barrier.kind], alpha=0.8 if moving else 0.25))
-        _name(axes, barrier.name, _middle(barrier.box))
+        if roomy:
+            _name(axes, barrier.name, _middle(barrier.box))
     for mover in level.movers:
-        axes.plot(*_flat(mover.path), color="#7c3aed", linestyle=":", linewidth=1.5)
-        if moving:
+        axes.plot(*_flat(mover.path), color=_MOVER, linestyle=":", linewidth=1.5)
+        if moving and roomy:
             _name(axes, mover.name, mover.path[0])
     for enemy in level.enemies:
-        axes.plot(*_flat([*enemy.route, enemy.route[0]]), color="#dc2626", linestyle="--", linewidth=1.0)
-        if moving:
+        axes.plot(*_flat(_patrol(level, enemy)), color=_ROUTE, linestyle="--", linewidth=1.0)
+        if moving and roomy:
             _name(axes, enemy.name, enemy.route[0])
     for switch in level.switches:
-        axes.add_patch(Circle(switch.position[:2], switch.radius, facecolor="#facc15", alpha=0.5))
+        axes.add_patch(Circle(switch.position[:2], switch.radius, facecolor=_SWITCH, alpha=0.5))
         _name(axes, switch.name, switch.position)
     for way_out in level.exits:
-        axes.plot(*way_out.position[:2], marker="*", markersize=14, color="#16a34a")
+        axes.plot(*way_out.position[:2], marker="*", markersize=14 * shrunk, color=_EXIT)
         _name(axes, way_out.name, way_out.position)
     if start:
         axes.plot(*level.start.position[:2], marker="o", markersize=7, color=_INK)
     return axes
+
+
+def _patrol(level: Level, enemy: Enemy) -> list[tuple[float, float]]:
+    """The way that an enemy walks round, past what stands on the straight line, while all barriers are shut."""
+    floor = grid_of(level).floor(range(len(level.barriers)))
+    route = [point[:2] for point in (*enemy.route, enemy.route[0])]
+    way = route[:1]
+    for goal in route[1:]:
+        while (here := floor.towards(way[-1], goal)) not in (None, way[-1], goal):
+            way.append(here)
+        way.append(goal)
+    return way
 
 
 def _add_way(axes: Any, path: Sequence[Point], states: Sequence[int]) -> None:
@@ -179,7 +238,7 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str) -> Any:
     (mark,) = axes.plot(
         *place[:2],
         marker=marker,
-        markersize=9,
+        markersize=9 * _shrunk(axes.figure),
         markerfacecolor=colour,
         markeredgecolor=_INK,
         linestyle="",
@@ -189,13 +248,13 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str) -> Any:
     return mark
 
 
-def _label(episode: Episode, state: int, letters: int) -> str:
+def _label(episode: Episode, state: int, letters: int, notation: Notation) -> str:
     """A state in the legend: its number, what remains to be satisfied, and its verdict where that is settled."""
     known = episode.fspa.states[state]
-    text = known.label.unicode
+    text = getattr(known.label, notation)
     if len(text) > letters:
         text = text[: letters - 1] + "…"
-    settled = f" ({known.verdict})" if known.verdict in ("satisfied", "violated") else ""
+    settled = f" ({known.verdict})" if known.verdict in ("satisfied", "violated") and notation != "english" else ""
     # matplotlib reads what stands between dollars as mathematics.
     return f"state {state}: {text}{settled}".replace("$", r"\$")
 
@@ -216,10 +275,11 @@ def _middle(box: Box) -> Point:
     return (x0 + x1) / 2, (y0 + y1) / 2, z0
 
 
-def _flat(points: Iterable[Point]) -> tuple[list[float], list[float]]:
+def _flat(points: Iterable[Sequence[float]]) -> tuple[list[float], list[float]]:
     listed = list(points)
     return [point[0] for point in listed], [point[1] for point in listed]
 
 
 def _name(axes: Any, name: str, place: Point) -> None:
-    axes.annotate(name, place[:2], xytext=(0, 7), textcoords="offset points", ha="center", fontsize=8, color=_INK)
+    size = 8 * _shrunk(axes.figure)
+    axes.annotate(name, place[:2], xytext=(0, 7), textcoords="offset points", ha="center", fontsize=size, color=_INK)

@@ -73,7 +73,7 @@ class Renderer:
         return (picture.clip(0.0, 1.0) * 255 + 0.5).astype(np.uint8)
 
     def names(self, snapshot: Snapshot, view: View = "third_person") -> list[tuple[str, float, float]]:
-        """The names of switches, exits, shut barriers and enemies, and where in the picture each is, in pixels."""
+        """The names of what a level has, open barriers excepted, and where in the picture each is, in pixels."""
         eye = camera(self.level, view, snapshot.player.position, self.width / self.height)
         named = [(each.name, each.position, 0.3) for each in self.level.switches]
         named += [(each.name, each.position, 2.7) for each in self.level.exits]
@@ -82,6 +82,8 @@ class Renderer:
             for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True)
             if not is_open
         ]
+        movers = zip(self.level.movers, snapshot.movers, strict=True)
+        named += [(each.name, at, each.size[2] / 2 + 0.1) for each, at in movers]
         named += [(each.name, at, 2.0) for each, at in zip(self.level.enemies, snapshot.enemies, strict=True)]
         if not named:
             return []

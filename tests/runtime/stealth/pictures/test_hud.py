@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.cause import Cause
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.pictures.hud import beginning, ending, how_it_ended, hud
+from tltl_runtime.stealth.pictures.hud import beginning, ending, hud
 from tltl_runtime.stealth.pictures.interpolation import between
 from tltlc import compile_text
 from tltlc.record import replace
@@ -63,16 +64,10 @@ def test_titles(played: Any) -> None:
     shown = hud(snapshot, info, env.task.fspa)
     first = beginning(shown, env.unwrapped.level, env.task.fspa)
     assert first.title == "cover_and_hide v0" and any("Press the button" in line for line in first.below)
-    last = ending(shown, "success after 3.0 s", True, "a.episode.npz")
-    assert last.tone == "good" and last.below[0] == "recorded: a.episode.npz"
-
-
-def test_how_it_ended(played: Any) -> None:
-    fspa = played[0].task.fspa
-    trap = next(state.id for state in fspa.states if state.verdict == "violated")
-    assert how_it_ended(fspa, "violation", 3.0, (0, trap)) == "violated after 3.0 s: !alive"
-    assert how_it_ended(fspa, "success", 43.21, (0, 1)) == "success after 43.2 s"
-    assert how_it_ended(fspa, "limit", 60.0, (0, 0)) == "time is up after 60.0 s"
+    text = "killed by `guard` at 3.00 s at (1.0, 2.0)"
+    last = ending(shown, Cause("killed", ("guard",), 3.0, (1.0, 2.0, 0.0), text), "a.episode.npz")
+    assert (last.title, last.tone) == ("you died", "bad")
+    assert last.below[:2] == (text, "recorded: a.episode.npz")
 
 
 def test_between_two_decisions() -> None:

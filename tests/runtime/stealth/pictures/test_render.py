@@ -143,7 +143,7 @@ def test_names_are_where_things_are(drawn: tuple[Snapshot, Renderer]) -> None:
     snapshot, renderer = drawn
     level = renderer.level
     shown = {name: (x, y) for name, x, y in renderer.names(snapshot, "top_down")}
-    things = (*level.switches, *level.exits, *level.barriers, *level.enemies)
+    things = (*level.switches, *level.exits, *level.barriers, *level.movers, *level.enemies)
     assert shown.keys() == {thing.name for thing in things}
     # North is up and east is right.
     for axis, sign in ((0, 1), (1, -1)):

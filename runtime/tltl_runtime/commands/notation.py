@@ -1,0 +1,17 @@
+"""The option that says how formulas are written for people."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import click
+
+NOTATIONS: Final = ("english", "unicode", "ascii")
+
+notation_option = click.option(
+    "--notation",
+    type=click.Choice(NOTATIONS),
+    default="english",
+    show_default=True,
+    help="Of what remains to be satisfied.",
+)
