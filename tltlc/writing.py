@@ -16,13 +16,14 @@ _OPTION: Final = "name another place with -o"
 
 
 def write_files(folder: Path, files: Mapping[str, str | bytes], advice: str = _OPTION) -> tuple[Path, ...]:
-    """Write all of the files into the folder, made where it is missing, or none of them; their paths in order.
+    """Write all of the files into the folder, or none of them; their paths in order.  Folders are made where missing.
 
     Every file is first written under a temporary name beside its place, and only when all of them are there are
     they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005, with ``advice`` on where else to write.
     """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        for place in {(folder / name).parent: None for name in files}:
+            place.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         raise _error(folder, error, advice) from None
     return _write({folder / name: content for name, content in files.items()}, advice)

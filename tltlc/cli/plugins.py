@@ -49,6 +49,14 @@ def load(plugin: Plugin, wanted_by: str) -> Any:
         raise exits.missing_component(wanted_by, error.name or package, wanted) from error
 
 
+def of_levels(name: str, wanted_by: str) -> Any:
+    """What knows levels under that name, of the group ``tltlc.levels``; error TLT0730 where it is not installed."""
+    for plugin in find("tltlc.levels"):
+        if plugin.name == name:
+            return load(plugin, wanted_by)
+    raise exits.missing_component(wanted_by, "tltl_runtime", "tltlc[game]")
+
+
 def _in_folder(group: str, folder: str) -> Iterator[Plugin]:
     """The entry points that installed distributions have there: asking importlib.metadata costs 16 ms."""
     try:

@@ -7,11 +7,10 @@ from typing import Any, Final
 import click
 
 from tltlc.cli import plugins
-from tltlc.cli.exits import missing_component
 from tltlc.cli.settings import Settings, source_options
 
 LEVELS: Final = "tltlc.levels"
-"""The group of entry points that know levels: one click command, whose options join those of ``check --level``.
+"""Where a context keeps what checks levels. It is a click command, whose options join those of ``check --level``.
 
 Its callback is given ``levels`` (as on the command line), ``inputs`` (the compiled arguments), ``settings``, the
 ``report``, and the values of its options.
@@ -24,7 +23,7 @@ class Check(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """As click does, with the options of levels where one is named."""
         if not ctx.resilient_parsing and any(text.partition("=")[0] == "--level" for text in args):
-            ctx.meta[LEVELS] = _levels()
+            ctx.meta[LEVELS] = plugins.of_levels("check", "`tltlc check --level`")
         return super().parse_args(ctx, args)
 
     def get_params(self, ctx: click.Context) -> list[click.Parameter]:
@@ -92,11 +91,3 @@ def command(
         if levels and (inputs or not specs):
             context.meta[LEVELS].callback(levels=levels, inputs=inputs, settings=settings, report=report, **options)
     return report.status
-
-
-def _levels() -> click.Command:
-    """What knows levels; error TLT0730 where it is not installed."""
-    for plugin in plugins.find(LEVELS):
-        found: click.Command = plugins.load(plugin, "`tltlc check --level`")
-        return found
-    raise missing_component("`tltlc check --level`", "tltl_runtime", "tltlc[game]")

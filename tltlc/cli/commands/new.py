@@ -9,19 +9,31 @@ from typing import Final
 
 import click
 
+from tltlc.cli import plugins
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 @click.command(
     epilog="""\b
-Example:
+Examples:
   tltlc new my_game
   tltlc test my_game
+  tltlc new my_vault --level vault
+  tltlc play my_vault/vault.toml
 """
 )
 @click.argument("folder", metavar="NAME", type=click.Path(path_type=Path))
-def command(folder: Path) -> int:
-    """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file."""
+@click.option(
+    "--level",
+    metavar="LEVEL",
+    help="Copy a level of the stealth game with its spec, assets and overlays: `vault`, which is small, or one that "
+    "`tltlc list levels` shows.",
+)
+def command(folder: Path, level: str | None) -> int:
+    """Create the folder NAME with a spec that compiles, a test, a recorded trace and a project file.
+
+    With --level, create it with a level to be changed instead.
+    """
     from tltlc.cli.report import Report
     from tltlc.writing import write_files
 
@@ -29,9 +41,13 @@ def command(folder: Path) -> int:
         if not _is_free(folder):
             title = f"`{folder}` is there already, and not empty"
             raise TltlError([Diagnostic("TLT0722", title, help="choose another name, or remove it first")])
-        for path in write_files(folder, _FILES, advice="choose another place, e.g. `tltlc new my_game`"):
+        files, next_ = _FILES, f"test {shlex.quote(str(folder))}"
+        if level is not None:
+            files = plugins.of_levels("new", "`tltlc new --level`")(level)
+            next_ = f"check --level {shlex.quote(str(folder / next(iter(files))))}"
+        for path in write_files(folder, files, advice="choose another place, e.g. `tltlc new my_game`"):
             report.say(f"wrote {path}")
-        report.say(f"Next: tltlc test {shlex.quote(str(folder))}")
+        report.say(f"Next: tltlc {next_}")
     return report.status
 
 

@@ -31,13 +31,13 @@ def level_names() -> tuple[str, ...]:
 
 def variants(name_or_path: str) -> tuple[str, ...]:
     """The variants of a level, in the order of its file; errors as :func:`load_level` has them."""
-    loading = _Loading(_level_path(name_or_path))
+    loading = _Loading(level_path(name_or_path))
     return tuple(loading.variants)
 
 
 def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
     """What the overlays of a variant say that they change, in their order; errors as :func:`load_level` has them."""
-    loading = _Loading(_level_path(name_or_path))
+    loading = _Loading(level_path(name_or_path))
     loading.level(variant)
     return tuple(loading.changes)
 
@@ -53,17 +53,18 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
     TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay changes what is not there; and those of
     :func:`tltlc.files.read_source`.
     """
-    return _Loading(_level_path(name_or_path)).level(variant)
+    return _Loading(level_path(name_or_path)).level(variant)
 
 
 def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
     """A level as :func:`load_level` reads it, and warnings: TLT0809 a mover or an enemy has an odd way."""
-    loading = _Loading(_level_path(name_or_path))
+    loading = _Loading(level_path(name_or_path))
     level = loading.level(variant)
     return level, check_ways(level, loading.places)
 
 
-def _level_path(name_or_path: str) -> Path:
+def level_path(name_or_path: str) -> Path:
+    """The file of a level, whether it is there or not; TLT0800 where no shipped level has that name."""
     if name_or_path.endswith(".toml"):
         return Path(name_or_path)
     if name_or_path in level_names():

@@ -43,7 +43,7 @@ def made_for(table: Table, level: Path) -> str:
 
 def comes_with_the_package(spec: str) -> bool:
     """Whether a file of specs is one that shipped levels are made for."""
-    return Path(spec).absolute().parent in _SPECS
+    return Path(spec).resolve().parent in [folder.resolve() for folder in _SPECS]
 
 
 def shown(path: Path) -> str:

@@ -9,6 +9,7 @@ from typing import Final
 
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.check import entities
+from tltl_runtime.stealth.levels.made_for import comes_with_the_package
 from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.signals import described
 from tltl_runtime.stealth.supply.offer import Offer, offers, params
@@ -38,7 +39,13 @@ def check_supply(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnosti
     if fspa.level is not None and fspa.level != level.name:
         title = f"`{fspa.name}` is made for the level `{fspa.level}`, not for `{level.name}`"
         help_ = f"write `level {level.name}` in the spec, where it is made for that one"
-        found.append(Diagnostic("TLT0813", title, places.level(), help_, "warning"))
+        where = places.level()
+        if where and comes_with_the_package(where[0].source.name):
+            help_ = (
+                f"this spec comes with tltlc: `tltlc new FOLDER --level {fspa.level}` copies it with its level; "
+                f"write `level {level.name}` in the copy, and put that beside `{level.name}.toml`"
+            )
+        found.append(Diagnostic("TLT0813", title, where, help_, "warning"))
     if fspa.clock_s is not None and not isclose(fspa.clock_s, DECISION, rel_tol=1e-9):
         title = f"`{fspa.name}` is sampled every {fspa.clock_s:g} s, and a step of the game takes {DECISION:g} s"
         help_ = f"write `clock {DECISION:g} s` in the specification"

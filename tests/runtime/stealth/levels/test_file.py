@@ -222,8 +222,11 @@ def test_assets_and_overlays_are_all_used() -> None:
 def test_the_reference_describes_a_level_that_loads_and_every_key(folder: Path) -> None:
     text = (LEVELS.parents[2] / "docs" / "levels.md").read_text(encoding="utf-8")
     level, overlay = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    (spec,) = re.findall(r"```tltl\n(.*?)```", text, re.DOTALL)
+    starter = LEVELS.parent / "starter"
+    assert (level, spec) == tuple((starter / name).read_text(encoding="utf-8") for name in ("vault.toml", "vault.tltl"))
     write("vault.toml", level.replace('v1 = ["guard_alert"]', 'v1 = ["guard_alert"]\nv2 = ["changes"]') + CRATES)
-    write("vault.tltl", "signal a: bool\nspec unseen = F a\n")
+    write("vault.tltl", spec)
     write("overlays/changes.toml", overlay)
     assert load_level("vault.toml", "v2").enemies[0].kind.branches == ("check_gaps",)
     assert load_level("vault.toml", "v1").spec.endswith("vault.tltl:unseen")
