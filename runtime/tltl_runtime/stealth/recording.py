@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 import gymnasium
@@ -15,29 +16,33 @@ from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.snapshot import BRANCHES, Snapshot
 from tltl_runtime.wrapper import TltlEnv
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reason
 from tltlc.monitor import Step
 
 
 class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs):
     """Records the episode that is being played; observations, rewards and infos pass through as they are.
 
-    ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one that leave actions as they are.
-    ``player`` is the name that the recording gives whoever plays.  With ``folder``, which is made where it is missing,
-    each episode that comes to its end is written to ``LEVEL-VARIANT-SEED.episode.npz`` there.
+    ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one.  ``player`` is the name that the
+    recording gives whoever plays.  With ``folder``, which is made where it is missing, each episode that comes to its
+    end is written to ``LEVEL-VARIANT-SEED.episode.npz`` there.
 
     Raises:
         TypeError: ``env`` has no spec or is not the game.
+        TltlError: TLT0005, nothing can be written to the folder.
     """
 
     def __init__(
-        self, env: gymnasium.Env[Any, Any], player: str = "expert", *, folder: str | Path | None = None
+        self, env: gymnasium.Env[Any, Any], player: str = "unknown", *, folder: str | Path | None = None
     ) -> None:
         RecordConstructorArgs.__init__(self, player=player, folder=folder)
         gymnasium.Wrapper.__init__(self, env)
-        self._game = _game_env(env).game
+        self._played = _game_env(env)
+        self._game = self._played.game
         self._judge = _judge(env)
         self._player = player
-        self._folder = None if folder is None else Path(folder)
+        self._folder = None if folder is None else _made(Path(folder))
         self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
         self._rows: _Rows | None = None
         self._over = False
@@ -61,17 +66,15 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
 
         Raises:
             RuntimeError: there was no reset before.
-            ValueError: the action is not one whole number in its range for each branch of the game's actions.
         """
         if self._rows is None:
             raise RuntimeError("there is no episode before the first reset")
-        numbers = _numbers(action)
         observation, reward, terminated, truncated, info = self.env.step(action)
         if not self._over:
             taken = self._judge.taken
             assert taken is not None
             atoms = tuple(info["atoms"].values())
-            self._rows.add(numbers, self._game.snapshot(), self._signals(), atoms, taken, info["success"])
+            self._rows.add(self._played.action, self._game.snapshot(), self._signals(), atoms, taken, info["success"])
             self._over = terminated or truncated
             if self._over and self._folder is not None:
                 self._write(self._folder)
@@ -86,7 +89,6 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
 
         episode = self.episode
         name = f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
-        folder.mkdir(parents=True, exist_ok=True)
         path, number = folder / f"{name}{SUFFIX}", 1
         while path.exists():
             number += 1
@@ -172,13 +174,12 @@ def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
     return each
 
 
-def _numbers(action: Any) -> list[int]:
-    numbers = np.asarray(action)
-    found: list[int] = numbers.tolist()
-    if numbers.dtype.kind not in "iu" or numbers.shape != (len(BRANCHES),) or not _in_range(found):
-        raise ValueError(f"an action is a whole number below each of {BRANCHES}, not {action!r:.80}")
-    return found
-
-
-def _in_range(numbers: list[int]) -> bool:
-    return all(0 <= number < branch for number, branch in zip(numbers, BRANCHES, strict=True))
+def _made(folder: Path) -> Path:
+    """The folder, made where it is missing; known to be of use before an hour is played."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=folder):
+            return folder
+    except OSError as error:
+        title = f"cannot write to `{folder}`: {reason(error)}"
+        raise TltlError([Diagnostic("TLT0005", title, help="name another folder")]) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Final
 
 from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, STANDING_HEAD, PlayerView
@@ -11,6 +12,9 @@ from tltlc.record import record
 
 BRANCHES: Final = (3, 3, 2, 2, 2)
 """Of an action: x and y (0 stay, 1 towards greater, 2 towards smaller values), jump, crouch, sprint."""
+
+ACTIONS: Final = frozenset(product(*map(range, BRANCHES)))
+"""All that there are."""
 
 
 @record

@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+import copy
+import gc
+import pickle
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.error import ClosedEnvironmentError
 from gymnasium.utils.env_checker import check_env
 
 import tltl_runtime  # noqa: F401  (registers the environments)
-from tltl_runtime.stealth.env import GameEnv, make_env
+from tltl_runtime import load_task
+from tltl_runtime.stealth.env import GameEnv, make_env, spec_of
 from tltl_runtime.stealth.level import MapSensor, Sensors
+from tltl_runtime.stealth.levels.file import load_level
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
 
 NAMES = ("tltl/Navigation-v0", "tltl/CoverAndHide-v0", "tltl/Branching-v0")
 
@@ -110,3 +119,99 @@ def test_gymnasium_takes_plain_mappings_of_sensors() -> None:
 def test_importing_registers_and_loads_neither_torch_nor_pybullet() -> None:
     code = "import sys, tltl_runtime; print([m for m in ('torch', 'pybullet', 'matplotlib') if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize(
+    "action", [[0] * 4, [0] * 6, [3, 0, 0, 0, 0], [-1, 0, 0, 0, 0], [0, 0, 0, 0, 2], [0.0] * 5, [np.nan] * 5, "jump", 0]
+)
+def test_an_action_that_there_is_not_is_refused(action: Any) -> None:
+    env = make_env("navigation")
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match=r"five whole numbers of MultiDiscrete\(\[3 3 2 2 2\]\): x, y, jump, crouch"):
+        env.step(action)
+    assert env.unwrapped.game.steps == 0  # type: ignore[attr-defined]
+    env.close()
+
+
+def test_a_closed_environment_says_so() -> None:
+    env = make_env("navigation")
+    env.reset(seed=1)
+    env.close()
+    env.close()
+    for call in (lambda: env.step([0] * 5), env.reset):
+        with pytest.raises(ClosedEnvironmentError, match="this environment is closed: make another one"):
+            call()
+
+
+def test_a_running_game_cannot_be_copied() -> None:
+    env = make_env("navigation")
+    env.reset(seed=1)
+    for copied in (copy.deepcopy, pickle.dumps):
+        with pytest.raises(TypeError, match="neither copied nor pickled: make another environment, and reset it"):
+            copied(env)  # type: ignore[operator]
+    env.step([0] * 5)
+    env.close()
+
+
+def test_an_environment_that_nobody_closes_frees_its_physics() -> None:
+    env = make_env("navigation")
+    env.reset(seed=1)
+    freed = env.unwrapped.game.world._disconnect  # type: ignore[attr-defined]
+    assert freed.alive
+    del env
+    gc.collect()
+    assert not freed.alive
+
+
+def test_gymnasium_makes_it_again_from_json() -> None:
+    env = gymnasium.make("tltl/Navigation-v0", variant="v1", params={"level_size": 21.0})
+    assert env.spec is not None
+    again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
+    assert again.spec == env.spec
+    for each in (env, again):
+        assert each.get_wrapper_attr("level").variant == "v1"
+        assert each.get_wrapper_attr("task").params == {"level_size": 21.0}
+    assert np.array_equal(env.reset(seed=5)[0]["entities"], again.reset(seed=5)[0]["entities"])
+    env.close()
+    again.close()
+
+
+def test_what_the_level_lacks_is_told_where_the_spec_asks_for_it(tmp_path: Path) -> None:
+    plan = tmp_path / "plan.tltl"
+    plan.write_text("import stealth\nentity s9\nspec plan = F near(s9)\n", encoding="utf-8")
+    with pytest.raises(TltlError) as caught:
+        make_env("navigation", spec=plan)
+    (said,) = caught.value.diagnostics
+    assert (said.code, said.title) == ("TLT0810", "the level `navigation` has no entity `s9`")
+    label = said.labels[0]
+    assert (label.source.name, label.source.slice(label.span)) == (str(plan), "s9")
+    for spec in (plan.read_text(encoding="utf-8"), load_task(plan).fspa):
+        with pytest.raises(TltlError, match="TLT0810"):
+            make_env("navigation", spec=spec)
+
+
+def test_a_level_without_a_spec_needs_one() -> None:
+    with pytest.raises(TltlError, match="TLT0721: the level `bare` is made for no spec"):
+        spec_of(replace(load_level("navigation"), name="bare", spec=""))
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"level": 3}, "a level is named by a text, not by 3"),
+        ({"variant": 1}, "a variant is named by a text, not by 1"),
+        ({"variant": None}, "a variant is named by a text, not by None"),
+        ({"sensors": ["exit"]}, r"sensors are a mapping, e\.g\. {'entities': \['exit'\]}, not \['exit'\]"),
+        ({"reward": "sparse"}, r"RewardOptions\(mode=\"sparse\"\), not 'sparse'"),
+        ({"params": [1.0]}, "params map names to numbers"),
+        ({"spec": ()}, "a spec is a path, a text or an automaton, not"),
+    ],
+)
+def test_options_of_another_type_are_refused(options: dict[str, Any], said: str) -> None:
+    with pytest.raises(TypeError, match=said):
+        make_env(**{"level": "navigation", **options})
+
+
+def test_what_is_sensed_is_named_once() -> None:
+    with pytest.raises(TltlError, match="TLT0815: `exit` is to be sensed twice"):
+        make_env("navigation", sensors={"entities": ["exit", "exit"]})

@@ -145,7 +145,7 @@ def test_a_spec_that_the_level_cannot_supply_opens_no_window(tmp_path: Path) -> 
     command = [sys.executable, "-m", "tltlc", "play", "navigation", "--spec", "alien.tltl"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=30)
     assert done.returncode == 1
-    assert "TLT0611" in done.stderr and "`fuel`" in done.stderr
+    assert "TLT0811" in done.stderr and "`fuel`" in done.stderr
 
 
 def test_a_recording_finds_a_place_where_its_own_is_refused(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -12,6 +13,7 @@ import pytest
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tltl_runtime.stealth.env import GameEnv, make_env
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltlc.diagnostics.diagnostic import TltlError
 
 NOTHING = [0, 0, 0, 0, 0]
 SOON = "signal health: ratio  spec soon { limit 4 steps  reach health < 50 % }"
@@ -124,8 +126,26 @@ def test_what_cannot_be_recorded_is_said() -> None:
     game.close()
 
 
-@pytest.mark.parametrize("action", [[0, 0, 0, 0], [3, 0, 0, 0, 0], [-1, 0, 0, 0, 0], [0.0] * 5, "jump"])
-def test_an_action_that_is_none_is_refused(recorder: RecordEpisode, action: Any) -> None:
+def test_an_action_that_is_none_is_not_recorded(recorder: RecordEpisode) -> None:
     recorder.reset()
-    with pytest.raises(ValueError, match="an action is a whole number below each of"):
-        recorder.step(action)
+    with pytest.raises(ValueError, match="an action is five whole numbers"):
+        recorder.step([3, 0, 0, 0, 0])
+    assert len(recorder.episode.actions) == 0
+
+
+def test_what_is_played_is_recorded_whatever_wrappers_make_of_it() -> None:
+    east = gymnasium.wrappers.TransformAction(make_env("navigation"), lambda _: [1, 0, 0, 0, 0], None)
+    env = RecordEpisode(east)
+    env.reset(seed=1)
+    env.step(NOTHING)
+    assert env.episode.actions.tolist() == [[1, 0, 0, 0, 0]] and env.episode.player == "unknown"
+    env.close()
+
+
+def test_a_folder_that_takes_nothing_is_told_at_once(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    env = make_env("navigation")
+    for folder in ("/proc/x", tmp_path / "file"):
+        with pytest.raises(TltlError, match="TLT0005"):
+            RecordEpisode(env, folder=folder)
+    env.close()

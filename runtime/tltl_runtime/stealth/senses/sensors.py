@@ -27,10 +27,13 @@ def chosen(level: Level, choice: SensorChoice | None = None) -> Sensors:
     """The sensors of a level with what ``choice`` says in place of its own; without one, its own.
 
     A mapping may leave out what stays as it is, ``{"map": None}`` is no map, and ``{"map": {"cell": 1.0}}`` the
-    level's own map with other cells.  Raises TltlError, with one TLT0815 for each thing that is wrong.
+    level's own map with other cells.  Raises TltlError, with one TLT0815 for each thing that is wrong; TypeError,
+    where ``choice`` is neither.
     """
     if choice is None:
         return level.sensors
+    if not isinstance(choice, (Sensors, Mapping)):
+        raise TypeError(f"sensors are a mapping, e.g. {{'entities': ['exit']}}, not {choice!r:.60}")
     log: list[Diagnostic] = []
     sensors = choice if isinstance(choice, Sensors) else _read(level, choice, log)
     _check(level, sensors, log)
@@ -95,7 +98,9 @@ def _check(level: Level, sensors: Sensors, log: list[Diagnostic]) -> None:
 def _check_names(
     names: Iterable[str], known: Iterable[str], title: str, log: list[Diagnostic], listed: str | None = None
 ) -> None:
-    there = tuple(known)
+    names, there = tuple(names), tuple(known)
+    twice = sorted({name for name in names if names.count(name) > 1})
+    log += [Diagnostic("TLT0815", f"`{name}` is to be sensed twice", help="name it once") for name in twice]
     log += [
         Diagnostic("TLT0815", f"{title} `{name}`", help=suggestion(name, there, listed))
         for name in dict.fromkeys(names)

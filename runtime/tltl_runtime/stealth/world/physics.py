@@ -19,9 +19,10 @@ nine steps of 1/60 s at once.  What was measured, and must stay so:
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Sequence
 from math import cos, floor, pi, sin, sqrt
-from typing import Protocol
+from typing import NoReturn, Protocol
 
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.world.bodies import (
@@ -76,6 +77,8 @@ class World:
         self.kind = PlayerKind() if kind is None else kind
         self.steps = 0
         self._client = pybullet.connect(pybullet.DIRECT)
+        # Of a world that nobody closes, Python's end of it closes the client: 28 MB each.
+        self._disconnect = weakref.finalize(self, pybullet.disconnect, self._client)
         self._open = [False] * len(level.barriers)
         self._boxes = [(solid.box.low, solid.box.high) for solid in level.solids]
         self._around = cells(self._boxes, self.kind.radius + self.kind.sprint_speed * DECISION)
@@ -88,9 +91,12 @@ class World:
 
     def close(self) -> None:
         """Give the client back; the world is of no use afterwards.  Closing twice does nothing."""
-        if self._client >= 0:
-            pybullet.disconnect(physicsClientId=self._client)
-            self._client = -1
+        self._disconnect()
+        self._client = -1
+
+    def __reduce__(self) -> NoReturn:
+        way_out = "make another environment, and reset it with the same seed"
+        raise TypeError(f"a running game can be neither copied nor pickled: {way_out}")
 
     def reset(self, rng: Random | None) -> None:
         """Begin an episode: barriers shut, movers at their offset, the player within the start's spread.
