@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from benchmarks import safety
-from benchmarks.wander import variants_of_all
+from benchmarks.variants import variants_of_all
 from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.record import replace
