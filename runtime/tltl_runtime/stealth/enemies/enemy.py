@@ -57,6 +57,8 @@ class Enemies:
         self._shut: set[int] = set()
         self._solids = [corners(each.box) for each in level.solids if each.box.high[2] > 0.0]
         self._boxes: list[Corners] = []
+        """What stops sight: those that stand, then the movers of the last step."""
+        self._standing = 0
 
     def reset(self, rng: np.random.Generator) -> None:
         """Every enemy at the start of its route, all barriers shut; what is random comes from ``rng``."""
@@ -77,10 +79,10 @@ class Enemies:
 
     def step(self, dt: float, player: PlayerView, movers: Sequence[Bounds] = ()) -> None:
         """Advance by ``dt`` seconds; ``movers`` are boxes that stop sight beside those of the level."""
-        boxes = [*self._boxes, *((*low, *high) for low, high in movers)] if movers else self._boxes
+        self._boxes[self._standing :] = [(*low, *high) for low, high in movers]
         self.damage = 0.0
         for guard in self.guards:
-            self.damage += guard.step(dt, player, boxes)
+            self.damage += guard.step(dt, player, self._boxes)
 
     @property
     def positions(self) -> tuple[Point, ...]:
@@ -110,6 +112,7 @@ class Enemies:
     def _changed(self) -> Floor:
         shut = [self.level.barriers[index] for index in sorted(self._shut)]
         self._boxes = self._solids + [corners(each.box) for each in shut if each.kind == "solid"]
+        self._standing = len(self._boxes)
         return self.grid.floor(self._shut)
 
 

@@ -104,14 +104,19 @@ class Floor:
         self._numbers: Any = self._number.tolist()
         self.neighbours = self._neighbours(rows, columns)
         self._next: Any = self.neighbours.tolist()
+        self._roomy = self._roomy_cells(rows, columns)
         self._last: tuple[int, bytes] = (-1, b"")
         self._gaps: dict[int, tuple[Place, ...]] = {}
 
     def is_free(self, x: float, y: float) -> bool:
         """Whether an enemy can stand at x, y: inside the bounds, and clear of all obstacles by its radius."""
         (x0, y0, _), (x1, y1, _) = self._bounds.low, self._bounds.high
-        inside = x0 + RADIUS <= x <= x1 - RADIUS and y0 + RADIUS <= y <= y1 - RADIUS
-        return inside and not any(a < x < c and b < y < d for a, b, c, d in self.obstacles)
+        if not (x0 + RADIUS <= x <= x1 - RADIUS and y0 + RADIUS <= y <= y1 - RADIUS):
+            return False
+        column, row = self._cell(x, y)
+        if self._roomy[self._numbers[row][column]]:
+            return True
+        return not any(a < x < c and b < y < d for a, b, c, d in self.obstacles)
 
     def clear(self, a: Place, b: Place) -> bool:
         """Whether an enemy can walk straight from a to b, where a and b are inside the bounds."""
@@ -143,7 +148,7 @@ class Floor:
         x, y = place
         column, row = self._cell(x, y)
         own: int = self._numbers[row][column]
-        if own >= 0 and self.clear(place, self.centres[own]):
+        if self._roomy[own] or (own >= 0 and self.clear(place, self.centres[own])):
             return own
         near = []
         for line in self._numbers[max(0, row - 2) : row + 3]:
@@ -270,6 +275,15 @@ class Floor:
                 reached = wider & free
             areas[reached] = int(areas.max()) + 1
         return areas
+
+    def _roomy_cells(self, rows: NDArray[Any], columns: NDArray[Any]) -> list[bool]:
+        """For each cell whether it is free as a whole, and at last that it is not for what is no cell, -1."""
+        x, y = (low + number * CELL for low, number in zip(self._bounds.low, (columns, rows), strict=False))
+        roomy = np.ones(len(rows) + 1, dtype=bool)
+        roomy[-1] = False
+        for a, b, c, d in self.obstacles:
+            roomy[:-1] &= (x >= c) | (x + CELL <= a) | (y >= d) | (y + CELL <= b)
+        return roomy.tolist()
 
     def _neighbours(self, rows: NDArray[Any], columns: NDArray[Any]) -> NDArray[np.int64]:
         """For each move and cell the cell it leads to, int64 [8, cells]; the number of cells where it is none."""

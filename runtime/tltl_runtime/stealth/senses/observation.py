@@ -39,9 +39,13 @@ class Senses:
         places, signals = entities(level), readers(level)
         self._places = [places[name] for name in sensors.entities]
         self._variables = [_scaled(name, level, signals[name]) for name in sensors.variables]
-        self._diagonal = dist(level.bounds.low, level.bounds.high)
+        diagonal = dist(level.bounds.low, level.bounds.high)
+        sizes = [diagonal] * 3 * len(self._places) + [1.0] * len(self._variables)
+        self._sizes = np.array(sizes, dtype=np.float32)
+        # Arrays, because numpy takes three times as long with numbers.
+        self._least, self._most = np.full_like(self._sizes, -1.0), np.ones_like(self._sizes)
         self._map = SemanticMap(level, sensors.map) if sensors.map else None
-        self._open: tuple[bool, ...] = ()
+        self._open: list[bool] = []
         self.space = spaces.Dict(self._spaces())
 
     def look(self, game: Game) -> dict[str, Any]:
@@ -50,9 +54,8 @@ class Senses:
         vectors = [part for place in self._places for px, py, pz in (place(game),) for part in (px - x, py - y, pz - z)]
         values = [read(game) for read in self._variables]
         row = np.array(vectors + values, dtype=np.float32)
-        row[: len(vectors)] /= self._diagonal
-        # A fifth of the time of `np.clip`.
-        np.minimum(np.maximum(row, -1.0, row), 1.0, row)
+        row /= self._sizes
+        row.clip(self._least, self._most, row)
         found: dict[str, Any] = {}
         if vectors:
             found["entities"] = row[: len(vectors)]
@@ -63,13 +66,12 @@ class Senses:
         return found
 
     def _see(self, game: Game, semantic_map: SemanticMap) -> Any:
-        opened = tuple(game.open)
-        if opened != self._open:
+        if game.open != self._open:
+            self._open = list(game.open)
             semantic_map.reset()
-            for barrier, is_open in enumerate(opened):
+            for barrier, is_open in enumerate(self._open):
                 if is_open:
                     semantic_map.set_open(barrier, True)
-            self._open = opened
         player = game.world.player
         ids = semantic_map.look(player.position, player.crouching, game.world.mover_boxes(), game.enemies.positions)
         return semantic_map.one_hot(ids)

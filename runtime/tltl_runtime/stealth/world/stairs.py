@@ -19,24 +19,29 @@ def lift(
 
     ``boxes`` are those that could be met.
     """
-    if velocity == (0.0, 0.0):
-        return 0.0
     x, y, z = feet
-    stairs = [(low, high) for low, high in boxes if low[2] < z + kind.radius and z + TOUCH < high[2]]
-    if not stairs:
+    highest = z + kind.step_height + 2 * TOUCH
+    if velocity == (0.0, 0.0) or not any([z + TOUCH < high[2] <= highest for _, high in boxes]):
         return 0.0
     ahead = (x + velocity[0] * DECISION, y + velocity[1] * DECISION)
     west, east = min(x, ahead[0]) - kind.radius, max(x, ahead[0]) + kind.radius
     south, north = min(y, ahead[1]) - kind.radius, max(y, ahead[1]) + kind.radius
-    stairs = [
-        (low, high) for low, high in stairs if low[0] < east and west < high[0] and low[1] < north and south < high[1]
+    met = [
+        (low, high)
+        for low, high in boxes
+        if low[2] < z + kind.radius
+        and z + TOUCH < high[2]
+        and low[0] < east
+        and west < high[0]
+        and low[1] < north
+        and south < high[1]
     ]
-    if not stairs:
+    if not met:
         return 0.0
     # A wall beside the stairs must not stop who goes up along it, so each direction counts by itself as well.
     both = velocity[0] and velocity[1]
     ways = (velocity, (velocity[0], 0.0), (0.0, velocity[1])) if both else (velocity,)
-    return max(_lift_along(kind, feet, height, way, stairs, room) for way in ways)
+    return max(_lift_along(kind, feet, height, way, met, room) for way in ways)
 
 
 def _lift_along(

@@ -32,5 +32,8 @@ class Way:
             return self._first
         time = clock % self._lap
         begin, (x, y, z), (dx, dy, dz), duration = self._legs[bisect_right(self._begins, time) - 1]
-        share = 0.0 if duration <= 0.0 else min(1.0, max(0.0, (time - begin - self._pause) / duration))
+        gone = time - begin - self._pause
+        if gone <= 0.0 or duration <= 0.0:
+            return x, y, z
+        share = min(1.0, gone / duration)
         return x + share * dx, y + share * dy, z + share * dz

@@ -140,9 +140,9 @@ def test_a_map_is_what_meets_each_cell(
                     at_height = solid.box.high[2] > feet - 0.1 and solid.box.low[2] < feet + height
                     if at_height and covers(solid.box.low, solid.box.high, slack):
                         expected = max(expected, 1 if solid.kind == "floor" else 2)
-                for low, high in movers:
-                    at_height = low[2] < position[2] + height and high[2] > position[2] - 0.1
-                    if at_height and covers(low, high, slack):
+                for begin, end in movers:
+                    at_height = begin[2] < position[2] + height and end[2] > position[2] - 0.1
+                    if at_height and covers(begin, end, slack):
                         expected = 3
                 if slack > 0:
                     assert number >= expected
