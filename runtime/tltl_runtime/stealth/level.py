@@ -180,3 +180,13 @@ class Level:
     files: tuple[tuple[str, str], ...]
     signals: tuple[tuple[str, str], ...] = ()
     """Further names of signals, for specs that call them otherwise: (``open_right``, ``open(right)``)."""
+
+
+def fixed_places(level: Level) -> dict[str, Point]:
+    """Where each entity is that stays there, by name; of a barrier it is the middle of the base."""
+    places = {switch.name: switch.position for switch in level.switches}
+    places |= {way_out.name: way_out.position for way_out in level.exits}
+    for barrier in level.barriers:
+        low, high = barrier.box.low, barrier.box.high
+        places[barrier.name] = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2])
+    return places

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from math import atan2, dist, pi
 from typing import TYPE_CHECKING, Final
 
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Level, Point, fixed_places
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.game import Game
@@ -83,11 +83,7 @@ def described(level: Level) -> str:
 
 def entities(level: Level) -> dict[str, _Place]:
     """Where each entity of a level is, by name: the feet of enemies, the middle of a barrier's base."""
-    found: dict[str, _Place] = {switch.name: _at(switch.position) for switch in level.switches}
-    found |= {each.name: _at(each.position) for each in level.exits}
-    for barrier in level.barriers:
-        low, high = barrier.box.low, barrier.box.high
-        found[barrier.name] = _at(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]))
+    found: dict[str, _Place] = {name: _at(place) for name, place in fixed_places(level).items()}
     found |= {enemy.name: _enemy(index) for index, enemy in enumerate(level.enemies)}
     found |= {mover.name: _mover(index) for index, mover in enumerate(level.movers)}
     return found

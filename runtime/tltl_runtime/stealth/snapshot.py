@@ -6,7 +6,7 @@ from itertools import product
 from typing import Final
 
 from tltl_runtime.stealth.enemies.enemy import CROUCHED_HEAD, STANDING_HEAD, PlayerView
-from tltl_runtime.stealth.level import Box, Point
+from tltl_runtime.stealth.level import Box, Level, Point, fixed_places
 from tltl_runtime.stealth.world.player import PlayerState
 from tltlc.record import record
 
@@ -37,10 +37,17 @@ class Snapshot:
     open: tuple[bool, ...]
 
 
+def places(level: Level, shot: Snapshot) -> dict[str, Point]:
+    """Where each entity of a level is at that moment, by name."""
+    enemies = {enemy.name: place for enemy, place in zip(level.enemies, shot.enemies, strict=True)}
+    movers = {mover.name: place for mover, place in zip(level.movers, shot.movers, strict=True)}
+    return fixed_places(level) | enemies | movers
+
+
 def player_view(player: PlayerState) -> PlayerView:
     """What enemies can know of the player."""
     head = CROUCHED_HEAD if player.crouching else STANDING_HEAD
-    return PlayerView(player.position, head, player.crouching, player.velocity)
+    return PlayerView(player.position, head)
 
 
 def touches(feet: Point, radius: float, height: float, box: Box) -> bool:

@@ -11,7 +11,7 @@ from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.expert.goals import next_goals
 from tltl_runtime.stealth.expert.routes import routes_of, shut_of
 from tltl_runtime.stealth.level import Level, Point
-from tltl_runtime.stealth.snapshot import Snapshot, touches
+from tltl_runtime.stealth.snapshot import Snapshot, places, touches
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.record import record
 
@@ -125,23 +125,12 @@ def _out_of_reach(episode: Episode) -> tuple[str, ...] | None:
     """The next entities, where no way leads to any of them from the player; None where the spec names no next one."""
     last = episode.snapshots[-1]
     sample = {signal.name: value for signal, value in zip(episode.fspa.signals, episode.signals[-1], strict=True)}
-    places = _places(episode.level, last)
-    goals = next_goals(episode.fspa, int(episode.states[-1]), sample, episode.params, places)
+    there = places(episode.level, last)
+    goals = next_goals(episode.fspa, int(episode.states[-1]), sample, episode.params, there)
     if not goals:
         return None
     routes = routes_of(episode.level, shut_of(last))
     here = routes.surfaces.nearest(last.player.position)
-    if any(isfinite(routes.field(places[goal]).seconds.flat[here]) for goal in goals):
+    if any(isfinite(routes.field(there[goal]).seconds.flat[here]) for goal in goals):
         return ()
     return goals
-
-
-def _places(level: Level, shot: Snapshot) -> dict[str, Point]:
-    """Where what stands in a level is, and where the rest was when the episode ended."""
-    places = {switch.name: switch.position for switch in level.switches}
-    places |= {way_out.name: way_out.position for way_out in level.exits}
-    for barrier in level.barriers:
-        (x0, y0, z0), (x1, y1, _) = barrier.box.low, barrier.box.high
-        places[barrier.name] = ((x0 + x1) / 2, (y0 + y1) / 2, z0)
-    places |= {enemy.name: place for enemy, place in zip(level.enemies, shot.enemies, strict=True)}
-    return places | {mover.name: place for mover, place in zip(level.movers, shot.movers, strict=True)}

@@ -12,8 +12,7 @@ from tltl_runtime.stealth.expert.routes import Leg, routes_of, shut_of
 from tltl_runtime.stealth.expert.sneaker import Sneaker
 from tltl_runtime.stealth.expert.walker import STAY, Walker
 from tltl_runtime.stealth.level import Box, Level, Point
-from tltl_runtime.stealth.signals import entities
-from tltl_runtime.stealth.snapshot import Snapshot
+from tltl_runtime.stealth.snapshot import Snapshot, places
 from tltl_runtime.stealth.world.player import Action
 
 _ROOM: Final = 0.5
@@ -35,7 +34,6 @@ class Expert:
         self.careful = careful
         self._walker = Walker(self.level)
         self._sneaker = Sneaker(self.level)
-        self._places = entities(self.level)
         self._movers = [reach_of(mover) for mover in self.level.movers]
         self.reset()
 
@@ -48,22 +46,22 @@ class Expert:
 
     def act(self) -> Action:
         """What to do now; nothing where the automaton sends the player nowhere."""
-        goal = self.goal()
+        snapshot = self._game.snapshot()
+        goal = self.goal(snapshot)
         if goal is None:
             return STAY
-        snapshot = self._game.snapshot()
         if (goal, snapshot.open) != self._chosen_for:
             self._chosen_for = (goal, snapshot.open)
             self._sneaks = self.careful and bool(self.level.enemies) and self._is_plain(snapshot, goal)
         return (self._sneaker if self._sneaks else self._walker).act(snapshot, goal)
 
-    def goal(self) -> Point | None:
+    def goal(self, snapshot: Snapshot) -> Point | None:
         """Where the automaton sends the player now, None where there is no such place."""
         taken, sample = (self._env.get_wrapper_attr(name) for name in ("taken", "sample"))
         state = 0 if taken is None else taken.state
-        places = {name: place(self._game) for name, place in self._places.items()}
-        goals = next_goals(self._task.fspa, state, sample, self._task.params, places)
-        return places[goals[0]] if goals else None
+        there = places(self.level, snapshot)
+        goals = next_goals(self._task.fspa, state, sample, self._task.params, there)
+        return there[goals[0]] if goals else None
 
     def _is_plain(self, snapshot: Snapshot, goal: Point) -> bool:
         """Whether the way to a goal is on the floor, and past no moving obstacle."""

@@ -24,7 +24,7 @@ from typing import Final
 
 import numpy as np
 
-from tltl_runtime.stealth.level import Box, Level, Mover, Point
+from tltl_runtime.stealth.level import Box, Level, Mover, fixed_places
 from tltl_runtime.stealth.supply.space import Field, Space, SpaceGrid, distances, flood, span
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.record import record
@@ -48,7 +48,7 @@ class Reach:
 
     ``distances`` has, in metres, the least distance from the feet to each entity that stays where it is; to those
     that move it is 0.  ``ground`` [rows, columns] are the cells, ``cell`` metres wide from ``origin`` (west, south) on,
-    with anything that one can stand on; rows go north.
+    with anything that one can stand on; rows go north.  ``highest`` is how high the highest of it is, in metres.
     """
 
     switches: tuple[str, ...]
@@ -57,6 +57,7 @@ class Reach:
     ground: Field
     origin: tuple[float, float]
     cell: float
+    highest: float
 
     def reaches(self, entity: str) -> bool:
         """Whether one gets within a metre of an entity."""
@@ -83,38 +84,33 @@ def reachable(
         if opens == opened and now == switches:
             break
         switches, opened = now, opens
-    places = _places(level)
     return Reach(
         switches=tuple(each.name for each in level.switches if each.name in switches),
         barriers=tuple(each.name for each in level.barriers if each.name in opened),
         distances={
-            name: 0.0 if place is None else search.grid.distance(space, place) for name, place in places.items()
+            **{name: search.grid.distance(space, place) for name, place in fixed_places(level).items()},
+            **{enemy.name: 0.0 for enemy in level.enemies},
+            **{mover.name: 0.0 for mover in level.movers},
         },
         ground=search.ground(),
         origin=search.grid.origin,
         cell=search.grid.cell,
+        highest=search.highest(),
     )
 
 
 def highest_lift(kind: PlayerKind) -> float:
     """How much higher than the ground that was left the next may be, in metres: a jump, and the round foot."""
+    return highest_jump(kind) + kind.radius
+
+
+def highest_jump(kind: PlayerKind) -> float:
+    """How much a jump lifts the feet, in metres."""
     height, speed = 0.0, kind.jump_speed - kind.gravity * _PHYSICS_STEP
     while speed > 0.0:
         height += speed * _PHYSICS_STEP
         speed -= kind.gravity * _PHYSICS_STEP
-    return height + kind.radius
-
-
-def _places(level: Level) -> dict[str, Point | None]:
-    """Where each entity of a level is, as its signals measure it; None for one that moves."""
-    places: dict[str, Point | None] = {switch.name: switch.position for switch in level.switches}
-    for barrier in level.barriers:
-        low, high = barrier.box.low, barrier.box.high
-        places[barrier.name] = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2])
-    places |= {way_out.name: way_out.position for way_out in level.exits}
-    places |= {enemy.name: None for enemy in level.enemies}
-    places |= {mover.name: None for mover in level.movers}
-    return places
+    return height
 
 
 class _Search:
@@ -151,6 +147,10 @@ class _Search:
         """The cells with ground that has been reached."""
         found: Field = np.logical_or.reduce(list(self._ground.values()))
         return found
+
+    def highest(self) -> float:
+        """The height of the highest ground that has been reached, in metres."""
+        return max(height for height, ground in self._ground.items() if ground.any())
 
     def spread(self, opened: Collection[str]) -> Space:
         """The space that the feet can be in, while these barriers are open."""
