@@ -13,7 +13,7 @@ from tltl_runtime.commands.senses import senses_options
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
 from tltl_runtime.stealth.senses.observation import Senses
-from tltl_runtime.stealth.supply.feasible import check_reach
+from tltl_runtime.stealth.supply.feasible import check_height, check_reach
 from tltl_runtime.stealth.supply.reach import Reach, reachable
 from tltl_runtime.stealth.supply.spec_places import SpecPlaces
 from tltl_runtime.stealth.supply.supply import check_supply, given_params, used_entities
@@ -67,9 +67,10 @@ class _Check:
 
     def __call__(self, path: str, variant: str) -> tuple[Level, Reach]:
         """Report all that is to be said of one variant of a level."""
-        level, warnings = read_level(path, variant)
-        self._add(warnings)
+        level, remarks = read_level(path, variant)
         senses, reach = Senses(level, self._sensors), reachable(level)
+        warnings = [*remarks, *check_height(level, reach)]
+        self._add(warnings)
         inputs = self._inputs or self._own(level)
         several = len(inputs) > 1 or any(len(opened.automata) > 1 for opened in inputs)
         for opened in inputs:

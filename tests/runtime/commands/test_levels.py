@@ -88,3 +88,46 @@ def test_wrong_usage(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-de
     assert tltlc("check", "--level", "nowhere.toml").status == 3
     assert tltlc("check", "--level", "navigation:v0", "--entities", "s9").status == 2
     assert tltlc("check", "missing.tltl", "--level", "navigation").status == 3
+
+
+def test_who_leaps_out_of_a_level_is_told_of_the_level(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    level, spec = tmp_path / "tower.toml", tmp_path / "tower.tltl"
+    level.write_text(TOWER)
+    spec.write_text("import spatial entity exit spec leave { limit 200 steps reach near(exit) }")
+    checked: Outcome = tltlc("check", spec, "--level", level)
+    assert checked.status == 0
+    title = "a jump may lead out of `tower`: one gets 1.75 m high, and its bounds end at 2.5 m"
+    assert f"warning[TLT0806]: {title}\n  help: let them end above 2.73 m\n" in checked.err
+    found: Outcome = tltlc("demonstrate", level, "--spec", spec, "-o", tmp_path)
+    assert found.status == 1
+    assert found.err.startswith("error[TLT0806]: level tower v0, step ")
+    assert "is outside the level's bounds\n  help: make its bounds higher" in found.err
+
+
+TOWER = """doc = "A leap leads out of the level."
+
+[bounds]
+at = [6.0, 3.0, -0.5]
+size = [12.0, 6.0, 3.0]
+
+[start]
+at = [1.5, 3.0, 0.0]
+
+[[stairs]]
+from = [2.5, 3.0, 0.0]
+to = [4.6, 3.0, 1.75]
+width = 2.0
+steps = 7
+
+[[platform]]
+at = [5.6, 3.0, 0.0]
+size = [2.0, 2.0, 1.75]
+
+[[platform]]
+at = [9.1, 3.0, 0.0]
+size = [2.0, 2.0, 1.75]
+
+[[exit]]
+name = "exit"
+at = [9.1, 3.0, 1.75]
+"""

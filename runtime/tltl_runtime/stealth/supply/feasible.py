@@ -8,7 +8,7 @@ from typing import Final
 
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.supply.offer import offers
-from tltl_runtime.stealth.supply.reach import Reach, highest_lift, reachable
+from tltl_runtime.stealth.supply.reach import Reach, highest_jump, highest_lift, reachable
 from tltl_runtime.stealth.supply.spec_places import SpecPlaces
 from tltl_runtime.stealth.supply.supply import check_supply, given_params, used_entities
 from tltl_runtime.stealth.world.player import PlayerKind
@@ -41,6 +41,18 @@ def check_reach(level: Level, reach: Reach, fspa: Fspa, places: SpecPlaces) -> l
         severity: Severity = "warning" if doable else "error"
         found.append(Diagnostic("TLT0814", title, places.entity(name), ways.end(name), severity))
     return found
+
+
+def check_height(level: Level, reach: Reach) -> list[Diagnostic]:
+    """A warning TLT0806 where a jump may lead out of a level: that would end the episode with an error."""
+    jump = reach.highest + highest_jump(PlayerKind())
+    top = level.bounds.high[2]
+    if jump <= top:
+        return []
+    title = (
+        f"a jump may lead out of `{level.name}`: one gets {reach.highest:.3g} m high, and its bounds end at {top:g} m"
+    )
+    return [Diagnostic("TLT0806", title, help=f"let them end above {jump + 0.01:.2f} m", severity="warning")]
 
 
 def warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
