@@ -21,6 +21,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.stealth.enemies.fields import ARRIVED, GOALS, middles, nearest_numbers, neighbours, steps_to
 from tltl_runtime.stealth.enemies.segments import Rectangle, crosses
 from tltl_runtime.stealth.level import Box, Level
 
@@ -37,11 +38,7 @@ GAP_SPACING: Final = 2.0
 
 Place = tuple[float, float]
 
-_GOALS: Final = 512
 _BUDGET: Final = 64 << 20
-_MOVES: Final = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))
-_ARRIVED: Final = 8
-_NO_WAY: Final = 255
 _TOUCH: Final = 1e-6
 
 
@@ -75,7 +72,7 @@ class Grid:
         if key in self._answers:
             self._answers.move_to_end(key)
             return self._answers[key]
-        found = self._answers[key] = _steps(floor.neighbours, chunk * _GOALS)
+        found = self._answers[key] = steps_to(floor.neighbours, chunk * GOALS)
         while sum(each.nbytes for each in self._answers.values()) > _BUDGET and len(self._answers) > 1:
             self._answers.popitem(last=False)
         return found
@@ -100,9 +97,11 @@ class Floor:
         rows, columns = np.nonzero(areas >= 0)
         self.centres: list[Place] = [self._centre(int(c), int(r)) for r, c in zip(rows, columns, strict=True)]
         self._area: list[int] = areas[rows, columns].tolist()
-        self._nearest = [_nearest(np.where(areas == each, self._number, -1)) for each in range(int(areas.max()) + 1)]
+        self._nearest = [
+            nearest_numbers(np.where(areas == each, self._number, -1)) for each in range(int(areas.max()) + 1)
+        ]
         self._numbers: Any = self._number.tolist()
-        self.neighbours = self._neighbours(rows, columns)
+        self.neighbours = neighbours(self._number)
         self._next: Any = self.neighbours.tolist()
         self._roomy = self._roomy_cells(rows, columns)
         self._last: tuple[int, bytes] = (-1, b"")
@@ -177,7 +176,7 @@ class Floor:
 
     def prepare(self) -> None:
         """Find the steps between all pairs of cells now, as far as the budget holds them."""
-        for chunk in range(-(-len(self.centres) // _GOALS)):
+        for chunk in range(-(-len(self.centres) // GOALS)):
             self._grid.answers(self, chunk)
 
     def gaps(self, area: int = 0) -> tuple[Place, ...]:
@@ -192,7 +191,7 @@ class Floor:
             column, row = self._cell(x, y)
             mine[row, column] = self._area[cell] == area
         most = int((NARROW - 2 * RADIUS) / CELL + 1e-9)
-        middle = _middles(mine, most) | _middles(mine.T, most).T
+        middle = middles(mine, most) | middles(mine.T, most).T
         found: list[Place] = []
         for row, column in np.argwhere(middle & mine):
             x, y = self._centre(int(column), int(row))
@@ -208,12 +207,12 @@ class Floor:
     def _way(self, entry: int, goal: int) -> list[int]:
         """Cells from entry to goal, both included; the entry alone where there is no way."""
         if self._last[0] != goal:
-            steps = self._grid.answers(self, goal // _GOALS)
-            self._last = (goal, steps[goal % _GOALS].tobytes())
+            steps = self._grid.answers(self, goal // GOALS)
+            self._last = (goal, steps[goal % GOALS].tobytes())
         field = self._last[1]
         way = [entry]
         cell = entry
-        while (move := field[cell]) < _ARRIVED:
+        while (move := field[cell]) < ARRIVED:
             cell = self._next[move][cell]
             way.append(cell)
         return way
@@ -277,84 +276,17 @@ class Floor:
         return areas
 
     def _roomy_cells(self, rows: NDArray[Any], columns: NDArray[Any]) -> list[bool]:
-        """For each cell whether it is free as a whole, and at last that it is not for what is no cell, -1."""
-        x, y = (low + number * CELL for low, number in zip(self._bounds.low, (columns, rows), strict=False))
-        roomy = np.ones(len(rows) + 1, dtype=bool)
-        roomy[-1] = False
-        for a, b, c, d in self.obstacles:
-            roomy[:-1] &= (x >= c) | (x + CELL <= a) | (y >= d) | (y + CELL <= b)
-        return roomy.tolist()
+        """For each cell whether it is free as a whole, and at last that -1, which is no cell, is not.
 
-    def _neighbours(self, rows: NDArray[Any], columns: NDArray[Any]) -> NDArray[np.int64]:
-        """For each move and cell the cell it leads to, int64 [8, cells]; the number of cells where it is none."""
-        padded = np.full((self._rows + 2, self._columns + 2), -1, dtype=np.int64)
-        padded[1:-1, 1:-1] = self._number
-        found = []
-        for dx, dy in _MOVES:
-            target = padded[rows + 1 + dy, columns + 1 + dx]
-            beside = (padded[rows + 1 + dy, columns + 1] >= 0) & (padded[rows + 1, columns + 1 + dx] >= 0)
-            found.append(np.where(beside & (target >= 0), target, len(rows)))
-        return np.array(found, dtype=np.int64)
+        The last row and column are not: places beyond them, up to the bounds, count as theirs.
+        """
+        x, y = self._bounds.low[0] + columns * CELL, self._bounds.low[1] + rows * CELL
+        roomy = (columns < self._columns - 1) & (rows < self._rows - 1)
+        for a, b, c, d in self.obstacles:
+            roomy &= (x >= c) | (x + CELL <= a) | (y >= d) | (y + CELL <= b)
+        return [*map(bool, roomy), False]
 
 
 def _grown(box: Box) -> Rectangle:
     grow = RADIUS - _TOUCH
     return (box.low[0] - grow, box.low[1] - grow, box.high[0] + grow, box.high[1] + grow)
-
-
-def _steps(neighbours: NDArray[np.int64], first: int) -> NDArray[np.uint8]:
-    """The first move of a shortest way to goals ``first`` and following, uint8 [512 or fewer, cells].
-
-    A breadth-first search from all goals at once, a bit for each; of moves that are as good, straight ones win.
-    """
-    cells = neighbours.shape[1]
-    goals = np.arange(first, min(first + _GOALS, cells))
-    frontier = np.zeros((cells + 1, _GOALS // 64), dtype="<u8")
-    frontier[goals, (goals - first) // 64] = np.uint64(1) << ((goals - first) % 64).astype(np.uint64)
-    unseen = ~frontier[:cells]
-    bits = np.zeros((3, cells, _GOALS // 64), dtype="<u8")
-    while frontier.any():
-        reached = np.zeros_like(frontier)
-        for move in range(len(_MOVES)):
-            new = frontier[neighbours[move]]
-            new &= unseen
-            unseen ^= new
-            reached[:cells] |= new
-            for bit in range(3):
-                if move >> bit & 1:
-                    bits[bit] |= new
-        frontier = reached
-    packed = _unpacked(bits[0]) | _unpacked(bits[1]) << 1 | _unpacked(bits[2]) << 2
-    packed[_unpacked(unseen) > 0] = _NO_WAY
-    moves: NDArray[np.uint8] = np.ascontiguousarray(packed.T[: len(goals)])
-    moves[goals - first, goals] = _ARRIVED
-    return moves
-
-
-def _unpacked(words: NDArray[np.uint64]) -> NDArray[np.uint8]:
-    return np.unpackbits(words.view(np.uint8), axis=1, bitorder="little")
-
-
-def _nearest(number: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Each cell's nearest numbered cell: numbers spread by a cell a round, straight before diagonal."""
-    number = number.copy()
-    while (number < 0).any():
-        padded = np.pad(number, 1, constant_values=-1)
-        spread = number.copy()
-        height, width = number.shape
-        for dx, dy in _MOVES:
-            beside = padded[1 + dy : 1 + dy + height, 1 + dx : 1 + dx + width]
-            spread = np.where((spread < 0) & (beside >= 0), beside, spread)
-        number = spread
-    return number
-
-
-def _middles(mine: NDArray[np.bool_], most: int) -> NDArray[np.bool_]:
-    """The middle cell of each run of at most ``most`` cells in a row of the grid."""
-    found = np.zeros_like(mine)
-    for row, line in enumerate(mine):
-        edges = np.flatnonzero(np.diff(np.concatenate(([0], line.astype(np.int8), [0]))))
-        for start, stop in zip(edges[::2], edges[1::2], strict=True):
-            if stop - start <= most:
-                found[row, (start + stop - 1) // 2] = True
-    return found

@@ -21,7 +21,7 @@ def lift(
     """
     x, y, z = feet
     highest = z + kind.step_height + 2 * TOUCH
-    if velocity == (0.0, 0.0) or not any([z + TOUCH < high[2] <= highest for _, high in boxes]):
+    if velocity == (0.0, 0.0) or not any(z + TOUCH < high[2] <= highest for _, high in boxes):
         return 0.0
     ahead = (x + velocity[0] * DECISION, y + velocity[1] * DECISION)
     west, east = min(x, ahead[0]) - kind.radius, max(x, ahead[0]) + kind.radius

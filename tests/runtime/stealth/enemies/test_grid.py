@@ -134,3 +134,16 @@ def test_no_way_comes_nearer_to_an_obstacle_than_the_radius(
         for part in np.linspace(0.0, 1.0, 5):
             x, y = x0 + part * (x1 - x0), y0 + part * (y1 - y0)
             assert distance_to_boxes(x, y, things) >= RADIUS - 1e-5
+
+
+@settings(max_examples=40, deadline=None)
+@given(solids(), st.lists(places(), min_size=20, max_size=20))
+def test_where_an_enemy_can_stand_and_walk_to_is_told_exactly(
+    things: tuple[Solid, ...], spots: list[tuple[float, float]]
+) -> None:
+    floor = floor_of(*things)
+    for x, y in spots:
+        inside = RADIUS <= x <= 10.0 - RADIUS and RADIUS <= y <= 8.0 - RADIUS
+        assert floor.is_free(x, y) == (inside and not any(a < x < c and b < y < d for a, b, c, d in floor.obstacles))
+        entry = floor.entry((x, y))
+        assert entry is None or floor.clear((x, y), floor.centres[entry])
