@@ -16,6 +16,8 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import DTypeLike, NDArray
 
+from tltl_runtime.vector.actions import check_batch
+from tltl_runtime.vector.arguments import check_arguments, split_mask
 from tltl_runtime.vector.errors import Loss, Playing, WorkerError, report
 from tltl_runtime.vector.memory import Rows, read, write_batch
 from tltl_runtime.vector.worker import EnvFunction
@@ -60,7 +62,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     Raises:
         ValueError: spaces of no fixed size, or other arguments that do not fit.
-        WorkerError: an environment cannot be made.
+        TypeError: arguments of another type.
+        WorkerError: an environment cannot be made, or has other spaces than the first.
     """
 
     def __init__(
@@ -75,7 +78,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         timeout: float = 60.0,
     ) -> None:
         autoreset = AutoresetMode(autoreset)
-        _check(functions, workers, names, autoreset, on_death)
+        check_arguments(functions, workers, names, autoreset, on_death)
         self.num_envs = len(functions)
         example = functions[0]()
         self.metadata = {**example.metadata, "autoreset_mode": autoreset}
@@ -110,30 +113,43 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     ) -> tuple[Any, dict[str, Any]]:
         """Begin an episode in each environment: with ``seed + i`` in the i-th, with the seeds of a sequence, or, as
         without a seed, where its generator stands.  The first reset without a seed draws one for each.
+
+        ``options["reset_mask"]``, a bool for each, leaves the others where they are; it is not passed on.
         """
         self._check_open()
         if self._workers.is_waiting:
             self._workers.answers()
+        chosen, options = split_mask(options, self.num_envs)
+        if self._observations is None and not chosen.all():
+            raise ResetNeeded("there are no episodes that could go on: reset all environments first")
         seeds = self._seeds_of(seed)
-        for index, each in enumerate(seeds):
-            if each is not None:
-                self._seeds[index] = each
-        arguments = [(seeds[share], options) for share in self._workers.shares]
+        for index in np.flatnonzero(chosen):
+            if seeds[index] is not None:
+                self._seeds[index] = seeds[index]
+        arguments = [(seeds[share], options, chosen[share].tolist()) for share in self._workers.shares]
         infos: dict[str, Any] = {}
-        for worker, answer in enumerate(self._workers.ask("reset", arguments)):
+        for answer in self._workers.ask("reset", arguments):
             if isinstance(answer, Loss):
-                answer = self._replace(answer)
-            for row, info in enumerate(answer, self._workers.shares[worker].start):
+                began = self._replace(answer)
+                answer = [(row, info if chosen[row] else {**info, "lost": True}) for row, info in began]
+            for row, info in answer:
                 infos = self._add_info(infos, info, row)
         return self._observed(), self._with_numbers(infos)
 
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Take a step in each environment."""
+        """Take a step in each environment.
+
+        Raises:
+            ValueError: there is not one action of the space for each; no step is taken.
+            ResetNeeded: there was no reset.
+            WorkerError: a worker was lost, and ``on_death`` is ``stop``.
+        """
         self._check_ready()
         if self._observations is None:
             raise ResetNeeded("there is no episode to go on with: reset first")
+        check_batch(self.single_action_space, actions, self.num_envs)
         write_batch(self._rows.action, actions)
         infos: dict[str, Any] = {}
         for worker, answer in enumerate(self._workers.ask("step", [()] * len(self._workers.shares))):
@@ -149,12 +165,18 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """An attribute of each environment, or what it gives when it is called."""
-        self._check_ready()
-        answers = self._workers.ask("call", [(name, args, kwargs)] * len(self._workers.shares))
-        for answer in answers:
-            if isinstance(answer, Loss):
-                self._stop(answer)
-        return tuple(value for answer in answers for value in answer)
+        return self._asked("call", [(name, args, kwargs)] * len(self._workers.shares))
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """An attribute of each environment."""
+        return self.call(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Set an attribute of each environment: a list or a tuple has a value for each, all else is one for all."""
+        each = list(values) if isinstance(values, (list, tuple)) else [values] * self.num_envs
+        if len(each) != self.num_envs:
+            raise ValueError(f"{self.num_envs} values are needed, not {len(each)}")
+        self._asked("set_attr", [(name, each[share]) for share in self._workers.shares])
 
     def render(self) -> tuple[Any, ...] | None:
         """What each environment renders."""
@@ -168,6 +190,15 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def worker_pids(self) -> tuple[int | None, ...]:
         """The process ids of the workers."""
         return tuple(self._workers.pid(worker) for worker in range(len(self._workers.shares)))
+
+    def _asked(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
+        """What the environments give, in order; a worker that is lost meanwhile is not replaced."""
+        self._check_ready()
+        answers = self._workers.ask(command, arguments)
+        for answer in answers:
+            if isinstance(answer, Loss):
+                self._stop(answer)
+        return tuple(value for answer in answers for value in answer)
 
     def _check_open(self) -> None:
         if self.closed:
@@ -207,16 +238,16 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def _continue(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
         """Replace a worker in the middle of a step: what there is to say of its environments, by row."""
         share = self._workers.shares[loss.worker]
-        infos = self._replace(loss)
+        began = self._replace(loss)
         self._rows.truncated[share] = True
         said = []
-        for row, info in enumerate(infos, share.start):
+        for row, info in began:
             last = read(self._observations, row)
             said.append((row, {"final_obs": last, "final_info": {"lost": True}, "lost": True, **info}))
         return said
 
-    def _replace(self, loss: Loss) -> list[dict[str, Any]]:
-        """Put another worker in the place of the lost one, and begin episodes there; their infos."""
+    def _replace(self, loss: Loss) -> list[tuple[int, dict[str, Any]]]:
+        """Put another worker in the place of the lost one, and begin episodes there; their infos, by row."""
         if not self._replaces or loss.worker in self._untried:
             self._stop(loss)
         share = self._workers.shares[loss.worker]
@@ -229,12 +260,12 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         self._rows.busy[share] = False
         for failure in self._workers.start([loss.worker]):
             self._stop(failure)
-        self._workers.tell(loss.worker, "reset", (seeds, None))
+        self._workers.tell(loss.worker, "reset", (seeds, None, [True] * len(seeds)))
         (answer,) = self._workers.answers()
         if isinstance(answer, Loss):
             self._stop(answer)
-        infos: list[dict[str, Any]] = answer
-        return infos
+        began: list[tuple[int, dict[str, Any]]] = answer
+        return began
 
     def _stop(self, loss: Loss) -> NoReturn:
         playing = self._playing(self._workers.shares[loss.worker])
@@ -259,27 +290,6 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 def _cores() -> int:
     """Those that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _check(
-    functions: Sequence[EnvFunction],
-    workers: int | None,
-    names: Sequence[str] | None,
-    autoreset: AutoresetMode,
-    on_death: str,
-) -> None:
-    if not functions:
-        raise ValueError("there is no function that makes an environment")
-    if workers is not None and workers < 1:
-        raise ValueError(f"at least one worker is needed, not {workers}")
-    if names is not None and len(names) != len(functions):
-        raise ValueError(f"{len(functions)} names are needed, not {len(names)}")
-    if autoreset == AutoresetMode.DISABLED:
-        raise ValueError("autoreset is SAME_STEP or NEXT_STEP here, not DISABLED")
-    if on_death not in ("stop", "replace"):
-        raise ValueError(f"on_death is `stop` or `replace`, not {on_death!r}")
-    if on_death == "replace" and autoreset != AutoresetMode.SAME_STEP:
-        raise ValueError("workers are replaced with autoreset SAME_STEP alone: new episodes begin in the same step")
 
 
 def _has_spec(env: gymnasium.Env[Any, Any]) -> bool:

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 import signal
+from typing import Final
 
 from tltlc.record import record
+
+_UNGUARDED: Final = (
+    "it ended before it made them: a worker begins by importing the program, so what the program does stands under",
+    '`if __name__ == "__main__":`, and the program in a file (python program.py, not python < program.py)',
+)
+"""The two ways in which a main module cannot be imported."""
 
 
 @record
@@ -32,13 +39,14 @@ class Playing:
 class Loss:
     """How a worker was lost: it ended with ``status`` (negative: that signal), or was ``silent`` for so many seconds.
 
-    ``traceback`` is that of the exception which ended it, if one did.
+    ``traceback`` is that of the exception which ended it, if one did; ``starting``: its environments were not made yet.
     """
 
     worker: int
     status: int | None = None
     silent: float | None = None
     traceback: str = ""
+    starting: bool = False
 
     def __str__(self) -> str:
         if self.silent is not None:
@@ -59,8 +67,11 @@ class WorkerError(RuntimeError):
 
 
 def report(loss: Loss, playing: tuple[Playing, ...]) -> str:
-    """The loss in words: a line for it, one for each environment, and the traceback."""
-    return "\n".join([f"{loss}; it had", *(f"  {each}" for each in playing), *loss.traceback.splitlines()])
+    """The loss in words: a line for it, one for each environment, and the traceback, or what may be the matter."""
+    lines = [f"{loss}; it had", *(f"  {each}" for each in playing), *loss.traceback.splitlines()]
+    if loss.starting and loss.status and not loss.traceback:
+        lines += _UNGUARDED
+    return "\n".join(lines)
 
 
 def _signal_name(number: int) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.env import check_fit, make_env, spec_of
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.senses.sensors import SensorChoice
-from tltl_runtime.task import load_task
+from tltl_runtime.task import read_spec
 from tltl_runtime.vector.env import WorkerVectorEnv
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
@@ -24,16 +25,25 @@ def make_vec(
     spec: str | Path | Fspa | None = None,
     sensors: SensorChoice | None = None,
     reward: RewardOptions | None = None,
+    params: Mapping[str, float] | None = None,
     render_mode: str | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
     """``num_envs`` of what :func:`~tltl_runtime.stealth.env.make_env` makes, in ``workers`` processes.
 
-    ``options`` and errors are those of :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``.
+    ``options`` and errors are those of :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``.  Raises
+    ValueError for the render mode ``human`` of several environments, each of which would open a window.
     """
+    if render_mode == "human" and num_envs > 1:
+        raise ValueError("render_mode 'human' shows one environment: with several, give 'rgb_array' and call render()")
+    place = load_level(level, variant)
+    wanted = spec_of(place) if spec is None else spec
     # Compiled once, and not by each worker for each of its environments.
-    fspa = spec if isinstance(spec, Fspa) else load_task(load_level(level, variant).spec if spec is None else spec).fspa
-    make = partial(make_env, level, variant, fspa, sensors=sensors, reward=reward, render_mode=render_mode)
+    fspa, _ = read_spec(wanted)
+    check_fit(place, fspa, wanted)
+    make = partial(
+        make_env, level, variant, fspa, sensors=sensors, reward=reward, params=params, render_mode=render_mode
+    )
     return WorkerVectorEnv([make] * num_envs, workers, names=[f"{level} {variant}"] * num_envs, **options)
 
 

@@ -19,7 +19,9 @@ Columns = Any
 
 
 class Rows:
-    """``count`` rows; an instance can be handed to a process that is being started, and to no other.
+    """``count`` rows for environments of the same ``spaces``, by the names of these.
+
+    An instance can be handed to a process that is being started, and to no other.
 
     ``observation`` and ``action`` are the columns of those spaces, ``reward terminated truncated`` those of a step.
     ``episode`` counts the episodes since the last reset with a seed, from 1; ``step`` the steps of the episode, the
@@ -39,7 +41,7 @@ class Rows:
         info: Mapping[str, DTypeLike],
     ) -> None:
         self.count = count
-        self._spaces = (observation, action)
+        self.spaces = {"observation_space": observation, "action_space": action}
         self._dtype = np.dtype(
             [
                 ("observation", _dtype(observation)),
@@ -59,16 +61,16 @@ class Rows:
         self._view()
 
     def __getstate__(self) -> tuple[Any, ...]:
-        return self.count, self._spaces, self._dtype, self._block
+        return self.count, self.spaces, self._dtype, self._block
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
-        self.count, self._spaces, self._dtype, self._block = state
+        self.count, self.spaces, self._dtype, self._block = state
         self._view()
 
     def _view(self) -> None:
         rows: NDArray[Any] = np.frombuffer(self._block, dtype=self._dtype)
-        self.observation = _columns(self._spaces[0], rows["observation"])
-        self.action = _columns(self._spaces[1], rows["action"])
+        self.observation = _columns(self.spaces["observation_space"], rows["observation"])
+        self.action = _columns(self.spaces["action_space"], rows["action"])
         self.reward, self.terminated, self.truncated = rows["reward"], rows["terminated"], rows["truncated"]
         self.episode, self.step, self.total, self.busy = rows["episode"], rows["step"], rows["total"], rows["busy"]
         self.info: dict[str, NDArray[Any]] = {name: rows["info"][name] for name in rows.dtype["info"].names or ()}
@@ -87,15 +89,13 @@ def write(columns: Columns, row: int, value: Any) -> None:
 
 
 def write_batch(columns: Columns, batch: Any) -> None:
-    """Put a value into each row; ValueError where there is not one for each."""
+    """Put a value into each row; there is one for each, see :func:`tltl_runtime.vector.actions.check_batch`."""
     if isinstance(columns, dict):
         for key, column in columns.items():
             write_batch(column, batch[key])
     elif isinstance(columns, tuple):
         for column, part in zip(columns, batch, strict=True):
             write_batch(column, part)
-    elif np.shape(batch) != columns.shape:
-        raise ValueError(f"a batch of shape {columns.shape} is needed, not {np.shape(batch)}")
     else:
         columns[...] = batch
 

@@ -55,20 +55,23 @@ class Share:
         self._same_step = autoreset == AutoresetMode.SAME_STEP
         self._envs = [make() for make in functions]
         self._over = [False] * len(self._envs)
-        for env in self._envs[1:]:
-            for space in ("observation_space", "action_space"):
-                ours, theirs = getattr(self._envs[0], space), getattr(env, space)
-                if ours != theirs:
-                    raise ValueError(f"environments side by side differ in their {space}: {ours} and {theirs}")
+        for row, env in enumerate(self._envs, first):
+            for name, space in rows.spaces.items():
+                own = getattr(env, name)
+                if own != space:
+                    raise ValueError(f"the {name} of env {row} is another than that of env 0: {own}, not {space}")
 
-    def reset(self, seeds: Sequence[int | None], options: dict[str, Any] | None) -> list[Info]:
-        """Begin an episode in each environment; their infos."""
-        infos = []
-        for index, seed in enumerate(seeds):
-            observation, info = self._begin(index, seed, options)
-            self._tell(index, observation, 0.0, False, False, info)
-            infos.append(info)
-        return infos
+    def reset(
+        self, seeds: Sequence[int | None], options: dict[str, Any] | None, chosen: Sequence[bool]
+    ) -> list[tuple[int, Info]]:
+        """Begin an episode in each environment that is chosen; their infos, by row."""
+        said = []
+        for index in range(len(self._envs)):
+            if chosen[index]:
+                observation, info = self._begin(index, seeds[index], options)
+                self._tell(index, observation, 0.0, False, False, info)
+                said.append((self._first + index, info))
+        return said
 
     def step(self) -> list[tuple[int, Info]]:
         """Take the actions that stand in the rows; what there is to say of episodes that ended or began, by row."""
@@ -102,6 +105,12 @@ class Share:
         """An attribute of each environment, or what its call gives."""
         found = [env.get_wrapper_attr(name) for env in self._envs]
         return [each(*args, **kwargs) if callable(each) else each for each in found]
+
+    def set_attr(self, name: str, values: Sequence[Any]) -> tuple[()]:
+        """Set an attribute of each environment."""
+        for env, value in zip(self._envs, values, strict=True):
+            env.set_wrapper_attr(name, value)
+        return ()
 
     def close(self) -> None:
         """Close the environments."""

@@ -16,6 +16,7 @@ from gymnasium.vector.utils import CloudpickleWrapper
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
+from tltlc.record import replace
 
 _TO_START_S: Final = 120.0
 """How long a worker may take to import what it needs and to make its environments, at the least."""
@@ -76,7 +77,7 @@ class Workers:
                 self._selector.register(file, selectors.EVENT_READ, worker)
             self._asked[worker] = None
         patience = max(self._timeout, _TO_START_S)
-        return [answer for answer in self.answers(patience) if isinstance(answer, Loss)]
+        return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         """Tell all workers to do something, each with its own arguments, and wait for the answers."""

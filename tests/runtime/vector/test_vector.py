@@ -21,9 +21,9 @@ from tltl_runtime.vector.workers import shared_out
 SPEC = """
 clock 0.15 s
 signal health in [0, 1]
-signal position.x in [-100, 100]
+signal position.x: length in [-100 m, 100 m]
 predicate well in [-1, 1] = clamp(2 * health - 1, -1, 1)
-predicate east in [-1, 1] = clamp((position.x - 90) / 190, -1, 1)
+predicate east in [-1, 1] = clamp((position.x - 90 m) / 190 m, -1, 1)
 spec short { limit 23 steps  reach east  keep well }
 """
 COUNT = 4

@@ -1,0 +1,46 @@
+"""Whether a batch of actions has one for each environment, before any of it is sent."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from gymnasium import Space, spaces
+from numpy.typing import NDArray
+
+
+def check_batch(space: Space[Any], batch: Any, count: int) -> None:
+    """Raise ValueError where ``batch`` has not ``count`` values of a space; the range of a Box is left to its owner."""
+    if isinstance(space, spaces.Dict):
+        if not isinstance(batch, Mapping) or batch.keys() != space.keys():
+            raise ValueError(f"a batch of actions has the keys {', '.join(space)}")
+        for key, part in space.items():
+            check_batch(part, batch[key], count)
+        return
+    if isinstance(space, spaces.Tuple):
+        if len(batch) != len(space):
+            raise ValueError(f"a batch of actions has {len(space)} parts, not {len(batch)}")
+        for part, values in zip(space, batch, strict=True):
+            check_batch(part, values, count)
+        return
+    given = np.asarray(batch)
+    shape = (count, *(space.shape or ()))
+    if given.shape != shape:
+        raise ValueError(f"a batch of shape {shape} is needed, not {given.shape}")
+    if not np.can_cast(given.dtype, np.dtype(space.dtype), "same_kind"):
+        raise ValueError(f"actions of {space} are {space.dtype}, not {given.dtype}")
+    wrong = _outside(space, given).reshape(count, -1).any(axis=1)
+    if wrong.any():
+        row = int(wrong.argmax())
+        raise ValueError(f"the action of env {row} is {given[row].tolist()}, which is not in {space}")
+
+
+def _outside(space: Space[Any], values: NDArray[Any]) -> NDArray[np.bool_]:
+    """Which numbers are in no action of the space."""
+    if isinstance(space, (spaces.Discrete, spaces.MultiDiscrete)):
+        size = space.n if isinstance(space, spaces.Discrete) else space.nvec
+        return np.asarray((values < space.start) | (values >= space.start + size))
+    if isinstance(space, spaces.MultiBinary):
+        return np.asarray((values < 0) | (values > 1))
+    return np.zeros(values.shape, dtype=np.bool_)

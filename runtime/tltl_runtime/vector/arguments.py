@@ -1,0 +1,49 @@
+"""What a vector environment may be given, checked before there are workers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
+
+
+def check_arguments(
+    functions: Sequence[Callable[..., Any]],
+    workers: int | None,
+    names: Sequence[str] | None,
+    autoreset: AutoresetMode,
+    on_death: str,
+) -> None:
+    """Raise ValueError, or TypeError, for what does not fit."""
+    if not functions:
+        raise ValueError("there is no function that makes an environment")
+    if not all(map(callable, functions)):
+        raise TypeError("functions are needed that make environments, not environments: `[lambda: make()] * 8`")
+    if workers is not None and (not isinstance(workers, int) or isinstance(workers, bool)):
+        raise TypeError(f"workers is a whole number, not {workers!r:.40}")
+    if workers is not None and workers < 1:
+        raise ValueError(f"at least one worker is needed, not {workers}")
+    if names is not None and len(names) != len(functions):
+        raise ValueError(f"{len(functions)} names are needed, not {len(names)}")
+    if autoreset == AutoresetMode.DISABLED:
+        raise ValueError("autoreset is SAME_STEP or NEXT_STEP here, not DISABLED")
+    if on_death not in ("stop", "replace"):
+        raise ValueError(f"on_death is `stop` or `replace`, not {on_death!r}")
+    if on_death == "replace" and autoreset != AutoresetMode.SAME_STEP:
+        raise ValueError("workers are replaced with autoreset SAME_STEP alone: new episodes begin in the same step")
+
+
+def split_mask(options: dict[str, Any] | None, count: int) -> tuple[NDArray[np.bool_], dict[str, Any] | None]:
+    """Which environments ``options["reset_mask"]`` chooses, by default all, and the other options.
+
+    Raises ValueError where the mask is not a bool for each environment, one of them true.
+    """
+    if options is None or "reset_mask" not in options:
+        return np.ones(count, dtype=np.bool_), options
+    mask = np.asarray(options["reset_mask"])
+    if mask.shape != (count,) or mask.dtype != np.bool_ or not mask.any():
+        raise ValueError(f"options['reset_mask'] is an array of {count} bools, one of them True, not {mask!r:.80}")
+    return mask, {key: value for key, value in options.items() if key != "reset_mask"}
