@@ -7,12 +7,17 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tltl_runtime.commands.ending import requests_heard
+from tltl_runtime.commands.film import FILMS, Film, write_film
+from tltl_runtime.commands.level_faults import level_faults
+from tltl_runtime.commands.notation import notation_option
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.spec_file import split
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
+    from tltl_runtime.stealth.episodes.summary import Notation
 
 
 @click.command(
@@ -20,7 +25,7 @@ if TYPE_CHECKING:
 Examples:
   tltlc demonstrate cover_and_hide
   tltlc demonstrate branching:v1 --episodes 20 -o branching_runs
-  tltlc demonstrate my_level.toml --spec my_plan.tltl:careful
+  tltlc demonstrate my_level.toml --spec my_plan.tltl:careful --film gif
 """
 )
 @click.argument("level", metavar="LEVEL[:VARIANT]")
@@ -38,6 +43,7 @@ Examples:
 )
 @click.option(
     "--output",
+    "--out",
     "-o",
     "folder",
     metavar="DIR",
@@ -46,29 +52,46 @@ Examples:
     show_default=True,
     help="The folder for recordings and plans, made where it is missing.",
 )
+@click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Make a film of each episode, too.")
+@notation_option
 @click.option("--careless", is_flag=True, help="Play as if nobody could see.")
-def command(level: str, spec: str | None, episodes: int, seed: int, folder: Path, careless: bool) -> int:
+@level_faults()
+def command(
+    level: str,
+    spec: str | None,
+    episodes: int,
+    seed: int,
+    folder: Path,
+    film: str | None,
+    notation: Notation,
+    careless: bool,
+) -> int:
     """Have the scripted expert play a level.
 
-    Writes for each episode the recording LEVEL-VARIANT-SEED.episode.npz and the plan of its way as a .png.
-    The exit status is 1 where an episode does not succeed.
+    Writes for each episode the recording LEVEL-VARIANT-SEED.episode.npz and the plan of its way as a .png, and says
+    why those failed that did.  The exit status is 1 where an episode does not succeed.
     """
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
     from tltl_runtime.stealth.supply.feasible import warnings
 
-    with Report() as report:
-        path, variant = split(level)
-        env = RecordEpisode(make_env(path, variant or "v0", spec), "careless expert" if careless else "expert")
-        succeeded = 0
+    with Report() as report, requests_heard():
+        file, variant = split(level)
+        env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
+        played = succeeded = 0
         try:
             report.add(warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
             expert = Expert(env, careful=not careless)
             for number in range(seed, seed + episodes):
                 play_episode(env, expert, number)
-                succeeded += env.episode.success
-                click.echo(_line(number, env.episode, _write(folder, number, env.episode)))
+                episode = env.episode
+                path = _write(folder, number, episode, film, notation)
+                played, succeeded = played + 1, succeeded + episode.success
+                click.echo(_line(number, episode, path))
+        except KeyboardInterrupt:
+            click.echo(f"stopped: {played} of {episodes} episodes were recorded", err=True)
+            raise
         finally:
             env.close()
         if episodes > 1:
@@ -77,21 +100,27 @@ def command(level: str, spec: str | None, episodes: int, seed: int, folder: Path
     return report.status
 
 
-def _write(folder: Path, seed: int, episode: Episode) -> Path:
-    """Write the recording and the plan of an episode; the path of the recording."""
+def _write(folder: Path, seed: int, episode: Episode, film: str | None, notation: Notation) -> Path:
+    """Write the recording and the pictures of an episode; the path of the recording."""
     from tltl_runtime.stealth.episodes.file import SUFFIX, write_episode
     from tltl_runtime.stealth.pictures.plan import draw_episode
     from tltlc.writing import write_files
 
     name = f"{episode.level.name}-{episode.level.variant}-{seed}"
-    write_files(folder, {f"{name}.png": draw_episode(episode)})
+    write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation)})
     path = folder / f"{name}{SUFFIX}"
     write_episode(path, episode)
+    if film:
+        span = (0.0, episode.snapshots[-1].time)
+        write_film(folder / f"{name}.{film}", episode, span, Film(notation=notation))
     return path
 
 
 def _line(seed: int, episode: Episode, path: Path) -> str:
     """How an episode went."""
+    from tltl_runtime.stealth.episodes.cause import cause
+
     steps, seconds = len(episode.actions), episode.snapshots[-1].time
     ended = f"{episode.end} after {steps} steps, {seconds:.2f} s"
-    return f"seed {seed}: {ended}, progress {episode.progress[-1]:.2f}, return {episode.rewards.sum():.3f}: {path}"
+    line = f"seed {seed}: {ended}, progress {episode.progress[-1]:.2f}, return {episode.rewards.sum():.3f}: {path}"
+    return line if episode.success else f"{line}\n  {cause(episode).text}"

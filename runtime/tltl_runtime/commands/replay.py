@@ -3,58 +3,37 @@
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.notation import notation_option
-from tltl_runtime.stealth.world.player import DECISION
-from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.record import record
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
     from tltl_runtime.stealth.episodes.summary import Notation
     from tltl_runtime.stealth.pictures.film import View
 
-T = TypeVar("T")
-
 _VIEWS: Final = ("third_person", "top_down", "overview", "plan")
-_FILMS: Final = (".gif", ".mp4")
-_ENDINGS: Final = (".png", *_FILMS, ".csv")
+_ENDINGS: Final = (".png", *FILMS, ".csv")
 _ONLY_FOR: Final = {
-    "view": _FILMS,
-    "speed": _FILMS,
-    "rate": _FILMS,
-    "size": (".png", *_FILMS),
-    "start": (*_FILMS, ".csv"),
-    "stop": (*_FILMS, ".csv"),
+    "view": FILMS,
+    "speed": FILMS,
+    "rate": FILMS,
+    "size": (".png", *FILMS),
+    "start": (*FILMS, ".csv"),
+    "stop": (*FILMS, ".csv"),
 }
 """The endings of what each option is for."""
 
 _SIZES: Final = (160, 4096)
 """The least and the greatest width and height, in pixels."""
-
-_FILM_SIZE: Final = (640, 480)
-_MOST_FRAMES_A_SECOND: Final = 30.0
-"""Unless asked for, a faster film leaves decisions out."""
-
-
-@record
-class Film:
-    """How a film is made: ``rate`` in pictures a second, None for one each decision; ``size`` in pixels."""
-
-    view: View
-    speed: float
-    rate: float | None
-    size: tuple[int, int] | None
-    notation: Notation
 
 
 def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int, int] | None:
@@ -87,6 +66,7 @@ Examples:
 @click.argument("files", metavar="FILE...", nargs=-1, required=True)
 @click.option(
     "--output",
+    "--out",
     "-o",
     "path",
     metavar="OUT",
@@ -158,7 +138,7 @@ def command(
     from tltl_runtime.stealth.episodes.file import read_episode
     from tltl_runtime.stealth.episodes.summary import judged_with, summary, summary_text
 
-    film = Film(view or "third_person", speed or 1.0, rate, size, notation)
+    film = Film(view or "third_person", speed or 1.0, rate, size or (640, 480), notation)
     summaries: list[dict[str, Any]] = []
     with Report(format, results=True) as report:
         for name in files:
@@ -173,7 +153,7 @@ def command(
                 report.add((*judged, *played))
                 said |= {"follows_from_spec": not judged, "plays_again": not played}
             if path is not None:
-                _write(path, episode, _span(episode, start, stop), film)
+                _write(path, episode, _span(episode, start, stop), film, size)
                 report.say(f"wrote {path}")
                 if path.suffix.lower() == ".csv":
                     report.say(f"judge it with: {judged_with(episode, str(path))}")
@@ -224,8 +204,8 @@ def _span(episode: Episode, start: float | None, stop: float | None) -> tuple[fl
     return first, min(last, end)
 
 
-def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film) -> None:
-    """Write what the ending of the path asks for."""
+def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film, size: tuple[int, int] | None) -> None:
+    """Write what the ending of the path asks for; ``size`` is that of a plan, None for the natural one."""
     from tltlc.writing import write_file
 
     ending = path.suffix.lower()
@@ -236,35 +216,6 @@ def _write(path: Path, episode: Episode, span: tuple[float, float], film: Film) 
     elif ending == ".png":
         from tltl_runtime.stealth.pictures.plan import draw_episode
 
-        write_file(path, draw_episode(episode, film.size, film.notation))
+        write_file(path, draw_episode(episode, size, film.notation))
     else:
-        _write_film(path, episode, span, film)
-
-
-def _write_film(path: Path, episode: Episode, span: tuple[float, float], film: Film) -> None:
-    from tltl_runtime.stealth.pictures.film import frames
-    from tltl_runtime.stealth.pictures.film_file import NoEncoderError, write_gif, write_mp4
-    from tltlc.writing import replaced
-
-    rate = film.rate or min(film.speed / DECISION, _MOST_FRAMES_A_SECOND)
-    start, stop = span
-    count = int((stop - start) / film.speed * rate + 1e-6) + 1
-    times = [start + number * film.speed / rate for number in range(count)]
-    pictures = _counted(frames(episode, times, film.view, film.size or _FILM_SIZE, film.notation), count)
-    write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
-    try:
-        with replaced(path) as temporary:
-            write(temporary, pictures, 1 / rate)
-    except NoEncoderError as error:
-        raise exits.missing_component("an .mp4", "imageio-ffmpeg", "imageio-ffmpeg") from error
-
-
-def _counted(pictures: Iterable[T], count: int) -> Iterator[T]:
-    """The pictures, with a bar on a terminal's standard error that says how far they are."""
-    if not sys.stderr.isatty():
-        yield from pictures
-        return
-    from rich.console import Console
-    from rich.progress import track
-
-    yield from track(pictures, "drawing", total=count, console=Console(stderr=True), transient=True)
+        write_film(path, episode, span, film)

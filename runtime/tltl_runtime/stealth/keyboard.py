@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from time import monotonic
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from tltl_runtime.stealth.env import GameEnv
 from tltl_runtime.stealth.episodes.cause import cause
@@ -18,27 +17,40 @@ from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.window.window import Keys, Window
 from tltl_runtime.stealth.world.player import DECISION
 
-Save = Callable[[Episode], str]
-"""Writes an episode and returns the name of its file."""
+
+class Recordings(Protocol):
+    """Where episodes go."""
+
+    def keep(self, episode: Episode) -> None:
+        """Write an episode that goes on, until it is saved."""
+
+    def save(self, episode: Episode) -> str:
+        """Write an episode that is over and return the name of its file."""
+
 
 _IDLE: Final = (0, 0, 0, 0, 0)
 _STANDING: Final = 0.05
 """Seconds between two looks at the keys while the game stands still."""
+_KEPT: Final = 33
+"""Decisions, about five seconds, after which what was played is kept."""
 _SOON: Final = 1 / 60
 """Seconds between two pictures, at least."""
 
 
 class KeyboardPlayer:
-    """Plays episodes of ``env`` in ``window``, drawn by ``renderer``; what was played is handed to ``save``.
+    """Plays episodes of ``env`` in ``window``, drawn by ``renderer``; what was played is handed to ``recordings``.
 
     Each episode is saved once: at its end, when it is begun again, and when it is stopped in whatever way, an
-    exception such as KeyboardInterrupt included.
+    exception such as KeyboardInterrupt included.  While it goes on, what there is is kept every few seconds.
     """
 
-    def __init__(self, env: RecordEpisode, window: Window, renderer: Renderer, view: View, save: Save) -> None:
+    def __init__(
+        self, env: RecordEpisode, window: Window, renderer: Renderer, view: View, recordings: Recordings
+    ) -> None:
         game = env.unwrapped
         assert isinstance(game, GameEnv)
-        self._env, self._game, self._window, self._renderer, self._save = env, game.game, window, renderer, save
+        self._env, self._game, self._window, self._renderer = env, game.game, window, renderer
+        self._recordings = recordings
         self._view = view
         self._unsaved = False
 
@@ -63,6 +75,8 @@ class KeyboardPlayer:
             _, _, terminated, truncated, info = self._env.step(list(keys.action))
             self._unsaved, over = True, terminated or truncated
             before, snapshot = snapshot, self._game.snapshot()
+            if self._game.steps % _KEPT == 0 and not over:
+                self._recordings.keep(self._env.episode)
             keys = self._move(before, snapshot, hud(snapshot, info, fspa), due)
             # A picture too many is made up for; a machine that is too slow for the game is not waited for.
             due = max(due + DECISION, monotonic() - DECISION)
@@ -114,7 +128,7 @@ class KeyboardPlayer:
         """Save what was played and is not saved yet."""
         if not self._unsaved:
             return None
-        file = self._save(self._env.episode)
+        file = self._recordings.save(self._env.episode)
         # Not before: where saving is interrupted, it is done again.
         self._unsaved = False
         return file

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tltl_runtime.stealth.episodes.check import check
@@ -32,6 +37,33 @@ def test_failing_is_a_finding(tltlc, tmp_path: Path) -> None:  # type: ignore[no
     found: Outcome = tltlc("demonstrate", "cover_and_hide", "--careless", "--spec", spec, "-o", str(tmp_path))
     assert found.status == 1
     assert found.out.startswith("seed 0: limit after 5 steps, 0.75 s, progress ")
+    said = "  nowhere to go for the expert; limit after 5 steps, remaining: Reach seen"
+    assert found.out.splitlines()[1] == said
+
+
+def test_a_film_at_once(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    (tmp_path / "soon.tltl").write_text("import stealth\nspec soon { limit 3 steps\n keep alive }")
+    spec = f"{tmp_path / 'soon.tltl'}"
+    found: Outcome = tltlc("demonstrate", "cover_and_hide", "--spec", spec, "-o", str(tmp_path), "--film", "gif")
+    assert found.status == 0, found.err
+    with Image.open(tmp_path / "cover_and_hide-v0-0.gif") as film:
+        assert (film.size, film.n_frames) == ((640, 480), 4)
+
+
+@pytest.mark.parametrize(("name", "status"), [("SIGTERM", 143), ("SIGINT", 130)])
+def test_asked_to_end_it_says_what_there_is(tmp_path: Path, name: str, status: int) -> None:
+    command = [sys.executable, "-m", "tltlc", "demonstrate", "cover_and_hide", "--careless", "--episodes", "900"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as demonstrating:
+        assert demonstrating.stdout is not None
+        demonstrating.stdout.readline()
+        demonstrating.send_signal(getattr(signal, name))
+        _, err = demonstrating.communicate(timeout=30)
+    assert demonstrating.returncode == status
+    assert re.fullmatch(r"stopped: \d+ of 900 episodes were recorded\n", err)
+    count = int(err.split()[1])
+    assert len(list((tmp_path / "demonstrations").glob("*.episode.npz"))) >= count >= 1
 
 
 @pytest.mark.parametrize(("level", "status"), [("nowhere", 2), ("cover_and_hide:v9", 2)])

@@ -98,6 +98,16 @@ def test_keys_move_the_player_and_escape_records(display: dict[str, str], tmp_pa
 
 
 @needs_screen
+def test_crouching_by_one_stroke(display: dict[str, str], tmp_path: Path) -> None:
+    player = started(display, tmp_path, "branching", "--crouch", "toggle", "-o", "runs")
+    keys(display, "key", "c", "sleep", "0.8", "key", "c", "sleep", "0.8")
+    player.send_signal(signal.SIGHUP)
+    ended(player, 129)
+    crouching = judged(tmp_path / "runs" / "branching-v0.episode.npz").actions[:, 3].tolist()
+    assert crouching == sorted(crouching, reverse=True) and 0 < sum(crouching) < len(crouching)
+
+
+@needs_screen
 def test_playing_again_and_ctrl_c_lose_nothing(display: dict[str, str], tmp_path: Path) -> None:
     player = started(display, tmp_path, "cover_and_hide", "--view", "top_down")
     keys(display, "keydown", "a", "sleep", "0.6", "keyup", "a", "key", "r", "sleep", "0.6")
@@ -123,7 +133,7 @@ def test_an_end_is_recorded_once_and_a_request_to_end_is_heard(display: dict[str
     (path,) = tmp_path.glob("*.npz")
     assert judged(path).end == "success"
     player.send_signal(signal.SIGTERM)
-    said = ended(player, 130)
+    said = ended(player, 143)
     assert said.count("success after") == 1
 
 
@@ -170,5 +180,27 @@ def test_a_recording_finds_a_place_where_its_own_is_refused(
 def test_where_to_record(tmp_path: Path) -> None:
     with pytest.raises(click.UsageError, match=r"a folder or a name with \.episode\.npz"):
         Files(tmp_path / "mine.txt", "x")
-    with pytest.raises(TltlError, match="TLT0005"):
+    with pytest.raises(TltlError, match=r"TLT0005: cannot record to `.*nowhere`: there is no such folder"):
         Files(tmp_path / "nowhere" / "mine.episode.npz", "x")
+    Files(tmp_path / "new" / "runs", "x")
+    assert (tmp_path / "new" / "runs").is_dir()
+
+
+def test_no_recording_is_ever_lost(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    env = RecordEpisode(make_env("navigation"), "keyboard")
+    env.reset(seed=1)
+    env.step([1, 0, 0, 0, 0])
+    older = tmp_path / "mine.episode.npz"
+    older.write_bytes(b"older")
+    files = Files(older, "x")
+    files.keep(env.episode)
+    assert len(read_episode(tmp_path / "mine.unfinished.episode.npz").actions) == 1
+    # What a process that was killed left behind stays, too.
+    other = Files(older, "x")
+    other.keep(env.episode)
+    assert files.save(env.episode) == str(tmp_path / "mine-2.episode.npz")
+    assert older.read_bytes() == b"older"
+    names = {"mine.episode.npz", "mine-2.episode.npz", "mine.unfinished-2.episode.npz"}
+    assert {path.name for path in tmp_path.iterdir()} == names
+    assert "stopped after 0.15 s, remaining: Reach near(s1)" in capsys.readouterr().out
+    env.close()

@@ -9,6 +9,7 @@ from typing import Any, Final, Literal
 from tltl_runtime.stealth.episodes.cause import Cause, Kind
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.snapshot import Snapshot
+from tltl_runtime.stealth.world.player import DECISION
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record
 
@@ -65,7 +66,7 @@ def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
         Bar("stamina", snapshot.player.stamina, "plain"),
         Bar("progress", info["progress"], "warn"),
     )
-    lines = [Line(f"{snapshot.time:.1f} s   {info['verdict']}", "quiet")]
+    lines = [Line(f"{_clock(snapshot.time, fspa)}   {info['verdict']}", "quiet")]
     if snapshot.enemies:
         lines.append(_seen(snapshot))
     lines += [Line(text) for text in _shortened(fspa.states[info["state"]].label.english)]
@@ -89,6 +90,13 @@ def ending(shown: Hud, why: Cause, file: str) -> Hud:
     return _with_title(
         shown, _TITLES[why.kind], tone, (*wrap(why.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
     )
+
+
+def _clock(seconds: float, fspa: Fspa) -> str:
+    """The time, and how much of it is left where the spec has a limit."""
+    if fspa.limit_steps is None:
+        return f"{seconds:.1f} s"
+    return f"{seconds:.1f} s, {max(0.0, fspa.limit_steps * DECISION - seconds):.0f} s left"
 
 
 def _seen(snapshot: Snapshot) -> Line:

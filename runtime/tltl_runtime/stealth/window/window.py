@@ -60,6 +60,8 @@ class Window:
 
     One with a ``side`` has room beside the pictures for a head-up display.
 
+    With ``sticky_crouch`` one stroke of a key begins to crouch, and the next stands up.
+
     Keys: arrows or WASD walk (up is away from the eye, which is north), space jumps, C or control crouches, shift
     sprints, R begins again, V changes the view, Escape, Q or the window's own button stop.
 
@@ -67,7 +69,7 @@ class Window:
         TltlError: TLT0730 without pygame, TLT0830 where no window can be opened.
     """
 
-    def __init__(self, title: str, size: tuple[int, int], side: bool = False) -> None:
+    def __init__(self, title: str, size: tuple[int, int], side: bool = False, sticky_crouch: bool = False) -> None:
         pygame = self._pygame = _loaded()
         scale = max(1.0, _LEAST / size[0])
         self.size = (round(size[0] * scale), round(size[1] * scale))
@@ -87,6 +89,7 @@ class Window:
         self._clock = pygame.time.Clock()
         self._fonts: dict[int, Any] = {}
         self._tapped: set[int] = set()
+        self._sticky, self._stuck = sticky_crouch, False
 
     def close(self) -> None:
         """Close the window; closing twice does nothing."""
@@ -96,6 +99,7 @@ class Window:
         """What is asked for now; a key that was only tapped since the last call counts as held."""
         pygame = self._pygame
         stop = restart = view = False
+        crouches = (pygame.K_c, pygame.K_LCTRL, pygame.K_RCTRL)
         for event in pygame.event.get():
             if event.type == pygame.QUIT:
                 stop = True
@@ -104,6 +108,7 @@ class Window:
                 stop = stop or event.key in (pygame.K_ESCAPE, pygame.K_q)
                 restart = restart or event.key == pygame.K_r
                 view = view or event.key == pygame.K_v
+                self._stuck ^= self._sticky and event.key in crouches
         pressed, tapped = pygame.key.get_pressed(), self._tapped
         self._tapped = set()
 
@@ -116,7 +121,7 @@ class Window:
             east % 3,
             north % 3,
             int(held(pygame.K_SPACE)),
-            int(held(pygame.K_c, pygame.K_LCTRL, pygame.K_RCTRL)),
+            int(self._stuck if self._sticky else held(*crouches)),
             int(held(pygame.K_LSHIFT, pygame.K_RSHIFT)),
         )
         return Keys(action, restart, stop, view)

@@ -30,7 +30,9 @@ def test_it_tells_how_things_stand(played: Any) -> None:
     shown = hud(snapshot, info, env.task.fspa)
     assert [(bar.name, bar.value) for bar in shown.bars] == [("health", 1.0), ("stamina", 1.0), ("progress", 0.0)]
     said = [line.text for line in shown.lines]
-    assert said[:2] == ["0.0 s   pending", "nobody sees you"]
+    assert said[:2] == ["0.0 s, 60 s left   pending", "nobody sees you"]
+    endless = replace(env.task.fspa, limit_steps=None)
+    assert hud(snapshot, info, endless).lines[0].text == "0.0 s   pending"
     assert " ".join(said[2:]) == env.task.fspa.states[0].label.english
     assert max(map(len, said)) <= 36
 
