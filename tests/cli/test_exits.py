@@ -6,9 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
 
 from tests.cli.conftest import EXAMPLE, HIDE, ROOT
+from tltlc.cli import exits
 
 
 def test_clean_and_warnings_are_0(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
@@ -176,3 +178,19 @@ def test_a_summary_counts_the_files_without_tests(tltlc, inside: Path) -> None: 
     found = tltlc("test", "broken.tltl", "other.tltl")
     assert found.out == "0 passed, 0 failed, 2 files with errors\n"
     assert "\n\nerror[" in found.err
+
+
+@pytest.mark.parametrize(
+    ("type_", "text", "said"),
+    [
+        (click.FLOAT, "1,5", "`1,5` is no number; write 1.5"),
+        (click.FloatRange(min=0.0), "fast", "`fast` is no number"),
+        (click.IntRange(min=0), "1.5", "`1.5` is no whole number"),
+    ],
+)
+def test_what_is_no_number(type_: click.ParamType, text: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    command = click.Command("wait", params=[click.Option(["--for"], type=type_)])
+    with pytest.raises(click.UsageError) as error:
+        command.main(["--for", text], standalone_mode=False)
+    assert exits.report(error.value) == exits.USAGE
+    assert capsys.readouterr().err.startswith(f"error[TLT0700]: invalid value for '--for': {said}\n")

@@ -131,3 +131,18 @@ size = [2.0, 2.0, 1.75]
 name = "exit"
 at = [9.1, 3.0, 1.75]
 """
+
+
+def test_where_something_is_to_be_told_nothing_to_report_is_not_said(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    spec = tmp_path / "never.tltl"
+    spec.write_text("import spatial entity exit spec never { limit 9 steps keep near(exit) keep not near(exit) }")
+    found: Outcome = tltlc("check", spec, "--level", "navigation:v0")
+    assert "warning[TLT0410]" in found.err
+    assert "navigation:v0 supplies exit, level_size = 27.39 m\n" in found.err
+    assert "nothing to report" not in found.err
+
+
+def test_a_plan_that_cannot_be_written(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("check", "--level", "navigation:v0", "--plan", "no/such.png")
+    assert found.status == 3
+    assert "help: name another place with --plan\n" in found.err
