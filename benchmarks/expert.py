@@ -9,17 +9,18 @@ from __future__ import annotations
 
 import json
 import math
+import statistics
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from benchmarks.store import Record, Store, source_digest
 from benchmarks.variants import measure_each, variants_of_all
 
 if TYPE_CHECKING:
-    from tltl_runtime.stealth.expert.expert import Expert
-    from tltl_runtime.stealth.game import Game
+    from tltl_runtime.stealth.episodes.outcome import Outcome
+    from tltl_runtime.stealth.level import Level
 
 SECTION = "expert"
 CARES = ("careful", "careless")
@@ -38,15 +39,18 @@ def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
 def played(level: str, variant: str, care: str, episodes: int) -> Record:
     """Episodes of the seeds from 0 on: outcomes by the barrier that opened by chance, ``""`` where there is none."""
     from tltl_runtime.stealth.env import make_env
-    from tltl_runtime.stealth.expert.expert import Expert
+    from tltl_runtime.stealth.episodes.outcome import outcome
+    from tltl_runtime.stealth.expert.expert import Expert, play_episode
+    from tltl_runtime.stealth.recording import RecordEpisode
 
-    env = make_env(level, variant)
+    env = RecordEpisode(make_env(level, variant))
     expert = Expert(env, careful=care == "careful")
     began = time.process_time()
-    by_barrier: dict[str, list[dict[str, float]]] = {}
+    by_barrier: dict[str, list[Outcome]] = {}
     for seed in range(episodes):
-        outcome = _episode(env, expert, seed)
-        by_barrier.setdefault(_chance(env.get_wrapper_attr("game")), []).append(outcome)
+        play_episode(env, expert, seed)
+        went = outcome(env.episode)
+        by_barrier.setdefault(_chance(expert.level, went.opened), []).append(went)
     env.close()
     return {
         "barriers": {name: _summary(outcomes) for name, outcomes in sorted(by_barrier.items())},
@@ -72,36 +76,25 @@ def _cases() -> Iterator[Sequence[str]]:
             yield level, variant, care
 
 
-def _episode(env: Any, expert: Expert, seed: int) -> dict[str, float]:
-    env.reset(seed=seed)
-    expert.reset()
-    game: Game = env.get_wrapper_attr("game")
-    total, length, chased, over = 0.0, 0, False, False
-    while not over:
-        _, reward, terminated, truncated, info = env.step(expert.act())
-        over = terminated or truncated
-        total, length, chased = total + reward, length + 1, chased or "chase" in game.enemies.modes
+def _chance(level: Level, opened: Collection[str]) -> str:
+    """The barrier that an unlocking by chance has opened."""
+    chosen = (name for unlock in level.unlocks for name in unlock.barriers)
+    return next((name for name in chosen if name in opened), "")
+
+
+def _summary(outcomes: Sequence[Outcome]) -> Record:
     return {
-        "success": info["success"],
-        "progress": info["progress"],
-        "reward": total,
-        "length": length,
-        "chased": chased,
+        "episodes": len(outcomes),
+        "successes": sum(each.success for each in outcomes),
+        "progress": _mean(each.progress for each in outcomes),
+        "reward": _mean(each.reward for each in outcomes),
+        "length": _mean(each.steps for each in outcomes),
+        "chased": _mean(each.chased for each in outcomes),
     }
 
 
-def _chance(game: Game) -> str:
-    """The barrier that an unlocking by chance has opened."""
-    chosen = {name for unlock in game.level.unlocks for name in unlock.barriers}
-    names = (barrier.name for barrier, is_open in zip(game.level.barriers, game.open, strict=True) if is_open)
-    return next((name for name in names if name in chosen), "")
-
-
-def _summary(outcomes: list[dict[str, float]]) -> Record:
-    count = len(outcomes)
-    mean = {key: round(sum(outcome[key] for outcome in outcomes) / count, 3) for key in outcomes[0]}
-    successes = sum(bool(outcome["success"]) for outcome in outcomes)
-    return {"episodes": count, "successes": successes, **{key: mean[key] for key in mean if key != "success"}}
+def _mean(values: Iterable[float]) -> float:
+    return round(statistics.fmean(values), 3)
 
 
 if __name__ == "__main__":

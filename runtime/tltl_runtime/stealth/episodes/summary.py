@@ -10,6 +10,7 @@ from typing import Any, Final, Literal
 
 from tltl_runtime.stealth.episodes.cause import cause
 from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.episodes.outcome import outcome
 from tltlc.resolve.spec import ValueType
 
 Notation = Literal["english", "unicode", "ascii"]
@@ -25,26 +26,26 @@ def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
 
     ``notation`` is that of what remains to be satisfied in each state.
     """
-    level, fspa, count, why = episode.level, episode.fspa, len(episode.actions), cause(episode)
+    level, fspa, went, why = episode.level, episode.fspa, outcome(episode), cause(episode)
     states = episode.states.tolist()
-    rows = [row for row in range(count + 1) if row == 0 or states[row] != states[row - 1]]
+    rows = [row for row in range(went.steps + 1) if row == 0 or states[row] != states[row - 1]]
     return {
         "level": level.name,
         "variant": level.variant,
         "spec": fspa.name,
         "player": episode.player,
         "seed": episode.seed,
-        "steps": count,
-        "seconds": episode.snapshots[-1].time,
+        "steps": went.steps,
+        "seconds": went.seconds,
         "limit_steps": fspa.limit_steps,
-        "end": episode.end,
-        "success": episode.success,
+        "end": went.end,
+        "success": went.success,
         "cause": {"kind": why.kind, "by": why.by, "time": why.time, "place": why.place, "text": why.text},
-        "verdict": episode.verdict,
-        "progress": float(episode.progress[-1]),
-        "reward": float(episode.rewards.sum()),
-        "health": episode.snapshots[-1].health,
-        "seen_steps": sum(any(shot.sees) for shot in episode.snapshots),
+        "verdict": went.verdict,
+        "progress": went.progress,
+        "reward": went.reward,
+        "health": went.health,
+        "seen_steps": went.seen_steps,
         "params": dict(episode.params),
         "versions": dict(episode.versions),
         "changes": [
