@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.silence import silence
 from tltl_runtime.stealth.pictures.hud import Hud, Tone
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
@@ -75,9 +76,11 @@ class Window:
         self.size = (round(size[0] * scale), round(size[1] * scale))
         self._side = _SIDE if side else 0
         try:
-            pygame.display.init()
+            # Without a screen SDL complains by itself of each that it does not find.
+            with silence():
+                pygame.display.init()
+                self._surface = pygame.display.set_mode((self._side + self.size[0], self.size[1]))
             pygame.font.init()
-            self._surface = pygame.display.set_mode((self._side + self.size[0], self.size[1]))
         except pygame.error as error:
             pygame.quit()
             raise _no_display(str(error)) from None

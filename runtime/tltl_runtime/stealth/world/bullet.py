@@ -6,32 +6,10 @@ not installed, importing this module raises TltlError, TLT0730.
 
 from __future__ import annotations
 
-import os
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 
+from tltl_runtime.silence import silence
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-
-
-@contextmanager
-def _silence() -> Iterator[None]:
-    """Nothing reaches standard error; where the process has none, nothing needs to be kept from it."""
-    if sys.stderr is not None:
-        sys.stderr.flush()
-    try:
-        kept = os.dup(2)
-    except OSError:
-        yield
-        return
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 def _missing() -> TltlError:
@@ -42,7 +20,7 @@ def _missing() -> TltlError:
 
 
 try:
-    with _silence():
+    with silence():
         import pybullet
 except ModuleNotFoundError:
     raise _missing() from None
