@@ -65,7 +65,8 @@ def _way(level: Level, start: Point, end: Point, *, shut: bool) -> bool:
     from tltl_runtime.stealth.enemies.grid import grid_of
 
     floor = grid_of(level).floor(range(len(level.barriers)) if shut else ())
-    return bool(floor.way(start[:2], end[:2]))
+    stands = floor.entry(start[:2]) is not None and floor.entry(end[:2]) is not None
+    return stands and floor.area(start[:2]) == floor.area(end[:2])
 
 
 def _warning(title: str, places: Places, *names: str, help_: str) -> Diagnostic:

@@ -10,7 +10,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.supply.offer import offers
 from tltl_runtime.stealth.supply.reach import Reach, highest_jump, highest_lift, reachable
 from tltl_runtime.stealth.supply.spec_places import SpecPlaces
-from tltl_runtime.stealth.supply.supply import check_supply, given_params, used_entities
+from tltl_runtime.stealth.supply.supply import given_params, used_entities
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, Severity
@@ -56,14 +56,9 @@ def check_height(level: Level, reach: Reach) -> list[Diagnostic]:
 
 
 def warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
-    """TLT0814 for who is about to play: as warnings, since one may well play what cannot be finished.
-
-    Nothing is said of a level that does not supply all that the spec speaks of: nobody can play that.
-    """
-    places = SpecPlaces(None)
-    if any(found.severity == "error" for found in check_supply(level, fspa, places)):
-        return []
-    return [replace(found, severity="warning") for found in check_reach(level, reachable(level), fspa, places)]
+    """:func:`check_reach` for who is about to play, as warnings: one may well play what cannot be finished."""
+    found = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+    return [replace(each, severity="warning") for each in found]
 
 
 def _impossible(level: Level, reach: Reach, fspa: Fspa) -> frozenset[int]:
