@@ -98,7 +98,7 @@ def _bare(env: GameEnv, chosen: Sequence[Any]) -> Callable[[], None]:
 
     class Bare(World):
         def run(self) -> None:
-            client, body = self._client, self._body
+            client, body = self._client, self._capsules.body
             for velocity in velocities:
                 pybullet.resetBaseVelocity(body, velocity, physicsClientId=client)
                 pybullet.stepSimulation(physicsClientId=client)

@@ -11,6 +11,7 @@ from math import sqrt
 from tltl_runtime.stealth.level import Mover, Point
 from tltl_runtime.stealth.world.bodies import UPRIGHT, static_box
 from tltl_runtime.stealth.world.bullet import pybullet
+from tltl_runtime.stealth.world.capsules import Capsules
 from tltl_runtime.stealth.world.geometry import around, contact
 from tltl_runtime.stealth.world.player import DECISION
 from tltl_runtime.stealth.world.way import Way
@@ -52,26 +53,20 @@ class Moving:
 
 
 def push(
-    movers: Sequence[Moving],
-    seconds: float,
-    client: int,
-    body: int,
-    height: float,
-    radius: float,
-    room: Callable[[Point, float, Moving], bool],
+    movers: Sequence[Moving], seconds: float, player: Capsules, room: Callable[[Point, float, Moving], bool]
 ) -> None:
-    """Let each mover go on, and push the player's ``body``; to be followed by the physics step of these ``seconds``.
+    """Let each mover go on, and push the player; to be followed by the physics step of these ``seconds``.
 
     A mover waits where the player has no ``room`` to be pushed to, itself left out: a box that went on regardless would
     press the player through a wall, however slowly.
     """
-    (x, y, z), _ = pybullet.getBasePositionAndOrientation(body, client)
-    z -= height / 2
+    x, y, z = feet = player.feet()
+    height, radius = player.height, player.radius
     for mover in movers:
         clock, old = mover.clock, mover.box
         mover.put(clock + seconds)
-        deep, normal = contact((x, y, z), height, radius, *mover.box)
-        if deep <= 0.0 or deep <= contact((x, y, z), height, radius, *old)[0]:
+        deep, normal = contact(feet, height, radius, *mover.box)
+        if deep <= 0.0 or deep <= contact(feet, height, radius, *old)[0]:
             continue
         across = sqrt(normal[0] ** 2 + normal[1] ** 2)
         if normal[2] < 0.0 and across > 0.3:
@@ -80,8 +75,7 @@ def push(
         if not room((x + deep * normal[0], y + deep * normal[1], z + deep * normal[2]), height, mover):
             mover.put(clock)
             continue
-        now, _ = pybullet.getBaseVelocity(body, client)
-        lack = min(deep / seconds, _HARDEST_PUSH) - sum(a * b for a, b in zip(now, normal, strict=True))
+        vx, vy, vz = player.velocity()
+        lack = min(deep / seconds, _HARDEST_PUSH) - (vx * normal[0] + vy * normal[1] + vz * normal[2])
         if lack > 0.0:
-            faster = [a + lack * b for a, b in zip(now, normal, strict=True)]
-            pybullet.resetBaseVelocity(body, faster, physicsClientId=client)
+            player.speed((vx + lack * normal[0], vy + lack * normal[1], vz + lack * normal[2]))

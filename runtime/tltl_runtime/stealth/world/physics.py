@@ -9,9 +9,7 @@ nine steps of 1/60 s at once.  What was measured, and must stay so:
 - A mass that changes between zero and non-zero resets collision filters, so masses never change.
 - A body that is given no visual shape gets one from its collision shape (``URDF_IGNORE_VISUAL_SHAPES`` or not), so all
   get a triangle of a millimetre.
-- Crouching swaps two capsules; the one that is not played touches nothing, falls, and is now and then put back under
-  the level (a Featherstone body that is put to sleep falls all the same; one that rests on a floor costs a quarter of
-  the speed).
+- Crouching swaps two capsules (``capsules``).
 - Each call of pybullet costs 0.4 to 1.5 µs, a fifth of it for arguments by name: calls of each decision have none.
 - Static bodies that collide with each other (group and mask share a bit) make a step four times slower.
 - Every reset builds the world anew: that is what makes episodes the same bit for bit, whatever went before.
@@ -25,19 +23,9 @@ from math import cos, floor, pi, sin, sqrt
 from typing import NoReturn, Protocol
 
 from tltl_runtime.stealth.level import Level, Point
-from tltl_runtime.stealth.world.bodies import (
-    COMPOUND,
-    PARKED,
-    PLAYER,
-    RAY,
-    STOPS,
-    UPRIGHT,
-    WORLD,
-    capsule,
-    set_filter,
-    static_boxes,
-)
+from tltl_runtime.stealth.world.bodies import COMPOUND, STOPS, WORLD, set_filter, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
+from tltl_runtime.stealth.world.capsules import Capsules
 from tltl_runtime.stealth.world.geometry import TOUCH, Bounds, cells, depth, inside, parts, sides
 from tltl_runtime.stealth.world.moving import Moving, push
 from tltl_runtime.stealth.world.player import DECISION, SUBSTEPS, PlayerKind, PlayerState, control
@@ -47,7 +35,6 @@ _GIVE = 0.2
 """How far below the bounds the feet may be: a landing reaches up to one physics step of a fall into the floor."""
 _PARKED = 64
 """Decisions after which the capsule that is not played has fallen far enough, a kilometre."""
-_STILL = (0.0, 0.0, 0.0)
 
 
 class Random(Protocol):
@@ -107,9 +94,8 @@ class World:
         self._open = [False] * len(self.level.barriers)
         self._build()
         feet = self._start(rng)
-        self._stance(False, feet, (0.0, 0.0, 0.0))
-        self._state = PlayerState(feet, (0.0, 0.0, 0.0), self.level.start.yaw, False, True, 1.0)
-        pybullet.stepSimulation(physicsClientId=self._client)
+        self._put(False, feet, (0.0, 0.0, 0.0))
+        pybullet.stepSimulation(self._client)
         self._observe(False, self.level.start.yaw, 1.0)
 
     def step(self, action: Sequence[int]) -> None:
@@ -126,15 +112,16 @@ class World:
         step = 0.0
         if old.grounded and not wish.jump:
             near = self._near(old.position)
-            step = lift(kind, old.position, self._height(crouching), wish.velocity, near, self.room)
+            height = kind.crouched_height if crouching else kind.height
+            step = lift(kind, old.position, height, wish.velocity, near, self.room)
         if step or crouching != old.crouching:
             x, y, z = old.position
-            self._stance(crouching, (x, y, z + step), (*wish.velocity, 0.0) if step else velocity)
+            self._put(crouching, (x, y, z + step), (*wish.velocity, 0.0) if step else velocity)
         else:
-            pybullet.resetBaseVelocity(self._body, velocity, _STILL, self._client)
+            self._capsules.speed(velocity)
         if self.steps % _PARKED == 0:
-            self._park()
-        self._advance(self._movers_near(), self._height(crouching))
+            self._capsules.park()
+        self._advance(self._movers_near())
         self._observe(crouching, wish.yaw, wish.stamina)
 
     def put(self, state: PlayerState) -> None:
@@ -143,7 +130,7 @@ class World:
         Everything else stays as it is.  What Bullet remembers of contacts does not come back, so that the next decision
         may end some millimetres from where it did.
         """
-        self._stance(state.crouching, state.position, state.velocity)
+        self._put(state.crouching, state.position, state.velocity)
         self._state = state
 
     @property
@@ -231,12 +218,8 @@ class World:
         ]
         self.movers = [Moving(client, mover) for mover in self.level.movers]
         low, high = self.level.bounds.low, self.level.bounds.high
-        self._parking = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] - 10.0)
-        self._bodies = {
-            crouching: capsule(client, self.kind.radius, self._height(crouching), self._parking)
-            for crouching in (False, True)
-        }
-        self._play(False)
+        parking = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] - 10.0)
+        self._capsules = Capsules(client, self.kind, parking)
 
     # The player
 
@@ -253,53 +236,24 @@ class World:
                 return feet
         raise WorldError(self.level, 0, "player", f"there is no room at the start ({x:g}, {y:g}, {z:g})")
 
-    def _stance(self, crouching: bool, feet: Point, velocity: Point) -> None:
-        """Put the player there, standing or crouched."""
-        if self._body != self._bodies[crouching]:
-            self._play(crouching)
-        place = (feet[0], feet[1], feet[2] + self._height(crouching) / 2)
-        pybullet.resetBasePositionAndOrientation(self._body, place, UPRIGHT, self._client)
-        pybullet.resetBaseVelocity(self._body, velocity, _STILL, self._client)
-
-    def _play(self, crouching: bool) -> None:
-        """Play the standing or the crouched capsule, and park the other."""
-        self._body, self._parked = self._bodies[crouching], self._bodies[not crouching]
-        set_filter(self._client, self._parked, PARKED, 0)
-        set_filter(self._client, self._body, PLAYER, WORLD | RAY)
-        self._park()
-        self._check_filters()
-
-    def _park(self) -> None:
-        """Put the capsule that is not played back under the level, where it falls and meets nothing."""
-        pybullet.resetBasePositionAndOrientation(self._parked, self._parking, UPRIGHT, self._client)
-        pybullet.resetBaseVelocity(self._parked, _STILL, _STILL, self._client)
-
-    def _height(self, crouching: bool) -> float:
-        return self.kind.crouched_height if crouching else self.kind.height
+    def _put(self, crouching: bool, feet: Point, velocity: Point) -> None:
+        if self._capsules.put(crouching, feet, velocity):
+            self._check_filters()
 
     def _check_filters(self) -> None:
-        """A ray down the played capsule hits it, and one down the parked capsule does not, each in its own group."""
-        for crouching, body in self._bodies.items():
-            (x, y, z), _ = pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client)
-            top = (x, y, z + self._height(crouching) / 2 + 0.005)
-            hit = pybullet.rayTest(top, (x, y, z), collisionFilterMask=PLAYER, physicsClientId=self._client)[0][0]
-            if (hit == body) != (body == self._body):
-                name = "crouched player" if crouching else "standing player"
-                raise WorldError(self.level, self.steps, name, "its collision filter is not the one that was set")
+        name = self._capsules.misfiltered()
+        if name is not None:
+            what = "its collision filter is not the one that was set"
+            raise WorldError(self.level, self.steps, f"{name} player", what)
 
     def _observe(self, crouching: bool, yaw: float, stamina: float) -> None:
         """Read the player back from the physics, and make sure that it is inside the bounds."""
-        body, client = self._body, self._client
-        (x, y, z), _ = pybullet.getBasePositionAndOrientation(body, client)
-        velocity, _ = pybullet.getBaseVelocity(body, client)
-        low, high = self.level.bounds.low, self.level.bounds.high
-        z -= self._height(crouching) / 2
+        capsules, low, high = self._capsules, self.level.bounds.low, self.level.bounds.high
+        x, y, z = feet = capsules.feet()
         # Not-a-number fails the comparison as well.
         if not (low[0] <= x <= high[0] and low[1] <= y <= high[1] and low[2] - _GIVE <= z <= high[2]):
             raise WorldError(self.level, self.steps, "player", f"({x:g}, {y:g}, {z:g}) is outside the level's bounds")
-        contacts = pybullet.getContactPoints(body, physicsClientId=client)
-        grounded = any(contact[7][2] > 0.5 and contact[8] < TOUCH for contact in contacts)
-        self._state = PlayerState((x, y, z), velocity, yaw, crouching, grounded, stamina)
+        self._state = PlayerState(feet, capsules.velocity(), yaw, crouching, capsules.grounded(), stamina)
 
     # Time
 
@@ -313,17 +267,16 @@ class World:
                 mover.put(mover.clock + DECISION)
         return near
 
-    def _advance(self, near: Sequence[Moving], height: float) -> None:
+    def _advance(self, near: Sequence[Moving]) -> None:
         """Run the physics steps of a decision: at once, or one by one after their pushes where movers are ``near``."""
-        client = self._client
         if not near:
             self._run_at_once(SUBSTEPS)
-            pybullet.stepSimulation(client)
+            pybullet.stepSimulation(self._client)
             return
         self._run_at_once(1)
         for _ in range(SUBSTEPS):
-            push(near, DECISION / SUBSTEPS, client, self._body, height, self.kind.radius, self.room)
-            pybullet.stepSimulation(client)
+            push(near, DECISION / SUBSTEPS, self._capsules, self.room)
+            pybullet.stepSimulation(self._client)
 
     def _run_at_once(self, substeps: int) -> None:
         """How many physics steps Bullet runs in one go."""
