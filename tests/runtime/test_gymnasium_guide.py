@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import gymnasium
 import pytest
 
-from tests.docs.blocks import DOCS, ROOT, Block, blocks
+from tests.docs.blocks import DOCS, Block, blocks
+from tests.runtime.guides import check_program
 from tltl_runtime import TltlEnv
 from tltlc import TltlError
 
@@ -29,21 +27,10 @@ def outcomes() -> list[tuple[Block, Block]]:
 
 def test_it_prints_what_it_says(tmp_path: Path) -> None:
     (tmp_path / "swing_up.tltl").write_text(SPEC, encoding="utf-8")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
     found = outcomes()
     assert len(found) == 2
     for name, (program, printed) in zip(("drive.py", "many.py"), found, strict=True):
-        (tmp_path / name).write_text(program.text, encoding="utf-8")
-        done = subprocess.run(
-            [sys.executable, name],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            encoding="utf-8",
-            timeout=60,
-            check=False,
-        )
-        assert (done.stdout, done.returncode) == (printed.text, 0), done.stderr
+        check_program(program, printed, tmp_path / name)
 
 
 def test_the_keys_of_info_are_those() -> None:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.docs.blocks import DOCS, ROOT, blocks
+from tests.docs.blocks import DOCS, blocks
+from tests.runtime.guides import check_program
 from tltl_runtime.vector import WorkerError, make_vec
 
 PAGE = DOCS / "guides" / "vector.md"
@@ -20,19 +19,8 @@ PAGE = DOCS / "guides" / "vector.md"
 def test_its_programs_print_what_it_says(tmp_path: Path) -> None:
     found = blocks(PAGE)
     assert [block.kind for block in found] == ["python", "", "python", ""]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
     for program, printed in zip(found[::2], found[1::2], strict=True):
-        (tmp_path / "program.py").write_text(program.text, encoding="utf-8")
-        done = subprocess.run(
-            [sys.executable, "program.py"],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            encoding="utf-8",
-            timeout=60,
-            check=False,
-        )
-        assert (done.stdout, done.returncode) == (printed.text, 0), done.stderr
+        check_program(program, printed, tmp_path / "program.py")
 
 
 def test_its_message_is_that() -> None:

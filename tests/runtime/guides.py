@@ -1,0 +1,26 @@
+"""Running the programs of the guides."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.docs.blocks import ROOT, Block
+
+
+def check_program(program: Block, printed: Block, path: Path) -> None:
+    """A program of a guide, run from the file ``path``, prints what the next block of the guide says."""
+    path.write_text(program.text, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
+    done = subprocess.run(
+        [sys.executable, path.name],
+        cwd=path.parent,
+        env=environment,
+        capture_output=True,
+        encoding="utf-8",
+        timeout=60,
+        check=False,
+    )
+    assert (done.stdout, done.returncode) == (printed.text, 0), done.stderr
