@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from functools import lru_cache
+from itertools import product
 from math import hypot
 from typing import Any, Final
 
@@ -18,8 +19,9 @@ from tltl_runtime.stealth.enemies.segments import Rectangle
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.world.player import DECISION, SIGN, Action, PlayerKind
 
-SPACING: Final = 0.4
-MARGIN: Final = 0.03
+_SPACING: Final = 0.4
+"""Metres from place to place."""
+_MARGIN: Final = 0.03
 """Kept to what stops bodies, beside the player's radius."""
 FAR: Final = np.float32(1e6)
 """The value of what cannot be."""
@@ -27,34 +29,24 @@ FAR: Final = np.float32(1e6)
 Costs = NDArray[np.float32]
 """Decisions that the rest of the way costs, [places] where nothing else is said."""
 
-STAND, WALK, SPRINT, DUCK, CRAWL = range(5)
 
-
-def _actions() -> tuple[list[Action], NDArray[np.float64], list[int]]:
-    """All actions without a jump that differ, how far each moves, and its manner."""
+def _actions() -> tuple[tuple[Action, ...], NDArray[np.float64]]:
+    """All actions without a jump that differ, and how far each moves, in metres [actions, 2]."""
     kind = PlayerKind()
     actions: list[Action] = []
     ways: list[tuple[float, float]] = []
-    manners: list[int] = []
-    for crouch, sprint, speed, manner in (
-        (0, 0, kind.walk_speed, WALK),
-        (0, 1, kind.sprint_speed, SPRINT),
-        (1, 0, kind.crouch_speed, CRAWL),
-    ):
-        for x in (0, 1, 2):
-            for y in (0, 1, 2):
-                if (x or y) or not sprint:
-                    dx, dy = SIGN[x], SIGN[y]
-                    length = hypot(dx, dy) or 1.0
-                    actions.append((x, y, 0, crouch, sprint))
-                    ways.append((dx / length * speed * DECISION, dy / length * speed * DECISION))
-                    manners.append(manner if x or y else DUCK if crouch else STAND)
-    return actions, np.array(ways), manners
+    for crouch, sprint, speed in ((0, 0, kind.walk_speed), (0, 1, kind.sprint_speed), (1, 0, kind.crouch_speed)):
+        for x, y in product(range(3), repeat=2):
+            if x or y or not sprint:
+                length = hypot(SIGN[x], SIGN[y]) or 1.0
+                actions.append((x, y, 0, crouch, sprint))
+                ways.append((SIGN[x] / length * speed * DECISION, SIGN[y] / length * speed * DECISION))
+    return tuple(actions), np.array(ways)
 
 
-ACTIONS, WAYS, MANNERS = _actions()
-CROUCHED: Final = np.array([manner in (DUCK, CRAWL) for manner in MANNERS])
-SPRINTS: Final = np.array([manner == SPRINT for manner in MANNERS])
+ACTIONS, WAYS = _actions()
+CROUCHED: Final = np.array([crouch == 1 for *_, crouch, _ in ACTIONS])
+SPRINTS: Final = np.array([sprint == 1 for *_, sprint in ACTIONS])
 
 
 @lru_cache(maxsize=64)
@@ -70,14 +62,14 @@ class Lattice:
         boxes = [each.box for each in level.solids] + [level.barriers[index].box for index in sorted(shut)]
         kind = PlayerKind()
         self._obstacles = (
-            _grown(boxes, kind.radius + MARGIN, kind.step_height, kind.height),
-            _grown(boxes, kind.radius + MARGIN, kind.step_height, kind.crouched_height),
+            _grown(boxes, kind.radius + _MARGIN, kind.step_height, kind.height),
+            _grown(boxes, kind.radius + _MARGIN, kind.step_height, kind.crouched_height),
         )
         (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
-        self._low = np.array((x0, y0)) + SPACING / 2
-        columns, rows = int((x1 - x0) / SPACING), int((y1 - y0) / SPACING)
+        self._low = np.array((x0, y0)) + _SPACING / 2
+        columns, rows = int((x1 - x0) / _SPACING), int((y1 - y0) / _SPACING)
         every = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"), -1).reshape(-1, 2)
-        centres = self._low + every * SPACING
+        centres = self._low + every * _SPACING
         free = ~_crossed(centres, centres, self._obstacles[1])
         self.places: NDArray[np.float64] = centres[free]
         # A frame of three columns and rows that belong to no place, for ways that lead out of the bounds.
@@ -132,7 +124,7 @@ class Lattice:
 
     def _between(self, ends: NDArray[Any]) -> tuple[NDArray[np.int64], Costs]:
         """The four places around each point [m, 2], and their shares: those that are free, by their nearness."""
-        position = (ends - self._low) / SPACING
+        position = (ends - self._low) / _SPACING
         base = np.floor(position).astype(np.int64)
         part = position - base
         corners = np.zeros((len(ends), 4), dtype=np.int64)

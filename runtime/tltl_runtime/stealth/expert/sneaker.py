@@ -22,12 +22,14 @@ from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION, Action, PlayerKind
 
-HORIZON: Final = 80
+_HORIZON: Final = 80
 """Decisions that are looked ahead."""
-REPLAN: Final = 5
-PRICE: Final = 12.0
+_REPLAN: Final = 5
+"""Decisions after which the plan is made anew."""
+_PRICE: Final = 12.0
 """Of a decision in sight, in decisions."""
-ARRIVED: Final = 0.8
+_ARRIVED: Final = 0.8
+"""Metres from a goal that count as there."""
 _WIDER: Final = 0.15
 """By so much, in radians to each side, the cones of sight are taken to be wider than they are."""
 _FURTHER: Final = 0.4
@@ -64,7 +66,7 @@ class Sneaker:
         lattice = lattice_of(self.level, shut)
         now = (goal, shut, snapshot.modes)
         self._age += 1
-        if surprised or now != self._for or self._age >= REPLAN:
+        if surprised or now != self._for or self._age >= _REPLAN:
             self._plan = self._planned(lattice, lines_of(self.level, shut), self._way(lattice, shut, goal))
             self._age, self._for = 0, now
         return self._chosen(lattice, snapshot)
@@ -84,11 +86,11 @@ class Sneaker:
 
     def _planned(self, lattice: Lattice, lines: Lines, way: Costs) -> list[tuple[Costs, Costs]]:
         """For each decision from now on what its end costs from there on, by place, standing and crouched."""
-        seen = self._seen(lattice, lines, self._watch.outlook(HORIZON))
+        seen = self._seen(lattice, lines, self._watch.outlook(_HORIZON))
         there = way <= 0.0
         plan: list[tuple[Costs, Costs]] = []
         rest = way
-        for decision in reversed(range(HORIZON)):
+        for decision in reversed(range(_HORIZON)):
             standing, crouched = rest + seen[decision, 0], rest + seen[decision, 1]
             plan.append((standing, crouched))
             rest = np.where(there, np.float32(0), lattice.best(standing, crouched, _EXTRA))
@@ -96,7 +98,7 @@ class Sneaker:
 
     def _seen(self, lattice: Lattice, lines: Lines, outlooks: Sequence[Outlook]) -> NDArray[np.float32]:
         """The price of being at each place at the end of each decision: float32 [decisions, 2, places]."""
-        price = np.zeros((HORIZON, 2, len(lattice.places)), dtype=np.float32)
+        price = np.zeros((_HORIZON, 2, len(lattice.places)), dtype=np.float32)
         x, y = lattice.places.T.astype(np.float32)
         for outlook, angle, reach in zip(outlooks, self._angles, self._ranges, strict=True):
             for poses, share in zip(outlook.poses, outlook.shares, strict=True):
@@ -108,7 +110,7 @@ class Sneaker:
                 free = np.stack([lines.seen_from(a, b) for a, b, *_ in poses])
                 danger = free * cone[:, None]
                 danger += (flat < _NEAR)[:, None]
-                price += danger * np.float32(share * PRICE)
+                price += danger * np.float32(share * _PRICE)
         return price
 
     def _way(self, lattice: Lattice, shut: frozenset[int], goal: Point) -> Costs:
@@ -117,5 +119,5 @@ class Sneaker:
         if key not in self._ways:
             if len(self._ways) >= _WAYS_KEPT:
                 self._ways.clear()
-            self._ways[key] = lattice.way_to(goal, ARRIVED)
+            self._ways[key] = lattice.way_to(goal, _ARRIVED)
         return self._ways[key]

@@ -22,8 +22,8 @@ from tltl_runtime.stealth.snapshot import Snapshot, player_view
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.record import record
 
-MODELS: Final = 12
-"""Of each enemy."""
+_MODELS: Final = 12
+"""Models of each enemy."""
 _SAME: Final = 0.02
 """Metres and radians by which a model and its enemy may differ."""
 _GUESSED: Final = 0.7
@@ -56,7 +56,7 @@ class Watch:
         self._rng = np.random.default_rng(self._seed)
         self._open: tuple[bool, ...] = (False,) * len(self.level.barriers)
         self.floor = self._changed()
-        self.models = [[Guard(enemy, self.floor, self._rng) for _ in range(MODELS)] for enemy in self.level.enemies]
+        self.models = [[Guard(enemy, self.floor, self._rng) for _ in range(_MODELS)] for enemy in self.level.enemies]
         self._time = 0.0
         self._player = self.level.start.position
 
@@ -82,8 +82,8 @@ class Watch:
             surprised |= not right
             if not right:
                 right = [self._put(model, pose, mode) for model in models]
-            if len(right) < MODELS:
-                self.models[index] = [right[each % len(right)].fork(self._rng) for each in range(MODELS)]
+            if len(right) < _MODELS:
+                self.models[index] = [right[each % len(right)].fork(self._rng) for each in range(_MODELS)]
         return surprised
 
     def outlook(self, decisions: int) -> list[Outlook]:
