@@ -9,7 +9,7 @@ from tltl_runtime.stealth.episodes.versions import versions
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import Monitor
 
-Difference = tuple[str, object, object]
+_Difference = tuple[str, object, object]
 """What differs, what was recorded, and what follows."""
 
 
@@ -19,13 +19,15 @@ def check(episode: Episode) -> tuple[Diagnostic, ...]:
     Nothing is found where all are.  Else TLT0823 for the first step that differs, or what the monitor finds wrong.
     """
     try:
-        for step, (what, recorded, follows) in _judged(episode):
-            title = f"step {step} of the recording does not follow from its signals: {what} was recorded as "
-            help_ = "the recording was changed, or comes from another version of tltlc"
-            return (Diagnostic("TLT0823", f"{title}{recorded}, and is {follows}", help=help_),)
+        first = next(_judged(episode), None)
     except TltlError as error:
         return error.diagnostics
-    return ()
+    if first is None:
+        return ()
+    step, (what, recorded, follows) = first
+    title = f"step {step} of the recording does not follow from its signals: {what} was recorded as "
+    help_ = "the recording was changed, or comes from another version of tltlc"
+    return (Diagnostic("TLT0823", f"{title}{recorded}, and is {follows}", help=help_),)
 
 
 def resimulate(episode: Episode) -> int | None:
@@ -79,7 +81,7 @@ def check_replay(episode: Episode) -> tuple[Diagnostic, ...]:
     return (Diagnostic("TLT0824", title, help=help_),)
 
 
-def _judged(episode: Episode) -> Iterator[tuple[int, Difference]]:
+def _judged(episode: Episode) -> Iterator[tuple[int, _Difference]]:
     """What differs, with the number of its step; 0 is the moment of the reset."""
     names = [signal.name for signal in episode.fspa.signals]
     monitor = Monitor(episode.fspa, episode.params, episode.reward)
@@ -93,7 +95,7 @@ def _judged(episode: Episode) -> Iterator[tuple[int, Difference]]:
         last = row == count and episode.end != "stopped"
         step = monitor.step(dict(zip(names, episode.signals[row].tolist(), strict=True)), last=last)
         verdict = step.verdict
-        pairs: list[Difference] = [
+        pairs: list[_Difference] = [
             (f"`{atom.name}`", recorded, value)
             for atom, recorded, value in zip(
                 episode.fspa.atoms, episode.atoms[row - 1].tolist(), monitor.values, strict=True
@@ -105,7 +107,7 @@ def _judged(episode: Episode) -> Iterator[tuple[int, Difference]]:
             ("the reward", float(episode.rewards[row - 1]), step.reward),
         ]
         yield from ((row, pair) for pair in pairs if pair[1] != pair[2])
-    ends: list[Difference] = [
+    ends: list[_Difference] = [
         ("the verdict", episode.verdict, verdict),
         ("success", episode.success, monitor.success),
         ("the end", episode.end, _end(monitor, verdict)),

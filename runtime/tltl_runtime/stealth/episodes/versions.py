@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Mapping
 from functools import lru_cache
 from importlib.metadata import version
 from typing import Final
@@ -11,6 +12,6 @@ _PACKAGES: Final = ("tltlc", "pybullet", "numpy")
 
 
 @lru_cache(maxsize=1)
-def versions() -> dict[str, str]:
+def versions() -> Mapping[str, str]:
     """The versions here and now, by name."""
     return {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
