@@ -15,7 +15,7 @@ import numpy as np
 
 from tltl_runtime.stealth.enemies.branches import tree
 from tltl_runtime.stealth.enemies.grid import Floor, Grid, Place, grid_of
-from tltl_runtime.stealth.enemies.segments import Corners, blocked, corners
+from tltl_runtime.stealth.enemies.segments import Corners, blocked, corners, distance_to_segment
 from tltl_runtime.stealth.level import Enemy, Level, Point
 from tltl_runtime.stealth.world.geometry import Bounds
 from tltlc.record import record
@@ -41,8 +41,6 @@ class PlayerView:
 
     position: Point
     head: float = STANDING_HEAD
-    crouching: bool = False
-    velocity: Point = (0.0, 0.0, 0.0)
 
 
 class Enemies:
@@ -102,12 +100,12 @@ class Enemies:
     @property
     def sees(self) -> tuple[bool, ...]:
         """Whether the player is in sight of each."""
-        return tuple(guard.sees for guard in self.guards)
+        return tuple([guard.sees for guard in self.guards])
 
     @property
     def knows(self) -> tuple[bool, ...]:
         """Whether each has noticed the player, and still knows where it is."""
-        return tuple(guard.knows for guard in self.guards)
+        return tuple([guard.knows for guard in self.guards])
 
     def _changed(self) -> Floor:
         shut = [self.level.barriers[index] for index in sorted(self._shut)]
@@ -225,7 +223,7 @@ class Guard:
 
     def _is_on_route(self, gap: Place) -> bool:
         ends = zip(self.route, (*self.route[1:], self.route[0]), strict=True)
-        return any(_distance_to_segment(gap, a, b) < 1.0 for a, b in ends)
+        return any(distance_to_segment(gap, a, b) < 1.0 for a, b in ends)
 
     def _look(self, player: PlayerView, boxes: Sequence[Corners]) -> None:
         """Sight, and what follows from it: noticing, knowing, losing, being in reach.
@@ -307,10 +305,3 @@ class Guard:
         turn = min(max(missing, -most), most)
         self.yaw = remainder(self.yaw + turn, 2 * pi)
         return missing - turn
-
-
-def _distance_to_segment(p: Place, a: Place, b: Place) -> float:
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    length = dx * dx + dy * dy
-    part = 0.0 if length == 0.0 else min(1.0, max(0.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length))
-    return hypot(p[0] - a[0] - part * dx, p[1] - a[1] - part * dy)

@@ -24,7 +24,7 @@ def standing(x: float, y: float, z: float = 0.0) -> PlayerView:
 
 
 def crouched(x: float, y: float) -> PlayerView:
-    return PlayerView((x, y, 0.0), CROUCHED_HEAD, True)
+    return PlayerView((x, y, 0.0), CROUCHED_HEAD)
 
 
 def begin(game: Level, seed: int = 0) -> Enemies:
