@@ -43,7 +43,7 @@ def record(cls: type[R]) -> type[R]:
     body["__slots__"] = names
     body["__match_args__"] = names
     made: Any = type(cls.__name__, cls.__bases__, body)
-    fill = [made.__dict__[name].__set__ for name in names]
+    fill = [(index, made.__dict__[name].__set__) for index, name in enumerate(names)]
     values_of = _values_getter(names)
 
     def initialise(self: Any, *given: Any, **named: Any) -> None:
@@ -52,8 +52,8 @@ def record(cls: type[R]) -> type[R]:
             given = _arguments(made.__qualname__, names, defaults, given, named)
         elif left:
             given += defaults[-left:]
-        for put, value in zip(fill, given, strict=True):
-            put(self, value)
+        for index, put in fill:
+            put(self, given[index])
 
     def initialise_checked(self: Any, *given: Any, **named: Any) -> None:
         initialise(self, *given, **named)
