@@ -49,7 +49,10 @@ def write_film(path: Path, episode: Episode, span: tuple[float, float], film: Fi
     start, stop = span
     count = int((stop - start) / film.speed * rate + 1e-6) + 1
     times = [start + number * film.speed / rate for number in range(count)]
-    pictures = _counted(frames(episode, times, film.view, film.size, film.notation), count)
+    if times[-1] < stop - 1e-6 and stop == episode.snapshots[-1].time:
+        # How it ended is always to be seen.
+        times.append(stop)
+    pictures = _counted(frames(episode, times, film.view, film.size, film.notation), len(times))
     write: Callable[..., None] = write_gif if path.suffix.lower() == ".gif" else write_mp4
     try:
         with replaced(path) as temporary:

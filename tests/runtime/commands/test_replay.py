@@ -124,6 +124,9 @@ def test_a_plan(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignor
     assert draw_episode(episode) == draw_episode(episode)
     assert tltlc("replay", FILE, "-o", "small.png", "--size", "500x400").status == 0
     assert Image.open("small.png").size == (500, 400)
+    assert tltlc("replay", FILE, "-o", "small.png", "--size", "400x300").status == 0
+    small = np.asarray(Image.open("small.png").convert("RGB"))
+    assert (small[:30, [0, 1, 2, -3, -2, -1]] == 255).all()  # the title is not cut
 
 
 def test_a_plan_tells_how_it_ended(episode: Episode) -> None:
@@ -177,6 +180,17 @@ def test_frames_show_the_view_and_the_strip(episode: Episode) -> None:
         assert (one[:-STRIP] != other[:-STRIP]).any() and (one[-STRIP:] != other[-STRIP:]).any()
     (again,) = frames(episode, [3.5], "plan", (240, 200))
     assert (again == other)[-STRIP:].all()
+
+
+def test_a_small_film_shows_how_it_ended(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    last = episode.snapshots[-1].time
+    before, after = frames(replace(episode, end="violation"), [last - 0.01, last], "plan", (320, 240))
+    assert (before[-STRIP:] != after[-STRIP:]).any()
+    paper = after[-1, -1]
+    assert (after[-STRIP:, -4:] == paper).all()  # nothing runs over the edge
+    assert tltlc("replay", FILE, "-o", "run.gif", "--size", "320x240", "--from", "2.9").status == 0
+    with Image.open("run.gif") as gif:
+        assert gif.n_frames == 2  # at 2.9 s, and the end at 3 s
 
 
 def test_between_decisions_bodies_are_on_their_ways(episode: Episode) -> None:

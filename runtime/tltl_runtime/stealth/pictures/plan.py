@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from io import BytesIO
 from itertools import pairwise
+from math import ceil
 from typing import Any, Final
 
 import numpy as np
@@ -45,8 +46,11 @@ _LONGEST_SIDE: Final = 40.0
 _LINE: Final = 0.22
 """Height of a line of the legend, in inches."""
 
+_COLUMN: Final = 2.0
+"""Width of a column of the key to a level's colours, in inches."""
+
 _ROOMY: Final = 6.0
-"""Inches to a side from which letters have their full size."""
+"""Inches to a side from which letters have their full size, in plans of less than their natural size."""
 
 _MOST_LISTED: Final = 12
 """Of the states of an episode, as many are in the legend."""
@@ -64,13 +68,14 @@ def draw(level: Level, path: Sequence[Point] = (), states: Sequence[int] = (), *
     if states and len(states) != len(path):
         raise ValueError(f"{len(path)} points need as many states, not {len(states)}")
     width, height = _natural_size(level)
-    figure = Figure(figsize=(width, height + 4 * _LINE), dpi=_DPI, layout="constrained")
+    key = _key(level, reach is not None)
+    columns = max(1, int(width / _COLUMN))
+    figure = Figure(figsize=(width, height + (ceil(len(key) / columns) + 1) * _LINE), dpi=_DPI, layout="constrained")
     axes = _level_axes(figure, level)
     _add_way(axes, path, states or [0] * len(path))
     if reach is not None:
         _add_reach(axes, reach)
-    handles = _key(level, reach is not None)
-    figure.legend(handles=handles, loc="outside lower left", ncols=4, fontsize=8 * _shrunk(figure), frameon=False)
+    figure.legend(handles=key, loc="outside lower left", ncols=columns, fontsize=8, frameon=False)
     return _png(figure)
 
 
@@ -87,20 +92,21 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     inches = (size[0] / _DPI, size[1] / _DPI) if size else (width, height + below)
     figure = Figure(figsize=inches, dpi=_DPI, layout="constrained")
     axes = _level_axes(figure, episode.level, start=False)
-    shrunk = _shrunk(figure)
+    shrunk = _shrunk(figure, episode.level)
     title = f"{episode.level.name} {episode.level.variant}, {episode.player}, seed {episode.seed}: {episode.end}"
     # A letter is about 0.65 of its height wide.
     axes.set_title("")
     figure.suptitle(title, fontsize=min(12.0, inches[0] * 72 / (0.65 * len(title))))
     _add_way(axes, path, states)
-    marks = [_mark(axes, path[0], "o", "white", "start")]
+    dot = 9 * shrunk
+    marks = [_mark(axes, path[0], "o", "white", "start", dot)]
     for row in (row for row in range(1, len(states)) if states[row] != states[row - 1]):
-        _mark(axes, path[row], "o", state_colour(states[row]), str(states[row]))
+        _mark(axes, path[row], "o", state_colour(states[row]), str(states[row]), dot)
         axes.annotate(str(states[row]), path[row][:2], color="white", fontsize=6, ha="center", va="center", zorder=7)
     died = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
     if died is not None:
-        marks.append(_mark(axes, path[died], "P", "#dc2626", "without health"))
-    marks.append(_mark(axes, path[-1], *_ENDS[episode.end], f"end: {episode.end}"))
+        marks.append(_mark(axes, path[died], "P", "#dc2626", "without health", dot))
+    marks.append(_mark(axes, path[-1], *_ENDS[episode.end], f"end: {episode.end}", dot))
     letters = int(inches[0] * _LETTERS_PER_INCH / shrunk)
     lines = [
         Line2D([], [], color=state_colour(state), linewidth=3, label=_label(episode, state, letters, notation))
@@ -167,9 +173,10 @@ def _natural_size(level: Level) -> tuple[float, float]:
     return width * shrink, height * shrink + 0.4
 
 
-def _shrunk(figure: Figure) -> float:
-    """How much smaller letters are than in a plan of a natural size, so that a small one has room for them."""
-    return float(min(1.0, max(0.6, min(figure.get_size_inches() / _ROOMY))))
+def _shrunk(figure: Figure, level: Level) -> float:
+    """How much smaller letters are than in a plan of the natural size, so that a small one has room for them."""
+    roomy = np.minimum(_natural_size(level), _ROOMY)
+    return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))
 
 
 def _level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = True) -> Any:
@@ -186,8 +193,8 @@ def _level_axes(figure: Figure, level: Level, moving: bool = True, start: bool =
         xlabel="x, m",
         ylabel="y, m",
     )
-    shrunk = _shrunk(figure)
-    roomy = shrunk == 1.0
+    shrunk = _shrunk(figure, level)
+    roomy, letters = shrunk == 1.0, 8 * shrunk
     axes.tick_params(labelsize=10 * shrunk)
     for axis in (axes.xaxis, axes.yaxis):
         axis.label.set_size(10 * shrunk)
@@ -196,21 +203,21 @@ def _level_axes(figure: Figure, level: Level, moving: bool = True, start: bool =
     for barrier in level.barriers:
         axes.add_patch(_area(barrier.box, facecolor=BARRIERS[barrier.kind], alpha=0.8 if moving else 0.25))
         if roomy:
-            _name(axes, barrier.name, _middle(barrier.box))
+            _name(axes, barrier.name, _middle(barrier.box), letters)
     for mover in level.movers:
         axes.plot(*_flat(mover.path), color=_MOVER, linestyle=":", linewidth=1.5)
         if moving and roomy:
-            _name(axes, mover.name, mover.path[0])
+            _name(axes, mover.name, mover.path[0], letters)
     for enemy in level.enemies:
         axes.plot(*_flat(_patrol(level, enemy)), color=_ROUTE, linestyle="--", linewidth=1.0)
         if moving and roomy:
-            _name(axes, enemy.name, enemy.route[0])
+            _name(axes, enemy.name, enemy.route[0], letters)
     for switch in level.switches:
         axes.add_patch(Circle(switch.position[:2], switch.radius, facecolor=_SWITCH, alpha=0.5))
-        _name(axes, switch.name, switch.position)
+        _name(axes, switch.name, switch.position, letters)
     for way_out in level.exits:
         axes.plot(*way_out.position[:2], marker="*", markersize=14 * shrunk, color=_EXIT)
-        _name(axes, way_out.name, way_out.position)
+        _name(axes, way_out.name, way_out.position, letters)
     if start:
         axes.plot(*level.start.position[:2], marker="o", markersize=7, color=_INK)
     return axes
@@ -234,11 +241,11 @@ def _add_way(axes: Any, path: Sequence[Point], states: Sequence[int]) -> None:
     axes.add_collection(LineCollection(pieces, colors=colours, linewidths=2.0, capstyle="round", zorder=4))
 
 
-def _mark(axes: Any, place: Point, marker: str, colour: str, label: str) -> Any:
+def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: float) -> Any:
     (mark,) = axes.plot(
         *place[:2],
         marker=marker,
-        markersize=9 * _shrunk(axes.figure),
+        markersize=size,
         markerfacecolor=colour,
         markeredgecolor=_INK,
         linestyle="",
@@ -280,6 +287,5 @@ def _flat(points: Iterable[Sequence[float]]) -> tuple[list[float], list[float]]:
     return [point[0] for point in listed], [point[1] for point in listed]
 
 
-def _name(axes: Any, name: str, place: Point) -> None:
-    size = 8 * _shrunk(axes.figure)
+def _name(axes: Any, name: str, place: Point, size: float) -> None:
     axes.annotate(name, place[:2], xytext=(0, 7), textcoords="offset points", ha="center", fontsize=size, color=_INK)

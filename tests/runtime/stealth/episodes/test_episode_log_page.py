@@ -72,5 +72,5 @@ def test_the_programs_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     names: dict[str, Any] = {}
     for program in programs:
         exec(program, names)
-    assert len(programs) == 2
+    assert len(programs) == 3
     assert names["health"].shape == names["to_s1"].shape == (21,) and names["episode"].end == "stopped"

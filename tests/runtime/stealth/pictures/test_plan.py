@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from io import BytesIO
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.levels.file import level_names, load_level
-from tltl_runtime.stealth.pictures.plan import draw
+from tltl_runtime.stealth.pictures.plan import _patrol, draw
 from tltl_runtime.stealth.supply.reach import reachable
 
 
@@ -48,3 +50,16 @@ def test_a_plan_shows_what_nobody_reaches() -> None:
 def test_each_point_needs_a_state() -> None:
     with pytest.raises(ValueError, match="2 points need as many states, not 1"):
         draw(load_level("navigation"), [(0, 0, 0), (1, 0, 0)], [0])
+
+
+@pytest.mark.parametrize("name", ["branching", "cover_and_hide"])
+def test_routes_are_drawn_past_what_stands_in_the_way(name: str) -> None:
+    level = load_level(name)
+    floor = grid_of(level).floor(range(len(level.barriers)))
+    bends = 0
+    for enemy in level.enemies:
+        way = _patrol(level, enemy)
+        assert all(floor.clear(here, there) for here, there in pairwise(way))
+        assert {point[:2] for point in enemy.route} <= set(way) and way[0] == way[-1]
+        bends += len(way) - len(enemy.route) - 1
+    assert bends > 0
