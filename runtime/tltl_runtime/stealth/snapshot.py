@@ -52,7 +52,5 @@ def player_view(player: PlayerState) -> PlayerView:
 
 def touches(feet: Point, radius: float, height: float, box: Box) -> bool:
     """Whether an upright box around the body meets ``box``."""
-    return (
-        all(box.low[axis] - radius < feet[axis] < box.high[axis] + radius for axis in (0, 1))
-        and box.low[2] - height < feet[2] < box.high[2]
-    )
+    (x, y, z), (x0, y0, z0), (x1, y1, z1) = feet, box.low, box.high
+    return x0 - radius < x < x1 + radius and y0 - radius < y < y1 + radius and z0 - height < z < z1

@@ -51,7 +51,10 @@ class Senses:
     def look(self, game: Game) -> dict[str, Any]:
         """What is sensed now, in ``space``."""
         x, y, z = game.world.player.position
-        vectors = [part for place in self._places for px, py, pz in (place(game),) for part in (px - x, py - y, pz - z)]
+        vectors: list[float] = []
+        for place in self._places:
+            px, py, pz = place(game)
+            vectors += (px - x, py - y, pz - z)
         values = [read(game) for read in self._variables]
         row = np.array(vectors + values, dtype=np.float32)
         row /= self._sizes
