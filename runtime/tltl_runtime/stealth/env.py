@@ -51,7 +51,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
             the level does not have.
         ValueError: there is no such render mode, view or size; of ``step``: there is no such action.
         TypeError: an argument is of another type; copying or pickling a running game.
-        ClosedEnvironmentError: of ``reset`` and ``step`` after ``close``.
+        ClosedEnvironmentError: of ``reset``, ``step`` and ``render`` after ``close``.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": list(MODES), "render_fps": round(1 / DECISION)}  # type: ignore[misc]
@@ -110,6 +110,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
 
         Without a screen for the window, one warning is given.  Raises TltlError: TLT0730, without pygame.
         """
+        self._check_open()
         if self.render_mode is None:
             gymnasium.logger.warn("there are no pictures without a render mode: make(..., render_mode='rgb_array')")
         return self._screen.render(self.game.snapshot())

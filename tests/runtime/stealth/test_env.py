@@ -138,7 +138,7 @@ def test_a_closed_environment_says_so() -> None:
     env.reset(seed=1)
     env.close()
     env.close()
-    for call in (lambda: env.step([0] * 5), env.reset):
+    for call in (lambda: env.step([0] * 5), env.reset, env.render):
         with pytest.raises(ClosedEnvironmentError, match="this environment is closed: make another one"):
             call()
 
