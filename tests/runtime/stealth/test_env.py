@@ -100,6 +100,17 @@ def test_the_designer_chooses_what_is_sensed() -> None:
     env.close()
 
 
+def test_an_observation_stays_what_it_was() -> None:
+    env = GameEnv("cover_and_hide")
+    first, _ = env.reset(seed=1)
+    kept = {key: value.copy() for key, value in first.items()}
+    for _ in range(20):
+        second, *_ = env.step((1, 1, 0, 0, 1))
+    assert all(np.array_equal(first[key], kept[key]) for key in kept)
+    assert not np.array_equal(first["entities"], second["entities"])
+    env.close()
+
+
 @pytest.mark.parametrize("sensors", [Sensors(("door",), (), None), Sensors((), ("mood",), None)])
 def test_what_the_level_does_not_have_cannot_be_sensed(sensors: Sensors) -> None:
     with pytest.raises(TltlError, match=r"TLT0815: the level `navigation` has no (entity|signal) `(door|mood)`"):

@@ -22,7 +22,7 @@ from collections.abc import Sequence
 from math import cos, floor, pi, sin, sqrt
 from typing import NoReturn, Protocol
 
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Barrier, Level, Point
 from tltl_runtime.stealth.world.bodies import COMPOUND, STOPS, WORLD, set_filter, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.capsules import Capsules
@@ -181,11 +181,7 @@ class World:
         A side is tested at its middle, from a centimetre outside, unless another body covers that point.
         """
         boxes = [(solid.name, solid.box.low, solid.box.high) for solid in self.level.solids]
-        boxes += [
-            (barrier.name, barrier.box.low, barrier.box.high)
-            for barrier, is_open in zip(self.level.barriers, self._open, strict=True)
-            if barrier.kind == "solid" and not is_open
-        ]
+        boxes += [(barrier.name, barrier.box.low, barrier.box.high) for barrier in self._shut()]
         boxes += [(mover.name, *box) for mover, box in zip(self.level.movers, self.mover_boxes(), strict=True)]
         for name, low, high in boxes:
             for side, (outside, face) in sides(low, high).items():
@@ -294,9 +290,10 @@ class World:
 
     def _changing(self, but: Moving | None) -> list[Bounds]:
         """The shut barriers and the movers, without the mover ``but``."""
-        shut = [
-            (barrier.box.low, barrier.box.high)
-            for barrier, is_open in zip(self.level.barriers, self._open, strict=True)
-            if barrier.kind == "solid" and not is_open
-        ]
+        shut = [(barrier.box.low, barrier.box.high) for barrier in self._shut()]
         return shut + [mover.box for mover in self.movers if mover is not but]
+
+    def _shut(self) -> list[Barrier]:
+        """The barriers that stop bodies now."""
+        barriers = zip(self.level.barriers, self._open, strict=True)
+        return [barrier for barrier, is_open in barriers if barrier.kind == "solid" and not is_open]

@@ -410,3 +410,15 @@ def test_closing_twice_is_harmless() -> None:
     world.close()
     with pytest.raises(pybullet.error):
         world.step((0, 0, 0, 0, 0))
+
+
+def test_the_capsule_that_is_not_played_never_falls_further_than_a_kilometre(opened: list[World]) -> None:
+    world = World(arena())
+    opened.append(world)
+    for step in range(150):
+        world.step(CROUCH if step == 70 else STAY)
+        z = min(
+            pybullet.getBasePositionAndOrientation(body, world._client)[0][2]
+            for body in range(pybullet.getNumBodies(world._client))
+        )
+        assert -1000.0 < z < world.level.bounds.low[2]
