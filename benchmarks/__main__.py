@@ -18,11 +18,13 @@ SECTIONS = {module.SECTION: module for module in (process, monitors, batch, game
 def main() -> None:
     """Parse the options and run the sections."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("--fresh", action="store_true", help="discard earlier results")
+    parser.add_argument("--fresh", action="store_true", help="discard earlier results, of that section with --only")
     parser.add_argument("--only", choices=sorted(SECTIONS), help="measure one section")
     parser.add_argument("--timeout", type=float, default=20.0, metavar="SECONDS", help="for a peer on one formula")
     options = parser.parse_args()
-    store = Store(fresh=options.fresh)
+    store = Store()
+    if options.fresh:
+        store.discard(options.only)
     if options.only is None or not store.section("machine"):
         # What one section adds later, perhaps without the peers, must not describe how the others were measured.
         store.put("machine", "facts", facts())

@@ -17,11 +17,15 @@ Record = dict[str, Any]
 class Store:
     """Records by section and key, in the order in which they were measured."""
 
-    def __init__(self, path: Path = RESULTS, *, fresh: bool = False) -> None:
+    def __init__(self, path: Path = RESULTS) -> None:
         self._path = path
         self._content: dict[str, Any] = {}
-        if path.exists() and not fresh:
+        if path.exists():
             self._content = json.loads(path.read_text(encoding="utf-8"))
+
+    def discard(self, section: str | None) -> None:
+        """Forget the records of a section, or all; the file keeps them until the next one is put."""
+        self._content = {name: kept for name, kept in self._content.items() if section not in (None, name)}
 
     def section(self, name: str) -> dict[str, Record]:
         """The records of a section by key."""
