@@ -106,11 +106,15 @@ def test_the_batched_monitor_has_its_goals_and_table(tmp_path: Path) -> None:
     assert "| 1.25 ms on cover_and_hide | **missed** |" in render(store)
 
 
-def test_a_fresh_store_forgets(tmp_path: Path) -> None:
-    path = tmp_path / "results.json"
-    Store(path).put("compile", "one", {"x": 1})
-    assert Store(path).section("compile") == {"one": {"x": 1}}
-    assert Store(path, fresh=True).section("compile") == {}
+def test_a_store_forgets_one_section_or_all(tmp_path: Path) -> None:
+    store = Store(tmp_path / "results.json")
+    for section in ("compile", "game"):
+        store.put(section, "one", {"x": 1})
+    store.discard("game")
+    assert store.section("game") == {}
+    assert store.section("compile") == Store(tmp_path / "results.json").section("compile") == {"one": {"x": 1}}
+    store.discard(None)
+    assert store.section("compile") == {}
 
 
 def test_the_reference_table_reads() -> None:

@@ -12,7 +12,7 @@ from benchmarks.variants import measure_each
 
 def test_what_failed_is_measured_again_and_nothing_else_is(tmp_path: Path) -> None:
     pytest.importorskip("pybullet")
-    store = Store(tmp_path / "results.json", fresh=True)
+    store = Store(tmp_path / "results.json")
     cases = [("cover_and_hide", "v0", "30"), ("nowhere", "v0", "30")]
     said: list[str] = []
     for _ in range(2):
