@@ -5,7 +5,7 @@ made at once, which is what each decision cannot do without.  *env* adds all tha
 observation, *with spec* the automaton and its reward as well, and the resets of the episodes that it ends.
 
 ``python -m benchmarks.game LEVEL VARIANT`` measures one variant in a process of its own, and
-``python -m benchmarks.game workers`` the worker processes.
+``python -m benchmarks.game workers COUNT`` the worker processes.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ DECISIONS = 600
 ROUNDS = 9
 TIMEOUT_S = 900.0
 
-COUNT = 32
+COUNTS = (32, 128)
+"""Environments that workers share out.  A reset costs as much as ten decisions, and all wait for it: fewer, longer."""
 WORKERS_LEVEL = "cover_and_hide"
 WORKERS_STEPS = 60
 WORKERS_ROUNDS = 9
@@ -46,7 +47,9 @@ IDLE_CORES = 1.8
 
 def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
     """Measure each variant that the store does not have yet, or that failed, then the workers."""
-    measure_each(store, SECTION, lambda: [*variants_of_all(), (WORKERS,)], TIMEOUT_S, say)
+    measure_each(
+        store, SECTION, lambda: [*variants_of_all(), *((WORKERS, str(count)) for count in COUNTS)], TIMEOUT_S, say
+    )
 
 
 def compared(level: str, variant: str) -> Record:
@@ -133,15 +136,15 @@ def _map_us(env: GameEnv) -> tuple[float, float]:
     return median([_us(look) for _ in range(ROUNDS)]), median([_us(look_and_layer) for _ in range(ROUNDS)])
 
 
-def two_beside_one() -> Record:
-    """Decisions per second of wall time of one and of two worker processes, in turns.
+def two_beside_one(count: int) -> Record:
+    """Decisions per second of wall time of one and of two worker processes with ``count`` environments, in turns.
 
     A round counts only where two cores were idle before and after it.  Without any, ``idle_cores`` says how
     many were.
     """
     from tltl_runtime.vector import make_vec
 
-    one, two = (make_vec(WORKERS_LEVEL, "v0", COUNT, workers) for workers in (1, 2))
+    one, two = (make_vec(WORKERS_LEVEL, "v0", count, workers) for workers in (1, 2))
     rates: list[tuple[float, float]] = []
     idle = []
     for env in (one, two):
@@ -158,7 +161,7 @@ def two_beside_one() -> Record:
             break
     one.close()
     two.close()
-    record: Record = {"tries": len(idle), "rounds": len(rates), "idle_cores": median(idle), "count": COUNT}
+    record: Record = {"tries": len(idle), "rounds": len(rates), "idle_cores": median(idle), "count": count}
     if rates:
         record["decisions_per_s"] = [round(median([rate[side] for rate in rates])) for side in (0, 1)]
         record["two_to_one"] = quartiles([second / first for first, second in rates])
@@ -173,7 +176,7 @@ def _rate(env: WorkerVectorEnv) -> float:
         if step % 6 == 0:
             chosen = env.action_space.sample()
         env.step(chosen)
-    return WORKERS_STEPS * COUNT / (time.perf_counter() - began)
+    return WORKERS_STEPS * env.num_envs / (time.perf_counter() - began)
 
 
 def _idle_cores() -> float:
@@ -195,4 +198,4 @@ def _idle_ticks() -> int | None:
 
 
 if __name__ == "__main__":
-    print(json.dumps(two_beside_one() if sys.argv[1] == WORKERS else compared(*sys.argv[1:])))
+    print(json.dumps(two_beside_one(int(sys.argv[2])) if sys.argv[1] == WORKERS else compared(*sys.argv[1:])))

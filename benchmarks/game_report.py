@@ -28,17 +28,16 @@ def goals(store: Store) -> Iterable[Sequence[str]]:
         )
         slowest = max(record["map_us"][0] for record in speed.values())
         yield "a look at the semantic map in under 5 µs", f"slowest {slowest:.1f} µs", met_or_missed(slowest < MAP_US)
-    workers = store.section(game.SECTION).get(game.WORKERS, {})
-    if "two_to_one" in workers:
-        ratio = workers["two_to_one"][1]
-        yield (
-            "two worker processes at least 1.7 times as fast as one where two cores are free",
-            f"{ratio:.2f}",
-            met_or_missed(ratio >= WORKERS_FACTOR),
+    for workers in _workers(store.section(game.SECTION)):
+        goal = (
+            f"two worker processes at least 1.7 times as fast as one, {workers['count']} environments, two free cores"
         )
-    elif "idle_cores" in workers:
-        what = f"not measured: {workers['idle_cores']:.1f} cores were idle, at the median of {workers['tries']} tries"
-        yield "two worker processes at least 1.7 times as fast as one where two cores are free", what, "–"
+        if "two_to_one" in workers:
+            ratio = workers["two_to_one"][1]
+            yield goal, f"{ratio:.2f}", met_or_missed(ratio >= WORKERS_FACTOR)
+        else:
+            idle, tries = workers["idle_cores"], workers["tries"]
+            yield goal, f"not measured: {idle:.1f} cores were idle, at the median of {tries} tries", "–"
     tried = store.section(safety.SECTION)
     if tried:
         steps = sum(record.get("steps", 0) for record in tried.values())
@@ -76,8 +75,7 @@ its reward too, and the resets of the episodes that it ends. *Map*: a look at th
 layers made.
 
 {table(header, body)}
-{_workers(records.get(game.WORKERS, {}))}
-"""
+{"".join(map(_two_beside_one, _workers(records)))}"""
 
 
 def safe(records: dict[str, Record]) -> str:
@@ -101,7 +99,12 @@ at each reset and each end of an episode. *Deepest*: how far the player's body e
 """
 
 
-def _workers(record: Record) -> str:
+def _workers(records: dict[str, Record]) -> list[Record]:
+    """The records of worker processes."""
+    return [record for name, record in records.items() if name.startswith(game.WORKERS) and "count" in record]
+
+
+def _two_beside_one(record: Record) -> str:
     if "two_to_one" not in record:
         return ""
     one, two = record["decisions_per_s"]
