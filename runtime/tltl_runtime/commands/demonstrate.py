@@ -86,9 +86,9 @@ def command(
             for number in range(seed, seed + episodes):
                 play_episode(env, expert, number)
                 episode = env.episode
-                path = _write(folder, number, episode, film, notation)
+                path = _write(folder, episode, film, notation)
                 played, succeeded = played + 1, succeeded + episode.success
-                click.echo(_line(number, episode, path))
+                click.echo(_line(episode, path))
         except KeyboardInterrupt:
             click.echo(f"stopped: {played} of {episodes} episodes were recorded", err=True)
             raise
@@ -100,13 +100,13 @@ def command(
     return report.status
 
 
-def _write(folder: Path, seed: int, episode: Episode, film: str | None, notation: Notation) -> Path:
+def _write(folder: Path, episode: Episode, film: str | None, notation: Notation) -> Path:
     """Write the recording and the pictures of an episode; the path of the recording."""
-    from tltl_runtime.stealth.episodes.file import SUFFIX, write_episode
+    from tltl_runtime.stealth.episodes.file import SUFFIX, file_stem, write_episode
     from tltl_runtime.stealth.pictures.plan import draw_episode
     from tltlc.writing import write_files
 
-    name = f"{episode.level.name}-{episode.level.variant}-{seed}"
+    name = file_stem(episode)
     write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation)})
     path = folder / f"{name}{SUFFIX}"
     write_episode(path, episode)
@@ -116,11 +116,11 @@ def _write(folder: Path, seed: int, episode: Episode, film: str | None, notation
     return path
 
 
-def _line(seed: int, episode: Episode, path: Path) -> str:
+def _line(episode: Episode, path: Path) -> str:
     """How an episode went."""
     from tltl_runtime.stealth.episodes.cause import cause
 
     steps, seconds = len(episode.actions), episode.snapshots[-1].time
-    ended = f"{episode.end} after {steps} steps, {seconds:.2f} s"
-    line = f"seed {seed}: {ended}, progress {episode.progress[-1]:.2f}, return {episode.rewards.sum():.3f}: {path}"
+    ended = f"seed {episode.seed}: {episode.end} after {steps} steps, {seconds:.2f} s"
+    line = f"{ended}, progress {episode.progress[-1]:.2f}, return {episode.rewards.sum():.3f}: {path}"
     return line if episode.success else f"{line}\n  {cause(episode).text}"

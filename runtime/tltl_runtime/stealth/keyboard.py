@@ -62,7 +62,7 @@ class KeyboardPlayer:
                 going = self._episode(seed)
                 seed = None
         finally:
-            self._saved()
+            self._save()
 
     def _episode(self, seed: int | None) -> bool:
         """Play one episode and tell whether another is wanted."""
@@ -82,7 +82,7 @@ class KeyboardPlayer:
             due = max(due + DECISION, monotonic() - DECISION)
         if over:
             keys = self._end(snapshot, info)
-        self._saved()
+        self._save()
         return keys.restart and not keys.stop
 
     def _move(self, before: Snapshot, after: Snapshot, shown: Hud, began: float) -> Keys:
@@ -99,7 +99,7 @@ class KeyboardPlayer:
     def _end(self, snapshot: Snapshot, info: dict[str, Any]) -> Keys:
         """The end screen, until the player stops or plays again."""
         episode = self._env.episode
-        file = self._saved() or ""
+        file = self._save() or ""
         return self._still(snapshot, ending(hud(snapshot, info, episode.fspa), cause(episode), file))
 
     def _still(self, snapshot: Snapshot, shown: Hud, begins: bool = False) -> Keys:
@@ -124,7 +124,7 @@ class KeyboardPlayer:
         names = self._renderer.names(snapshot, self._view)
         self._window.show(self._renderer.frame(snapshot, self._view), shown, names)
 
-    def _saved(self) -> str | None:
+    def _save(self) -> str | None:
         """Save what was played and is not saved yet."""
         if not self._unsaved:
             return None

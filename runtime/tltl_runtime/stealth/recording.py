@@ -26,7 +26,7 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
 
     ``env`` is a :class:`TltlEnv` over a :class:`GameEnv`, or wrappers around one.  ``player`` is the name that the
     recording gives whoever plays.  With ``folder``, which is made where it is missing, each episode that comes to its
-    end is written to ``LEVEL-VARIANT-SEED.episode.npz`` there.
+    end is written to ``LEVEL-VARIANT-SEED.episode.npz`` there; where that is taken, a number follows the seed.
 
     Raises:
         TypeError: ``env`` has no spec or is not the game.
@@ -42,7 +42,7 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
         self._game = self._played.game
         self._judge = _judge(env)
         self._player = player
-        self._folder = None if folder is None else _made(Path(folder))
+        self._folder = None if folder is None else _writable(Path(folder))
         self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
         self._rows: _Rows | None = None
         self._over = False
@@ -77,23 +77,12 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
             self._rows.add(self._played.action, self._game.snapshot(), self._signals(), atoms, taken, info["success"])
             self._over = terminated or truncated
             if self._over and self._folder is not None:
-                self._write(self._folder)
+                _write(self._folder, self.episode)
         return observation, reward, terminated, truncated, info
 
     def _signals(self) -> list[float]:
         sample = self._judge.sample
         return [float(sample[name]) for name in self._names]
-
-    def _write(self, folder: Path) -> None:
-        from tltl_runtime.stealth.episodes.file import SUFFIX, write_episode
-
-        episode = self.episode
-        name = f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
-        path, number = folder / f"{name}{SUFFIX}", 1
-        while path.exists():
-            number += 1
-            path = folder / f"{name}-{number}{SUFFIX}"
-        write_episode(path, episode)
 
 
 class _Rows:
@@ -174,8 +163,14 @@ def _judge(env: gymnasium.Env[Any, Any]) -> TltlEnv:
     return each
 
 
-def _made(folder: Path) -> Path:
-    """The folder, made where it is missing; known to be of use before an hour is played."""
+def _write(folder: Path, episode: Episode) -> None:
+    from tltl_runtime.stealth.episodes.file import file_stem, new_path, write_episode
+
+    write_episode(new_path(folder, file_stem(episode)), episode)
+
+
+def _writable(folder: Path) -> Path:
+    """The folder, made where it is missing; refused before an hour is played."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder):

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
-from tltl_runtime.commands.play import Files
+from tltl_runtime.commands.recording_files import RecordingFiles
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.check import check, resimulate
 from tltl_runtime.stealth.episodes.episode import Episode
@@ -169,8 +169,8 @@ def test_a_recording_finds_a_place_where_its_own_is_refused(
     wanted, spare = tmp_path / "wanted", tmp_path / "spare"
     wanted.mkdir()
     spare.mkdir()
-    monkeypatch.setattr("tltl_runtime.commands.play.gettempdir", lambda: str(spare))
-    files = Files(wanted, "navigation-v0")
+    monkeypatch.setattr("tltl_runtime.commands.recording_files.gettempdir", lambda: str(spare))
+    files = RecordingFiles(wanted, "navigation-v0")
     wanted.rmdir()
     assert files.save(env.episode) == str(spare / "navigation-v0.episode.npz")
     assert files.save(env.episode) == str(spare / "navigation-v0-2.episode.npz")
@@ -181,10 +181,10 @@ def test_a_recording_finds_a_place_where_its_own_is_refused(
 
 def test_where_to_record(tmp_path: Path) -> None:
     with pytest.raises(click.UsageError, match=r"a folder or a name with \.episode\.npz"):
-        Files(tmp_path / "mine.txt", "x")
+        RecordingFiles(tmp_path / "mine.txt", "x")
     with pytest.raises(TltlError, match=r"TLT0005: cannot record to `.*nowhere`: there is no such folder"):
-        Files(tmp_path / "nowhere" / "mine.episode.npz", "x")
-    Files(tmp_path / "new" / "runs", "x")
+        RecordingFiles(tmp_path / "nowhere" / "mine.episode.npz", "x")
+    RecordingFiles(tmp_path / "new" / "runs", "x")
     assert (tmp_path / "new" / "runs").is_dir()
 
 
@@ -194,11 +194,11 @@ def test_no_recording_is_ever_lost(tmp_path: Path, capsys: pytest.CaptureFixture
     env.step([1, 0, 0, 0, 0])
     older = tmp_path / "mine.episode.npz"
     older.write_bytes(b"older")
-    files = Files(older, "x")
+    files = RecordingFiles(older, "x")
     files.keep(env.episode)
     assert len(read_episode(tmp_path / "mine.unfinished.episode.npz").actions) == 1
     # What a process that was killed left behind stays, too.
-    other = Files(older, "x")
+    other = RecordingFiles(older, "x")
     other.keep(env.episode)
     assert files.save(env.episode) == str(tmp_path / "mine-2.episode.npz")
     assert older.read_bytes() == b"older"

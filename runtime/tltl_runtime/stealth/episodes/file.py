@@ -72,6 +72,20 @@ class Meta:
     level: Level
 
 
+def file_stem(episode: Episode) -> str:
+    """What the files of an episode are called, but for their endings: ``LEVEL-VARIANT-SEED``."""
+    return f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
+
+
+def new_path(folder: Path, stem: str) -> Path:
+    """Where an episode can be written without harm to an older one: ``STEM.episode.npz``, or ``STEM-2`` and so on."""
+    path, number = folder / f"{stem}{SUFFIX}", 1
+    while path.exists():
+        number += 1
+        path = folder / f"{stem}-{number}{SUFFIX}"
+    return path
+
+
 def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
     """Write an episode to a file, which is there as a whole or not at all; equal episodes give equal bytes.
 
