@@ -12,6 +12,7 @@ from gymnasium import spaces
 from tltl_runtime.commands.senses import senses_options
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
+from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.senses.observation import Senses
 from tltl_runtime.stealth.supply.feasible import check_height, check_reach
 from tltl_runtime.stealth.supply.reach import Reach, reachable
@@ -92,7 +93,7 @@ class _Check:
             way_out = 'name one before --level, or in the level: `spec = "FILE.tltl:NAME"`'
             self._say(f"{level.name}: made for no spec; {way_out}")
             return []
-        opened = open_input(_shown(level.spec), self._settings)
+        opened = open_input(shown(Path(level.spec)), self._settings)
         self._add(opened.diagnostics)
         return [opened]
 
@@ -115,14 +116,6 @@ def _draw(path: Path, seen: list[tuple[Level, Reach]]) -> None:
 
     level, reach = seen[0]
     write_file(path, draw(level, reach=reach), "name another place with --plan")
-
-
-def _shown(spec: str) -> str:
-    """A path with a name, relative to the current folder where it lies inside."""
-    try:
-        return str(Path(spec).relative_to(Path.cwd()))
-    except ValueError:
-        return spec
 
 
 def _specs(opened: Input) -> Iterator[tuple[Fspa, SpecPlaces]]:

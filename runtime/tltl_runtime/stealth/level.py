@@ -182,6 +182,12 @@ class Level:
     """Further names of signals, for specs that call them otherwise: (``open_right``, ``open(right)``)."""
 
 
+def entity_names(level: Level) -> tuple[str, ...]:
+    """What specs may speak of by name: switches, barriers, exits, enemies and movers, in this order."""
+    things = (*level.switches, *level.barriers, *level.exits, *level.enemies, *level.movers)
+    return tuple(thing.name for thing in things)
+
+
 def fixed_places(level: Level) -> dict[str, Point]:
     """Where each entity is that stays there, by name; of a barrier it is the middle of the base."""
     places = {switch.name: switch.position for switch in level.switches}

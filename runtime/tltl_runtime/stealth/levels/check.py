@@ -4,30 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import Final
 
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, Places
 from tltl_runtime.stealth.levels.table import suggestion
+from tltl_runtime.stealth.signals import readers
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.record import replace
 from tltlc.source import SourceFile
-
-PLAIN_SIGNALS: Final = (
-    *("health", "stamina", "position.x", "position.y", "position.z", "time"),
-    *("visible", "seen", "crouching", "grounded"),
-)
-"""The signals of every level that speak of no entity."""
-
-_SIGNAL_OF_ENTITY: Final = re.compile(r"(distance|bearing|line_of_sight|active|open)\((\w+)\)")
-
-
-def entities(level: Level) -> tuple[str, ...]:
-    """What specs may speak of by name: switches, barriers, exits, enemies and movers."""
-    found = [switch.name for switch in level.switches]
-    found += [barrier.name for barrier in level.barriers]
-    found += [exit_.name for exit_ in level.exits]
-    found += [enemy.name for enemy in level.enemies]
-    return (*found, *(mover.name for mover in level.movers))
 
 
 def check_names(names: Iterable[str], places: Places) -> list[Diagnostic]:
@@ -45,18 +29,18 @@ def check_names(names: Iterable[str], places: Places) -> list[Diagnostic]:
 
 def check_references(level: Level, places: Places) -> list[Diagnostic]:
     """TLT0805 for each name that stands for nothing, and for barriers that nothing or too much opens."""
+    # What a further name of a signal stands for is itself among the names to be checked.
+    signals = readers(replace(level, signals=()))
     known = {
         "switch": [switch.name for switch in level.switches],
         "barrier": [barrier.name for barrier in level.barriers],
-        "entity": list(entities(level)),
+        "entity": list(entity_names(level)),
         "cell type": list(CELL_TYPES),
-        "signal": list(PLAIN_SIGNALS),
+        "signal": [name for name in signals if "(" not in name],
     }
     found = []
     for kind, name, label in places.references:
-        if kind == "signal" and _is_signal(name, known):
-            continue
-        if name not in known[kind]:
+        if name not in (signals if kind == "signal" else known[kind]):
             title = f"there is no {kind} `{name}`"
             found.append(Diagnostic("TLT0805", title, (label,), suggestion(name, known[kind])))
     unlocked = [name for unlock in level.unlocks for name in unlock.barriers]
@@ -67,11 +51,3 @@ def check_references(level: Level, places: Places) -> list[Diagnostic]:
             help_ = "name its switches in `opened_by`, or the barrier in one `[[unlock]]`"
             found.append(Diagnostic("TLT0805", title, places.named(barrier.name), help_))
     return found
-
-
-def _is_signal(name: str, known: dict[str, list[str]]) -> bool:
-    """Whether every level with these things has a signal of that name."""
-    call = _SIGNAL_OF_ENTITY.fullmatch(name)
-    if call is None:
-        return name in PLAIN_SIGNALS
-    return call[2] in known[{"active": "switch", "open": "barrier"}.get(call[1], "entity")]

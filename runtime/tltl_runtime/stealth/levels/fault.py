@@ -7,11 +7,9 @@ from typing import Final
 
 from tltl_runtime.stealth.enemies.branches import added_branches
 from tltl_runtime.stealth.level import Box, Level, Point
+from tltl_runtime.stealth.levels.table import FARTHEST
 from tltl_runtime.stealth.signals import readers
 from tltlc.record import replace
-
-_FARTHEST: Final = 1000.0
-"""Metres from the origin, as in level files."""
 
 _THINNEST: Final = 1e-3
 """Metres that a box measures at least."""
@@ -26,7 +24,7 @@ def _faults(level: Level) -> Iterator[str]:
     boxes = [("the bounds", level.bounds)]
     boxes += [(f"the solid `{each.name}`", each.box) for each in level.solids]
     boxes += [(f"the barrier `{each.name}`", each.box) for each in level.barriers]
-    yield from (f"{name}: no box within {_FARTHEST:g} m" for name, box in boxes if not _is_box(box))
+    yield from (f"{name}: no box within {FARTHEST:g} m" for name, box in boxes if not _is_box(box))
     for mover in level.movers:
         good = mover.path and all(map(_is_place, mover.path)) and min(mover.size) >= _THINNEST and mover.speed > 0.0
         if not good or min(mover.pause, mover.offset) < 0.0:
@@ -39,7 +37,7 @@ def _faults(level: Level) -> Iterator[str]:
     places = [level.start.position]
     places += [switch.position for switch in level.switches]
     places += [each.position for each in level.exits]
-    yield from (f"{place} is no place within {_FARTHEST:g} m" for place in places if not _is_place(place))
+    yield from (f"{place} is no place within {FARTHEST:g} m" for place in places if not _is_place(place))
     yield from _wrong_references(level)
 
 
@@ -64,4 +62,4 @@ def _is_box(box: Box) -> bool:
 
 
 def _is_place(point: Point) -> bool:
-    return all(abs(value) <= _FARTHEST for value in point)
+    return all(abs(value) <= FARTHEST for value in point)

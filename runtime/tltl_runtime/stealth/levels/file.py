@@ -10,7 +10,7 @@ import hashlib
 import re
 from pathlib import Path
 
-from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Solid
+from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
 from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
 from tltl_runtime.stealth.levels.room import check_room
@@ -131,7 +131,7 @@ class _Loading:
             files=tuple(self.files),
             signals=self._signals(),
         )
-        names = check.entities(level)
+        names = entity_names(level)
         level = replace(level, sensors=parts.sensors(table.table("sensors", needed=False), names, places))
         table.done()
         self._raise()

@@ -97,13 +97,13 @@ def solids(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix:
 
 def box(table: Table, shift: Point = (0.0, 0.0, 0.0)) -> Box:
     """The box whose base has its middle at ``at`` and which is ``size`` large."""
-    (x, y, z), (dx, dy, dz) = moved(table.point("at"), shift), table.size()
+    (x, y, z), (dx, dy, dz) = _moved(table.point("at"), shift), table.size()
     return Box(_rounded((x - dx / 2, y - dy / 2, z)), _rounded((x + dx / 2, y + dy / 2, z + dz)))
 
 
 def _stairs(table: Table, name: str, shift: Point) -> list[Solid]:
     """Boxes, one a step, that reach down to the height at which the stairs begin."""
-    foot, top = moved(table.point("from"), shift), moved(table.point("to"), shift)
+    foot, top = _moved(table.point("from"), shift), _moved(table.point("to"), shift)
     width = table.number("width", low=0.7, high=50.0)
     steps = table.whole("steps", low=1, high=40)
     rise = (top[2] - foot[2]) / steps
@@ -136,7 +136,7 @@ def movers(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix:
     for item in table.tables("mover"):
         name, size = prefix + item.text("name"), item.size()
         up = (shift[0], shift[1], shift[2] + size[2] / 2)
-        path = tuple(_rounded(moved(point, up)) for point in item.points("path", 2))
+        path = tuple(_rounded(_moved(point, up)) for point in item.points("path", 2))
         speed = item.number("speed", low=0.01, high=10.0, unit="m/s")
         pause = item.number("pause", 0.0, low=0.0, high=600.0, unit="s")
         offset = item.number("offset", 0.0, low=0.0, high=600.0, unit="s")
@@ -284,7 +284,7 @@ def enclosure(bounds: Box) -> list[Solid]:
     ]
 
 
-def moved(point: Point, shift: Point) -> Point:
+def _moved(point: Point, shift: Point) -> Point:
     """A point of a part, where the part stands."""
     return (point[0] + shift[0], point[1] + shift[1], point[2] + shift[2])
 

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
+from tltl_runtime.stealth.enemies.grid import RADIUS
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.parts import Places
+from tltl_runtime.stealth.world.geometry import around
+from tltl_runtime.stealth.world.player import PlayerKind
 from tltl_runtime.stealth.world.way import Way
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 
-_PLAYER_RADIUS: Final = 0.3
-_ENEMY_RADIUS: Final = 0.35
-"""Half the width of the room that a body needs, in metres."""
-
-_BODY_HEIGHT: Final = 1.8
+_PLAYER: Final = PlayerKind()
 _EPSILON: Final = 1e-6
 
 _Boxes = list[tuple[str, Box]]
@@ -38,7 +37,7 @@ def _outside(
     level: Level, boxes: _Boxes, goals: list[tuple[str, Point]], places: Places, start: Label
 ) -> Iterator[Diagnostic]:
     """What is outside the bounds, each thing once."""
-    moving = [(mover.name, _around(point, mover.size)) for mover in level.movers for point in mover.path]
+    moving = [(mover.name, Box(*around(point, mover.size))) for mover in level.movers for point in mover.path]
     points = [*goals, *((enemy.name, point) for enemy in level.enemies for point in enemy.route)]
     spots = [(name, Box(point, point)) for name, point in points]
     bounds = f"the level from {shown(level.bounds.low)} to {shown(level.bounds.high)}"
@@ -53,7 +52,7 @@ def _outside(
 
 def _start(level: Level, boxes: _Boxes, places: Places, start: Label) -> Iterator[Diagnostic]:
     """What is where the player begins, movers included where they begin."""
-    begins = [(mover.name, _around(Way(mover).at(mover.offset), mover.size)) for mover in level.movers]
+    begins = [(mover.name, Box(*around(Way(mover).at(mover.offset), mover.size))) for mover in level.movers]
     for name, box in (*boxes, *begins):
         if _overlap(_player(level), box):
             help_ = "move one of them, or lessen the start's `spread`: the player is 0.6 m wide and 1.8 m high"
@@ -72,27 +71,21 @@ def _routes(level: Level, solids: _Boxes, places: Places) -> Iterator[Diagnostic
     for enemy in level.enemies:
         for point in enemy.route:
             for name, box in solids:
-                if _overlap(_body(point, _ENEMY_RADIUS), box):
+                if _overlap(_body(point, RADIUS), box):
                     title = f"`{enemy.name}` cannot walk to {shown(point)}: `{name}` is there"
-                    help_ = f"points of a route keep {_ENEMY_RADIUS} m away from what stands in the level"
+                    help_ = f"points of a route keep {RADIUS} m away from what stands in the level"
                     yield Diagnostic("TLT0807", title, places.at(enemy.name, name), help_)
 
 
 def _player(level: Level) -> Box:
     """All the room that the player may take where it begins."""
-    return _body(level.start.position, _PLAYER_RADIUS + level.start.spread)
+    return _body(level.start.position, _PLAYER.radius + level.start.spread)
 
 
-def _body(feet: Point, radius: float, height: float = _BODY_HEIGHT) -> Box:
+def _body(feet: Point, radius: float, height: float = _PLAYER.height) -> Box:
     """The room that somebody takes; a little above the floor, so that standing on something is no overlap."""
     x, y, z = feet
     return Box((x - radius, y - radius, z + 0.01), (x + radius, y + radius, z + height))
-
-
-def _around(centre: Point, size: Point) -> Box:
-    x, y, z = centre
-    dx, dy, dz = (side / 2 for side in size)
-    return Box((x - dx, y - dy, z - dz), (x + dx, y + dy, z + dz))
 
 
 def _inside(box: Box, bounds: Box) -> bool:

@@ -65,10 +65,10 @@ class Table:
         """Three finite coordinates in metres: [x, y, z]."""
         return self._read(key, default, "a point [x, y, z] in metres", _is_point, (0.0, 0.0, 0.0), _point)
 
-    def size(self, key: str = "size") -> Point:
-        """Three lengths in metres, each at least a centimetre."""
+    def size(self) -> Point:
+        """The key ``size``: three lengths in metres, each at least a centimetre."""
         good = lambda value: _is_point(value) and min(value) >= 0.01  # noqa: E731
-        return self._read(key, REQUIRED, "three lengths [x, y, z] of at least 0.01 m", good, (1.0, 1.0, 1.0), _point)
+        return self._read("size", REQUIRED, "three lengths [x, y, z] of at least 0.01 m", good, (1.0, 1.0, 1.0), _point)
 
     def points(self, key: str, least: int) -> tuple[Point, ...]:
         """A list of ``least`` points or more."""

@@ -7,6 +7,7 @@ from itertools import pairwise
 from math import dist
 from typing import Final, cast
 
+from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.enemies.segments import Corners, blocked
 from tltl_runtime.stealth.level import Enemy, Level, Mover, Point
 from tltl_runtime.stealth.levels.parts import Places
@@ -62,8 +63,6 @@ def _enemy(enemy: Enemy, level: Level, places: Places) -> Iterator[Diagnostic]:
 
 def _way(level: Level, start: Point, end: Point, *, shut: bool) -> bool:
     """Whether an enemy can walk between two points of its route, while all barriers are shut or open."""
-    from tltl_runtime.stealth.enemies.grid import grid_of
-
     floor = grid_of(level).floor(range(len(level.barriers)) if shut else ())
     stands = floor.entry(start[:2]) is not None and floor.entry(end[:2]) is not None
     return stands and floor.area(start[:2]) == floor.area(end[:2])

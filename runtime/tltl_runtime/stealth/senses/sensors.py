@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from math import isfinite
 from typing import Any, Final
 
-from tltl_runtime.stealth.level import Level, MapSensor, Sensors
-from tltl_runtime.stealth.levels.check import entities
+from tltl_runtime.stealth.level import Level, MapSensor, Sensors, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, CELL_WIDTH, MAP_EXTENT
 from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.signals import described, readers
@@ -84,7 +83,7 @@ def _names(choice: Mapping[str, Any], key: str, own: tuple[str, ...], log: list[
 
 
 def _check(level: Level, sensors: Sensors, log: list[Diagnostic]) -> None:
-    _check_names(sensors.entities, entities(level), f"the level `{level.name}` has no entity", log)
+    _check_names(sensors.entities, entity_names(level), f"the level `{level.name}` has no entity", log)
     _check_names(sensors.variables, readers(level), f"the level `{level.name}` has no signal", log, described(level))
     if (map_ := sensors.map) is None:
         return

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from math import inf, isclose
 from typing import Final
 
-from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.levels.check import entities
+from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.made_for import comes_with_the_package
 from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.signals import described
@@ -65,12 +64,12 @@ def given_params(level: Level, fspa: Fspa) -> dict[str, float]:
 
 def used_entities(level: Level, fspa: Fspa) -> tuple[str, ...]:
     """The entities of the level that the signals of a spec speak of, in the spec's order."""
-    there = entities(level)
+    there = entity_names(level)
     return tuple(dict.fromkeys(name for signal in fspa.signals for name in _arguments(signal.name) if name in there))
 
 
 def _signals(level: Level, fspa: Fspa, places: SpecPlaces) -> Iterator[Diagnostic]:
-    offered, there = offers(level), entities(level)
+    offered, there = offers(level), entity_names(level)
     missing: set[str] = set()
     for signal in fspa.signals:
         strangers = [name for name in _arguments(signal.name) if name not in there]

@@ -14,8 +14,7 @@ from pathlib import Path
 import pytest
 
 import tltlc
-from tltl_runtime.stealth.level import Box, Level, Solid
-from tltl_runtime.stealth.levels.check import entities
+from tltl_runtime.stealth.level import Box, Level, Solid, entity_names
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
@@ -83,7 +82,7 @@ def test_a_shipped_level_has_what_its_spec_speaks_of(name: str, variant: str) ->
     plain = {signal for signal in wanted if "(" not in signal} - {"health"}
     assert plain <= {alias for alias, _ in level.signals}
     called = {argument for signal in wanted for argument in re.findall(r"\((\w+)\)", signal)}
-    assert called and called <= set(entities(level))
+    assert called and called <= set(entity_names(level))
     assert pickle.loads(pickle.dumps(level)) == level
 
 
