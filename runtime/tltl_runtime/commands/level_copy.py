@@ -21,7 +21,8 @@ NAMES: Final = (_STARTER.stem, *level_names())
 def files(name: str) -> dict[str, str]:
     """The texts of a level, its assets, overlays and spec, by the names that they have beside it, and a README.
 
-    The level's own file is the first.      ``name`` is one of :data:`NAMES` or a ``.toml`` file.  Errors: those of :func:`load_level`.
+    The level's own file is the first.  ``name`` is one of :data:`NAMES` or a ``.toml`` file.  Errors: those of
+    :func:`load_level`.
     """
     if name not in NAMES and not name.endswith(".toml"):
         title = f"there is no level `{name}` to copy"

@@ -184,8 +184,13 @@ class Level:
 
 def entity_names(level: Level) -> tuple[str, ...]:
     """What specs may speak of by name: switches, barriers, exits, enemies and movers, in this order."""
-    things = (*level.switches, *level.barriers, *level.exits, *level.enemies, *level.movers)
-    return tuple(thing.name for thing in things)
+    return (
+        *(switch.name for switch in level.switches),
+        *(barrier.name for barrier in level.barriers),
+        *(way_out.name for way_out in level.exits),
+        *(enemy.name for enemy in level.enemies),
+        *(mover.name for mover in level.movers),
+    )
 
 
 def fixed_places(level: Level) -> dict[str, Point]:
