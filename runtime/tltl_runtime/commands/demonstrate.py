@@ -74,14 +74,14 @@ def command(
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
-    from tltl_runtime.stealth.supply.feasible import warnings
+    from tltl_runtime.stealth.supply.feasible import reach_warnings
 
     with Report() as report, requests_heard():
         file, variant = split(level)
         env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
         played = succeeded = 0
         try:
-            report.add(warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
+            report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
             expert = Expert(env, careful=not careless)
             for number in range(seed, seed + episodes):
                 play_episode(env, expert, number)

@@ -112,10 +112,10 @@ def _draw(path: Path, seen: list[tuple[Level, Reach]]) -> None:
     if len(seen) != 1:
         wanted = "one level and variant, e.g. `--level navigation:v2`"
         raise click.UsageError(f"--plan is for {wanted}; there are {len(seen)}", click.get_current_context())
-    from tltl_runtime.stealth.pictures.plan import draw
+    from tltl_runtime.stealth.pictures.plan import draw_level
 
     level, reach = seen[0]
-    write_file(path, draw(level, reach=reach), "name another place with --plan")
+    write_file(path, draw_level(level, reach), "name another place with --plan")
 
 
 def _specs(opened: Input) -> Iterator[tuple[Fspa, SpecPlaces]]:

@@ -18,7 +18,7 @@ from tltl_runtime.stealth.pictures.camera import VIEWS, View
 from tltl_runtime.stealth.pictures.hud import KEYS
 from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.supply.feasible import warnings
+from tltl_runtime.stealth.supply.feasible import reach_warnings
 from tltl_runtime.stealth.window.window import Window
 from tltlc.cli.report import show
 from tltlc.spec_file import split
@@ -76,7 +76,7 @@ def _play(
         files = RecordingFiles(out, f"{shown.name}-{shown.variant}")
         # A spec that asks for what the level does not have is told before there is a window.
         env.reset()
-        show(warnings(shown, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
+        show(reach_warnings(shown, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
         window = Window(f"{shown.name} {shown.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")
         renderer = Renderer(shown, *_SIZE)
         try:

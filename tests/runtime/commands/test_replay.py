@@ -24,6 +24,7 @@ from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import write_episode
 from tltl_runtime.stealth.episodes.summary import Notation, judged_with
+from tltl_runtime.stealth.pictures.camera import VIEWS
 from tltl_runtime.stealth.pictures.film import STRIP, frames
 from tltl_runtime.stealth.pictures.film_file import write_gif
 from tltl_runtime.stealth.pictures.plan import draw_episode, state_colour
@@ -99,7 +100,7 @@ def test_a_file_that_is_broken_hides_no_other(tltlc, recorded: Path) -> None:  #
 
 
 def test_the_views_are_those_that_there_are() -> None:
-    assert _VIEWS == film.FILM_VIEWS
+    assert get_args(film.View) == (*VIEWS, "plan") == _VIEWS
 
 
 def test_the_notations_are_those_that_there_are() -> None:
@@ -146,7 +147,7 @@ def test_a_gif(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] #
         assert gif.n_frames == 4  # at 1, 1.15, 1.3 and 1.45 s
 
 
-@pytest.mark.parametrize("view", film.FILM_VIEWS)
+@pytest.mark.parametrize("view", _VIEWS)
 def test_a_gif_has_the_colours_of_its_frames(tmp_path: Path, episode: Episode, view: film.View) -> None:
     """Those that come late and are few, too: the switch turns green, and the strip shows the second state."""
     pictures = list(frames(episode, [0.0, 1.5, 3.0], view, (320, 240)))

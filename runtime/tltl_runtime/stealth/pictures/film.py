@@ -10,23 +10,20 @@ from typing import Final, Literal
 
 import matplotlib
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.summary import Notation
 from tltl_runtime.stealth.level import Level, Point
-from tltl_runtime.stealth.pictures.camera import VIEWS
 from tltl_runtime.stealth.pictures.camera import View as Rendered
+from tltl_runtime.stealth.pictures.film_file import Picture
 from tltl_runtime.stealth.pictures.interpolation import between
 from tltl_runtime.stealth.pictures.plan import BARRIERS, backdrop, state_colour
 from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.snapshot import Snapshot
 
 View = Literal["third_person", "top_down", "overview", "plan"]
-FILM_VIEWS: Final[tuple[View, ...]] = (*VIEWS, "plan")
 
-Picture = NDArray[np.uint8]
 Moment = tuple[int, Snapshot]
 Pixel = Callable[[Point], tuple[float, float]]
 

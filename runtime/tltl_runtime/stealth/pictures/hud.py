@@ -11,7 +11,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.player import DECISION
 from tltlc.automaton.fspa import Fspa
-from tltlc.record import record
+from tltlc.record import record, replace
 
 Tone = Literal["plain", "quiet", "good", "bad", "warn", "dark"]
 """How something is to be taken, which a screen shows by colour."""
@@ -27,8 +27,11 @@ _TITLES: Final[dict[Kind, str]] = {
     "stopped": "stopped",
 }
 _WIDTH: Final = 36
+"""Letters in a line beside the picture."""
 _LONG: Final = 72
+"""Letters in a line below a title."""
 _MOST_LINES: Final = 10
+"""For what remains, beside the picture."""
 
 
 @record
@@ -76,20 +79,15 @@ def hud(snapshot: Snapshot, info: Mapping[str, Any], fspa: Fspa) -> Hud:
 def beginning(shown: Hud, level: Level, fspa: Fspa) -> Hud:
     """The screen before the first key."""
     goal = wrap(fspa.formula.english, _LONG)
-    return _with_title(
-        shown,
-        f"{level.name} {level.variant}",
-        "plain",
-        (*wrap(level.doc, _LONG), "", *goal, "", *KEYS, "", "Move to begin."),
-    )
+    below = (*wrap(level.doc, _LONG), "", *goal, "", *KEYS, "", "Move to begin.")
+    return replace(shown, title=f"{level.name} {level.variant}", below=below)
 
 
 def ending(shown: Hud, why: Cause, file: str) -> Hud:
     """The screen after the last step: how it ended, and ``file``, where it was recorded."""
     tone: Tone = "good" if why.kind == "success" else "bad"
-    return _with_title(
-        shown, _TITLES[why.kind], tone, (*wrap(why.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
-    )
+    below = (*wrap(why.text, _LONG), f"recorded: {file}", "R: again   Esc: close")
+    return replace(shown, title=_TITLES[why.kind], tone=tone, below=below)
 
 
 def _clock(seconds: float, fspa: Fspa) -> str:
@@ -109,10 +107,6 @@ def _seen(snapshot: Snapshot) -> Line:
 
 def _shortened(text: str) -> list[str]:
     lines = wrap(text, _WIDTH)
-    return (
-        lines if len(lines) <= _MOST_LINES else [*lines[: _MOST_LINES - 1], f"{lines[_MOST_LINES - 1][: _WIDTH - 2]} …"]
-    )
-
-
-def _with_title(shown: Hud, title: str, tone: Tone, below: tuple[str, ...]) -> Hud:
-    return Hud(shown.bars, shown.lines, title, tone, below)
+    if len(lines) <= _MOST_LINES:
+        return lines
+    return [*lines[: _MOST_LINES - 1], f"{lines[_MOST_LINES - 1][: _WIDTH - 2]} …"]

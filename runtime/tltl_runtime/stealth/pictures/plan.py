@@ -59,22 +59,14 @@ _LETTERS_PER_INCH: Final = 12
 """Of a line of the legend; what is longer is cut."""
 
 
-def draw(level: Level, path: Sequence[Point] = (), states: Sequence[int] = (), *, reach: Reach | None = None) -> bytes:
-    """The plan of a level as a PNG; ``path`` holds the player's feet, decision by decision, ``states`` the automaton's.
-
-    Without ``states`` the whole path has one colour; with ``reach``, red lies over all that nobody can stand on.
-    Raises ValueError where there is not one state for each point.
-    """
-    if states and len(states) != len(path):
-        raise ValueError(f"{len(path)} points need as many states, not {len(states)}")
+def draw_level(level: Level, reach: Reach) -> bytes:
+    """The plan of a level as a PNG; red lies over all that nobody can stand on."""
     width, height = _natural_size(level)
-    key = _key(level, reach is not None)
+    key = _key(level)
     columns = max(1, int(width / _COLUMN))
     figure = Figure(figsize=(width, height + (ceil(len(key) / columns) + 1) * _LINE), dpi=_DPI, layout="constrained")
     axes = _level_axes(figure, level)
-    _add_way(axes, path, states or [0] * len(path))
-    if reach is not None:
-        _add_reach(axes, reach)
+    _add_reach(axes, reach)
     figure.legend(handles=key, loc="outside lower left", ncols=columns, fontsize=8, frameon=False)
     return _png(figure)
 
@@ -94,8 +86,8 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     axes = _level_axes(figure, episode.level, start=False)
     shrunk = _shrunk(figure, episode.level)
     title = f"{episode.level.name} {episode.level.variant}, {episode.player}, seed {episode.seed}: {episode.end}"
-    # A letter is about 0.65 of its height wide.
     axes.set_title("")
+    # A letter is about 0.65 of its height wide.
     figure.suptitle(title, fontsize=min(12.0, inches[0] * 72 / (0.65 * len(title))))
     _add_way(axes, path, states)
     dot = 9 * shrunk
@@ -145,14 +137,13 @@ def _add_reach(axes: Any, reach: Reach) -> None:
     axes.imshow(red, origin="lower", extent=extent, interpolation="nearest", zorder=2)
 
 
-def _key(level: Level, reach: bool) -> list[Any]:
+def _key(level: Level) -> list[Any]:
     """What the colours of a level's plan mean, those that there are in it."""
     kinds = {solid.kind for solid in level.solids}
     handles: list[Any] = [Patch(facecolor=_SOLIDS[kind], label=_SOLID_NAMES[kind]) for kind in _SOLIDS if kind in kinds]
     barriers = {barrier.kind for barrier in level.barriers}
     handles += [Patch(facecolor=BARRIERS[kind], label=_BARRIER_NAMES[kind]) for kind in BARRIERS if kind in barriers]
-    if reach:
-        handles.append(Patch(facecolor=_UNREACHED, label="nobody stands there"))
+    handles.append(Patch(facecolor=_UNREACHED, label="nobody stands there"))
     handles.append(Line2D([], [], marker="o", linestyle="", color=_INK, label="start"))
     if level.switches:
         handles.append(Line2D([], [], marker="o", linestyle="", color=_SWITCH, markersize=10, label="switch"))

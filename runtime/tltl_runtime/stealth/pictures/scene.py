@@ -15,6 +15,7 @@ from typing import Final
 
 import numpy as np
 
+from tltl_runtime.stealth.enemies.grid import RADIUS
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.bodies import UPRIGHT
@@ -41,7 +42,6 @@ PLAYER: Final[Colour] = (0.16, 0.42, 0.95)
 ENEMY: Final[Colour] = (0.85, 0.18, 0.18)
 VISOR: Final[Colour] = (0.08, 0.09, 0.13)
 
-_ENEMY_RADIUS: Final = 0.35
 _ENEMY_HEIGHT: Final = 1.8
 _AWAY: Final = (0.0, 0.0, -1000.0)
 
@@ -71,7 +71,7 @@ class Scene:
         self._active = [False] * len(level.switches)
         for each in level.exits:
             self._beacon(each.position)
-        self._enemies = [self._person(_ENEMY_RADIUS, _ENEMY_HEIGHT, ENEMY) for _ in level.enemies]
+        self._enemies = [self._person(RADIUS, _ENEMY_HEIGHT, ENEMY) for _ in level.enemies]
         kind = PlayerKind()
         self._standing = self._person(kind.radius, kind.height, PLAYER)
         self._crouched = self._person(kind.radius, kind.crouched_height, PLAYER)

@@ -55,7 +55,7 @@ def check_height(level: Level, reach: Reach) -> list[Diagnostic]:
     return [Diagnostic("TLT0806", title, help=f"let them end above {jump + 0.01:.2f} m", severity="warning")]
 
 
-def warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
+def reach_warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
     """:func:`check_reach` for who is about to play, as warnings: one may well play what cannot be finished."""
     found = check_reach(level, reachable(level), fspa, SpecPlaces(None))
     return [replace(each, severity="warning") for each in found]

@@ -64,15 +64,13 @@ class Reach:
         return self.distances[entity] <= NEAR
 
 
-def reachable(
-    level: Level, kind: PlayerKind | None = None, *, lift: float | None = None, without: Collection[str] = ()
-) -> Reach:
+def reachable(level: Level, *, lift: float | None = None, without: Collection[str] = ()) -> Reach:
     """Everything that a player may reach from anywhere where an episode begins.
 
     ``lift`` is how much higher than the ground that was left the next may be, in metres, by default
     :func:`highest_lift`; solids and barriers ``without`` are not there.
     """
-    kind = kind or PlayerKind()
+    kind = PlayerKind()
     search = _Search(level, kind, highest_lift(kind) if lift is None else lift, without)
     switches: set[str] = set()
     opened: set[str] = set()
@@ -117,7 +115,7 @@ class _Search:
     """The ground that has been reached, by its height, and the space around it."""
 
     def __init__(self, level: Level, kind: PlayerKind, lift: float, without: Collection[str]) -> None:
-        self.level, self.kind, self.lift = level, kind, lift
+        self._kind, self._lift = kind, lift
         self._solids = [solid.box for solid in level.solids if solid.name not in without]
         self._barriers = {
             barrier.name: barrier.box
@@ -163,7 +161,7 @@ class _Search:
             window, flight = self._flight(free, height, fresh)
             self._space[: len(flight)][:, window[0], window[1]] |= flight
             for (lowest, top), near in self._tops.items():
-                if lowest > height + self.lift + _ROUNDING:
+                if lowest > height + self._lift + _ROUNDING:
                     continue
                 known = self._ground.setdefault(top, np.zeros_like(near))
                 met = flight[self.grid.slabs(lowest - _EDGE_DEPTH, top + _TOUCH)[: len(flight)]].any(axis=0)
@@ -186,8 +184,8 @@ class _Search:
         That space has the slabs from the lowest up to the greatest height of a jump.
         """
         grid = self.grid
-        times = np.array([self._time(height - low) for low in grid.lows[grid.highs <= height + self.lift + _ROUNDING]])
-        leaps = self.kind.sprint_speed * times / grid.cell
+        times = np.array([self._time(height - low) for low in grid.lows[grid.highs <= height + self._lift + _ROUNDING]])
+        leaps = self._kind.sprint_speed * times / grid.cell
         most = int(leaps[0]) + 2
         inner = span(np.any(ground, axis=1)), span(np.any(ground, axis=0))
         rows, columns = (slice(max(0, part.start - most), part.stop + most) for part in inner)
@@ -199,7 +197,7 @@ class _Search:
 
     def _time(self, drop: float) -> float:
         """The longest time from ground to ``drop`` metres below it, by a jump that lifts the feet all the way up."""
-        speed, gravity, fastest = sqrt(2 * self.kind.gravity * self.lift), self.kind.gravity, self.kind.fall_speed
+        speed, gravity, fastest = sqrt(2 * self._kind.gravity * self._lift), self._kind.gravity, self._kind.fall_speed
         until_fastest = (speed + fastest) / gravity
         below = (fastest**2 - speed**2) / (2 * gravity)
         if drop <= below:

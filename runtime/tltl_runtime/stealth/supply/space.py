@@ -42,8 +42,9 @@ Space = NDArray[np.bool_]
 class SpaceGrid:
     """The cells and slabs of a level; ``cuts`` are heights at which slabs must end, beside those of the boxes.
 
-    ``cell`` is the side of a cell in metres; ``west`` [columns] and ``south`` [rows] are where they begin, ``lows`` and
-    ``highs`` [slabs] the ends of the slabs, in metres, upwards.
+    ``origin`` is the south-west corner, ``cell`` the side of a cell in metres; ``west`` [columns] and ``south`` [rows]
+    are where they begin, ``lows`` and ``highs`` [slabs] the ends of the slabs, in metres, upwards.  ``shape`` is that
+    of a space: slabs, rows, columns.
     """
 
     def __init__(self, bounds: Box, boxes: Iterable[Box], cuts: Iterable[float], kind: PlayerKind) -> None:

@@ -1,4 +1,4 @@
-"""Plans of levels: pictures of the right size, with the path in them, the same every time."""
+"""Plans of levels: pictures of the right size, with what the level has in them, the same every time."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from PIL import Image
 
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.levels.file import level_names, load_level
-from tltl_runtime.stealth.pictures.plan import _patrol, draw
+from tltl_runtime.stealth.pictures.plan import _patrol, draw_level
 from tltl_runtime.stealth.supply.reach import reachable
 
 
@@ -24,32 +24,26 @@ def has(picture: np.ndarray, colour: tuple[int, int, int]) -> bool:
 
 
 @pytest.mark.parametrize("name", level_names())
-def test_a_plan_shows_walls_and_the_path_by_state(name: str) -> None:
+def test_a_plan_shows_what_a_level_has(name: str) -> None:
     level = load_level(name)
-    x, y, z = level.start.position
-    path = [(x + step / 10, y, z) for step in range(20)]
-    plain, drawn = pixels(draw(level)), pixels(draw(level, path, [0] * 10 + [1] * 10))
-    assert plain.shape == drawn.shape and plain.shape[1] > 500
-    assert has(plain, (0x47, 0x55, 0x69))  # walls
-    for colour in ((0x25, 0x63, 0xEB), (0x93, 0x33, 0xEA)):  # states 0 and 1
-        assert has(drawn, colour) and not has(plain, colour)
-    assert draw(level, path) == draw(level, path)
+    reach = reachable(level)
+    drawn = pixels(draw_level(level, reach))
+    assert drawn.shape[1] > 500
+    for colour in ((0xFA, 0xCC, 0x15), (0x16, 0xA3, 0x4A)):  # switches and exits, in the key alone where one is hidden
+        wanted = level.switches if colour[0] == 0xFA else level.exits
+        assert has(drawn, colour) == bool(wanted)
+    assert not any(has(drawn, colour) for colour in ((0x25, 0x63, 0xEB), (0x93, 0x33, 0xEA)))  # states 0 and 1
+    assert draw_level(level, reach) == draw_level(level, reach)
 
 
 def test_a_plan_shows_what_nobody_reaches() -> None:
     pictures = {}
     for variant in ("v0", "v2"):
         level = load_level("navigation", variant)
-        drawn = pixels(draw(level, reach=reachable(level))).astype(int)
-        assert drawn.shape == pixels(draw(level)).shape
+        drawn = pixels(draw_level(level, reachable(level))).astype(int)
         pictures[variant] = float((drawn[..., 0] - drawn[..., 2] > 40).mean())
     # The outer walls alone, and all that lies behind the block.
     assert pictures["v0"] < 0.15 < 0.4 < pictures["v2"]
-
-
-def test_each_point_needs_a_state() -> None:
-    with pytest.raises(ValueError, match="2 points need as many states, not 1"):
-        draw(load_level("navigation"), [(0, 0, 0), (1, 0, 0)], [0])
 
 
 @pytest.mark.parametrize("name", ["branching", "cover_and_hide"])
