@@ -79,7 +79,7 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
         raise TypeError(f"a spec is a path, a text or an automaton, not {spec!r:.60}{one}")
     if isinstance(spec, str) and _is_text(spec):
         source, path, name = SourceFile("<text>", spec), "<text>", None
-        is_artefact = _is_artefact(source)
+        is_artefact = _is_artefact(spec)
     else:
         path, name = split(os.fspath(spec))
         source, is_artefact = read(path)
@@ -96,14 +96,14 @@ def read_spec(spec: str | Path | Fspa) -> tuple[Fspa, Spec | None]:
 
 def _is_text(spec: str) -> bool:
     """Whether this is the text of a spec or of an artefact, and no path."""
-    if "\n" in spec or spec.lstrip().startswith("{"):
+    if "\n" in spec or _is_artefact(spec):
         return True
     return " " in spec and not _FILE.match(spec)
 
 
-def _is_artefact(source: SourceFile) -> bool:
-    """No specification begins with a brace."""
-    return source.text.lstrip().startswith("{")
+def _is_artefact(text: str) -> bool:
+    """Whether this is the text of an artefact: no specification begins with a brace."""
+    return text.lstrip().startswith("{")
 
 
 def _only(automata: tuple[Fspa, ...], file: str) -> Fspa:

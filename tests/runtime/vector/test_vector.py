@@ -97,7 +97,7 @@ def test_autoreset_in_the_next_step() -> None:
     expected = in_this_process(AutoresetMode.NEXT_STEP)
     env = make_vec("cover_and_hide", "v2", COUNT, 2, spec=SPEC, autoreset="NextStep")
     assert env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
-    totals = np.zeros(COUNT)
+    ends, totals = 0, np.zeros(COUNT)
     for ours, theirs in zip(played(env), expected, strict=True):
         assert all(same(one, other) for one, other in zip(ours[:-1], theirs[:-1], strict=True))
         assert all(np.array_equal(ours[-1][key], theirs[-1][key]) for key in SHARED)
@@ -106,6 +106,8 @@ def test_autoreset_in_the_next_step() -> None:
             over = ours[-1]["_episode"]
             assert np.allclose(ours[-1]["episode"]["r"][over], totals[over])
             totals[over] = 0.0
+            ends += 1
+    assert ends > 6
 
 
 def test_gymnasium_makes_them_by_their_ids() -> None:

@@ -25,16 +25,16 @@ from tltl_runtime.stealth.levels.table import Table, suggestion
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.record import record
 
-OUTER_WALL: Final = 0.2
+_OUTER_WALL: Final = 0.2
 """How thick the walls around a level are, in metres."""
 
-MAX_RISE: Final = 0.25
+_MAX_RISE: Final = 0.25
 """The highest step of stairs that the player walks up, in metres."""
 
 CELL_TYPES: Final = ("floor", "platform", "low", "wall", "switch", "exit", "barrier", "laser", "mover", "enemy")
 """What a cell of the semantic map can hold, beside nothing; where several meet, it holds the last of them."""
 
-SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
+_SOLIDS: Final[tuple[Literal["wall", "low", "platform"], ...]] = ("wall", "low", "platform")
 
 CELL_WIDTH: Final = (0.1, 5.0)
 """The least and the greatest width of a cell of the semantic map, in metres."""
@@ -42,7 +42,7 @@ CELL_WIDTH: Final = (0.1, 5.0)
 MAP_EXTENT: Final = (3, 63)
 """The least and the greatest number of cells to a side of it; the number is odd."""
 
-VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "seen")
+_VARIABLES: Final = ("health", "stamina", "crouching", "grounded", "visible", "seen")
 """What the player senses where a level does not say."""
 
 
@@ -80,7 +80,7 @@ class Places:
 def solids(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix: str = "") -> list[Solid]:
     """The walls, low obstacles, platforms and stairs of a level or a part."""
     found = []
-    for kind in SOLIDS:
+    for kind in _SOLIDS:
         for number, item in enumerate(table.tables(kind), 1):
             name = prefix + item.text("name", f"{kind}_{number}")
             found.append(Solid(name, kind, box(item, shift)))
@@ -112,8 +112,8 @@ def _stairs(table: Table, name: str, shift: Point) -> list[Solid]:
     problem = None
     if min(run) > 1e-9 or run[axis] / steps < 0.2:
         problem = "along x or y, with steps at least 0.2 m deep"
-    elif not 0.0 < rise <= MAX_RISE + 1e-9:
-        problem = f"upwards, with steps of at most {MAX_RISE} m (here {rise:.3g} m)"
+    elif not 0.0 < rise <= _MAX_RISE + 1e-9:
+        problem = f"upwards, with steps of at most {_MAX_RISE} m (here {rise:.3g} m)"
     if problem:
         label = table.place("to")
         table.log.append(Diagnostic("TLT0803", f"nobody walks up `{name}`", (label,), f"expected stairs {problem}"))
@@ -248,9 +248,9 @@ def start(table: Table) -> Start:
 
 
 def sensors(table: Table | None, entities: tuple[str, ...], places: Places) -> Sensors:
-    """What the agent senses; every entity and :data:`VARIABLES`, without a map, where nothing is said."""
+    """What the agent senses; every entity, `_VARIABLES` and no map where nothing is said."""
     if table is None:
-        return Sensors(entities, VARIABLES, None)
+        return Sensors(entities, _VARIABLES, None)
     found_map = None
     if (map_ := table.table("map", needed=False)) is not None:
         extent = map_.whole("extent", low=MAP_EXTENT[0], high=MAP_EXTENT[1])
@@ -262,7 +262,7 @@ def sensors(table: Table | None, entities: tuple[str, ...], places: Places) -> S
         places.refer("cell type", map_, "types", types)
         found_map = MapSensor(types, map_.number("cell", low=CELL_WIDTH[0], high=CELL_WIDTH[1]), extent)
         map_.done()
-    found = Sensors(table.names("entities", entities), table.names("variables", VARIABLES), found_map)
+    found = Sensors(table.names("entities", entities), table.names("variables", _VARIABLES), found_map)
     places.refer("entity", table, "entities", found.entities)
     places.refer("signal", table, "variables", found.variables)
     table.done()
@@ -273,10 +273,10 @@ def enclosure(bounds: Box) -> list[Solid]:
     """The floor, whose top is at height 0, and the walls around a level."""
     (x0, y0, z0), (x1, y1, z1) = bounds.low, bounds.high
     walls = {
-        "outer_west": Box((x0, y0, 0.0), (x0 + OUTER_WALL, y1, z1)),
-        "outer_east": Box((x1 - OUTER_WALL, y0, 0.0), (x1, y1, z1)),
-        "outer_south": Box((x0, y0, 0.0), (x1, y0 + OUTER_WALL, z1)),
-        "outer_north": Box((x0, y1 - OUTER_WALL, 0.0), (x1, y1, z1)),
+        "outer_west": Box((x0, y0, 0.0), (x0 + _OUTER_WALL, y1, z1)),
+        "outer_east": Box((x1 - _OUTER_WALL, y0, 0.0), (x1, y1, z1)),
+        "outer_south": Box((x0, y0, 0.0), (x1, y0 + _OUTER_WALL, z1)),
+        "outer_north": Box((x0, y1 - _OUTER_WALL, 0.0), (x1, y1, z1)),
     }
     return [
         Solid("floor", "floor", Box((x0, y0, z0), (x1, y1, 0.0))),

@@ -16,7 +16,7 @@ _RINGS = 64
 _ONLY_STANDING = 0.5
 
 
-class Field:
+class SightField:
     """For each place on the floor: 1 where an enemy sees a head that crouches, 0.5 where only one that stands, else 0.
 
     ``boxes`` are what stops sight.

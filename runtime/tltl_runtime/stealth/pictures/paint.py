@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.level import Point
 from tltl_runtime.stealth.pictures.camera import Camera, pixels, sight_lines
-from tltl_runtime.stealth.pictures.cone import Field
+from tltl_runtime.stealth.pictures.cone import SightField
 
 Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
@@ -69,7 +69,7 @@ class Canvas:
         below = np.abs(places[..., 2] - z) < 0.35
         self.picture[window] *= (1 - 0.45 * np.clip(1 - off**2, 0, 1) * below)[..., None]
 
-    def field(self, field: Field, colour: Sequence[float], strength: float) -> None:
+    def field(self, field: SightField, colour: Sequence[float], strength: float) -> None:
         """Paint the floor that an enemy sees; where it would only see who stands, half as strong."""
         x, y, _ = field.eyes
         reach = field.reach

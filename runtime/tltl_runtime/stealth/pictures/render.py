@@ -14,22 +14,23 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.enemies.segments import blocked, corners
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.pictures.camera import Camera, View, camera, check_size, pixels
-from tltl_runtime.stealth.pictures.cone import Field
+from tltl_runtime.stealth.pictures.cone import SightField
 from tltl_runtime.stealth.pictures.paint import Canvas
 from tltl_runtime.stealth.pictures.scene import Colour, Obstacle, Scene
 from tltl_runtime.stealth.snapshot import Snapshot
 from tltl_runtime.stealth.world.bullet import pybullet
 from tltl_runtime.stealth.world.player import PlayerKind
 
-LASER: Final[Colour] = (1.0, 0.15, 0.2)
-SEEN: Final[Colour] = (1.0, 0.08, 0.12)
-MODES: Final[dict[str, Colour]] = {
+_LASER: Final[Colour] = (1.0, 0.15, 0.2)
+_SEEING: Final[Colour] = (1.0, 0.08, 0.12)
+"""Of the field of sight of an enemy that sees the player."""
+_SIGHT: Final[dict[str, Colour]] = {
     "patrol": (1.0, 0.72, 0.1),
     "chase": (1.0, 0.12, 0.12),
     "search": (1.0, 0.42, 0.08),
     "return": (0.35, 0.6, 0.95),
 }
-"""Of the fields of sight, by what the enemies are at."""
+"""Of the field of sight of an enemy that does not see the player, by its mode."""
 
 _LIGHT: Final = (-0.45, -0.8, 1.6)
 _GLASS: Final = 0.22
@@ -123,17 +124,17 @@ class Renderer:
 
     def _paint_sight(self, canvas: Canvas, snapshot: Snapshot, boxes: list[Box]) -> None:
         for index, enemy in enumerate(self.level.enemies):
-            field = Field(enemy.kind, snapshot.enemies[index], snapshot.yaws[index], boxes)
+            field = SightField(enemy.kind, snapshot.enemies[index], snapshot.yaws[index], boxes)
             if snapshot.sees[index]:
-                canvas.field(field, SEEN, 0.6)
+                canvas.field(field, _SEEING, 0.6)
             else:
-                canvas.field(field, MODES[snapshot.modes[index]], 0.42)
+                canvas.field(field, _SIGHT[snapshot.modes[index]], 0.42)
 
     def _paint_glass(self, canvas: Canvas, snapshot: Snapshot, glass: list[Obstacle]) -> None:
         """Lasers, and what would hide the player; what is far first."""
         panes = [(each.box, each.colour, _GLASS) for each in glass]
         panes += [
-            (barrier.box, LASER, 0.5)
+            (barrier.box, _LASER, 0.5)
             for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True)
             if barrier.kind == "laser" and not is_open
         ]

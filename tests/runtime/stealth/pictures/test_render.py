@@ -15,7 +15,7 @@ from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.level import Box
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.pictures.camera import VIEWS, View, camera, pixels, sight_lines
-from tltl_runtime.stealth.pictures.cone import Field
+from tltl_runtime.stealth.pictures.cone import SightField
 from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.pictures.scene import PLAYER
 from tltl_runtime.stealth.snapshot import Snapshot
@@ -114,7 +114,7 @@ def test_a_field_of_sight_is_what_the_enemy_sees() -> None:
         if any(is_in(box, guard.x, guard.y) for box in boxes if box.high[2] > 0):
             continue
         guard.yaw = float(rng.uniform(-3, 3))
-        field = Field(guard.kind, (guard.x, guard.y, 0.0), guard.yaw, boxes)
+        field = SightField(guard.kind, (guard.x, guard.y, 0.0), guard.yaw, boxes)
         places = rng.uniform((0.5, 0.5), (19.5, 13.5), (60, 2))
         shown = field.at(places.astype(np.float32)) > 0.25
         for place, says in zip(places, shown, strict=True):
