@@ -10,18 +10,13 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-import click
 import numpy as np
 import pytest
 
 from tests.runtime.stealth.xvfb import MISSING, keys, screen
-from tltl_runtime.commands.recording_files import RecordingFiles
-from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.check import check, resimulate
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import read_episode
-from tltl_runtime.stealth.recording import RecordEpisode
-from tltlc.diagnostics.diagnostic import TltlError
 
 needs_screen = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 
@@ -158,51 +153,3 @@ def test_a_spec_that_the_level_cannot_supply_opens_no_window(tmp_path: Path) -> 
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=30)
     assert done.returncode == 1
     assert "TLT0811" in done.stderr and "`fuel`" in done.stderr
-
-
-def test_a_recording_finds_a_place_where_its_own_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    env = RecordEpisode(make_env("navigation"), "keyboard")
-    env.reset(seed=1)
-    env.step([1, 0, 0, 0, 0])
-    wanted, spare = tmp_path / "wanted", tmp_path / "spare"
-    wanted.mkdir()
-    spare.mkdir()
-    monkeypatch.setattr("tltl_runtime.commands.recording_files.gettempdir", lambda: str(spare))
-    files = RecordingFiles(wanted, "navigation-v0")
-    wanted.rmdir()
-    assert files.save(env.episode) == str(spare / "navigation-v0.episode.npz")
-    assert files.save(env.episode) == str(spare / "navigation-v0-2.episode.npz")
-    assert "TLT0005" in capsys.readouterr().err
-    assert len(read_episode(spare / "navigation-v0.episode.npz").actions) == 1
-    env.close()
-
-
-def test_where_to_record(tmp_path: Path) -> None:
-    with pytest.raises(click.UsageError, match=r"a folder or a name with \.episode\.npz"):
-        RecordingFiles(tmp_path / "mine.txt", "x")
-    with pytest.raises(TltlError, match=r"TLT0005: cannot record to `.*nowhere`: there is no such folder"):
-        RecordingFiles(tmp_path / "nowhere" / "mine.episode.npz", "x")
-    RecordingFiles(tmp_path / "new" / "runs", "x")
-    assert (tmp_path / "new" / "runs").is_dir()
-
-
-def test_no_recording_is_ever_lost(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    env = RecordEpisode(make_env("navigation"), "keyboard")
-    env.reset(seed=1)
-    env.step([1, 0, 0, 0, 0])
-    older = tmp_path / "mine.episode.npz"
-    older.write_bytes(b"older")
-    files = RecordingFiles(older, "x")
-    files.keep(env.episode)
-    assert len(read_episode(tmp_path / "mine.unfinished.episode.npz").actions) == 1
-    # What a process that was killed left behind stays, too.
-    other = RecordingFiles(older, "x")
-    other.keep(env.episode)
-    assert files.save(env.episode) == str(tmp_path / "mine-2.episode.npz")
-    assert older.read_bytes() == b"older"
-    names = {"mine.episode.npz", "mine-2.episode.npz", "mine.unfinished-2.episode.npz"}
-    assert {path.name for path in tmp_path.iterdir()} == names
-    assert "stopped after 0.15 s, remaining: Reach near(s1)" in capsys.readouterr().out
-    env.close()
