@@ -144,14 +144,14 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:
-    record = records.get("cover_and_hide", {})
-    if "steps_per_s" in record:
-        rate = record["steps_per_s"]["batch"]
+    rates = {name: each["steps_per_s"]["batch"] for name, each in records.items() if "steps_per_s" in each}
+    if rates:
         yield (
-            f"batched monitor and reward at least 10 million steps per second on one core, N = {record['count']}",
-            f"{rate / 1e6:.1f} million on cover_and_hide",
-            met_or_missed(rate >= BATCH_STEPS_PER_S),
+            f"batched monitor and reward at least 10 million steps per second on one core, N = {batch.COUNT}",
+            ", ".join(f"{rate / 1e6:.1f} million on {name}" for name, rate in rates.items()),
+            met_or_missed(min(rates.values()) >= BATCH_STEPS_PER_S),
         )
+    record = records.get("cover_and_hide", {})
     if "gpu_ms" in record:
         middle = record["gpu_ms"][1]
         yield (

@@ -40,12 +40,12 @@ def __dir__() -> list[str]:
 def _register() -> None:
     from gymnasium import register
 
-    for name in ("Navigation", "CoverAndHide", "Branching"):
-        maker = "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in name).lstrip("_")
+    for level in ("navigation", "cover_and_hide", "branching"):
         register(
-            f"tltl/{name}-v0",
-            entry_point=f"tltl_runtime.stealth.env:{maker}",
-            vector_entry_point=f"tltl_runtime.vector.game:{maker}",
+            f"tltl/{level.title().replace('_', '')}-v0",
+            entry_point="tltl_runtime.stealth.env:make_env",
+            vector_entry_point="tltl_runtime.vector.game:make_vec",
+            kwargs={"level": level},
         )
 
 

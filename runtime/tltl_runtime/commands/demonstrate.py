@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -18,6 +18,8 @@ from tltlc.spec_file import split
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
     from tltl_runtime.stealth.episodes.summary import Notation
+
+CARELESS: Final = "careless expert"
 
 
 @click.command(
@@ -78,7 +80,7 @@ def command(
 
     with Report() as report, requests_heard():
         file, variant = split(level)
-        env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
+        env = RecordEpisode(make_env(file, variant or "v0", spec), CARELESS if careless else "expert")
         played = succeeded = 0
         try:
             report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
@@ -106,7 +108,8 @@ def _write(folder: Path, episode: Episode, film: str | None, notation: Notation)
     from tltl_runtime.stealth.pictures.plan import draw_episode
     from tltlc.writing import write_files
 
-    name = file_stem(episode)
+    # Who minds no enemy leaves the recordings of who does.
+    name = file_stem(episode) + ("-careless" if episode.player == CARELESS else "")
     write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation)})
     path = folder / f"{name}{SUFFIX}"
     write_episode(path, episode)

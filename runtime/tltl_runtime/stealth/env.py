@@ -185,21 +185,5 @@ def _unmet(level: Level, fspa: Fspa, places: SpecPlaces) -> list[Diagnostic]:
     return [each for each in check_supply(level, fspa, places) if each.severity == "error"]
 
 
-def navigation(**options: Any) -> TltlEnv:
-    """``tltl/Navigation-v0``."""
-    return make_env("navigation", **options)
-
-
-def cover_and_hide(**options: Any) -> TltlEnv:
-    """``tltl/CoverAndHide-v0``."""
-    return make_env("cover_and_hide", **options)
-
-
-def branching(**options: Any) -> TltlEnv:
-    """``tltl/Branching-v0``."""
-    return make_env("branching", **options)
-
-
 # Gymnasium looks here for the render modes of what makes an environment.
-for _maker in (navigation, cover_and_hide, branching):
-    _maker.metadata = GameEnv.metadata  # type: ignore[attr-defined]
+make_env.metadata = GameEnv.metadata  # type: ignore[attr-defined]

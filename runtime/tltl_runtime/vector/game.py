@@ -1,4 +1,4 @@
-"""The game's levels as vector environments, and what ``gymnasium.make_vec`` makes of their ids."""
+"""The game's levels as vector environments."""
 
 from __future__ import annotations
 
@@ -45,18 +45,3 @@ def make_vec(
         make_env, level, variant, fspa, sensors=sensors, reward=reward, params=params, render_mode=render_mode
     )
     return WorkerVectorEnv([make] * num_envs, workers, names=[f"{level} {variant}"] * num_envs, **options)
-
-
-def navigation(**options: Any) -> WorkerVectorEnv:
-    """``tltl/Navigation-v0``."""
-    return make_vec("navigation", **options)
-
-
-def cover_and_hide(**options: Any) -> WorkerVectorEnv:
-    """``tltl/CoverAndHide-v0``."""
-    return make_vec("cover_and_hide", **options)
-
-
-def branching(**options: Any) -> WorkerVectorEnv:
-    """``tltl/Branching-v0``."""
-    return make_vec("branching", **options)

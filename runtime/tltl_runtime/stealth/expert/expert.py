@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import dist
 from typing import Any, Final
 
 import gymnasium
@@ -22,8 +23,9 @@ _ROOM: Final = 0.5
 class Expert:
     """Plays ``env``, a TltlEnv over a GameEnv or wrappers around one: ``reset`` after each of its resets, then ``act``.
 
-    Where to go it reads off the automaton, how to get there off the level and what there is to see.  ``careful``
-    keeps out of the sight of enemies where the way is on the floor, and moves as if there were none elsewhere.
+    Where to go it reads off the automaton, how to get there off the level and what there is to see; where a shut
+    barrier is in the way, a switch comes first.  ``careful`` keeps out of the sight of enemies where the way is on the
+    floor, and moves as if there were none elsewhere.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any], careful: bool = True) -> None:
@@ -42,6 +44,7 @@ class Expert:
         self._walker.reset()
         self._sneaker.reset()
         self._chosen_for: object = None
+        self._next: Point | None = None
         self._sneaks = False
 
     def act(self) -> Action:
@@ -50,10 +53,11 @@ class Expert:
         goal = self.goal(snapshot)
         if goal is None:
             return STAY
-        if (goal, snapshot.open) != self._chosen_for:
-            self._chosen_for = (goal, snapshot.open)
-            self._sneaks = self.careful and bool(self.level.enemies) and self._is_plain(snapshot, goal)
-        return (self._sneaker if self._sneaks else self._walker).act(snapshot, goal)
+        if self._next is None or (goal, snapshot.open, snapshot.active) != self._chosen_for:
+            self._chosen_for = (goal, snapshot.open, snapshot.active)
+            self._next = self._on_the_way(snapshot, goal)
+            self._sneaks = self.careful and bool(self.level.enemies) and self._is_plain(snapshot, self._next)
+        return (self._sneaker if self._sneaks else self._walker).act(snapshot, self._next)
 
     def goal(self, snapshot: Snapshot) -> Point | None:
         """Where the automaton sends the player now, None where there is no such place."""
@@ -62,6 +66,21 @@ class Expert:
         there = places(self.level, snapshot)
         goals = next_goals(self._task.fspa, state, sample, self._task.params, there)
         return there[goals[0]] if goals else None
+
+    def _on_the_way(self, snapshot: Snapshot, goal: Point) -> Point:
+        """The goal, or where no way leads there the nearest switch that is of use and that one leads to."""
+        here, routes = snapshot.player.position, routes_of(self.level, shut_of(snapshot))
+        if routes.leads(here, goal):
+            return goal
+        of_use = {unlock.switch for unlock in self.level.unlocks}
+        for barrier, is_open in zip(self.level.barriers, snapshot.open, strict=True):
+            of_use.update(() if is_open else barrier.opened_by)
+        left = [
+            switch.position
+            for switch, active in zip(self.level.switches, snapshot.active, strict=True)
+            if not active and switch.name in of_use and routes.leads(here, switch.position)
+        ]
+        return min(left, key=lambda place: dist(here, place), default=goal)
 
     def _is_plain(self, snapshot: Snapshot, goal: Point) -> bool:
         """Whether the way to a goal is on the floor, and past no moving obstacle."""

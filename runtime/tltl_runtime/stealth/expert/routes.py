@@ -111,6 +111,10 @@ class Routes:
             self._fields[goal] = self._field(self.surfaces.near(goal, _GOAL))
         return self._fields[goal]
 
+    def leads(self, start: Point, goal: Point) -> bool:
+        """Whether a way leads to ``goal`` from the place nearest to ``start``."""
+        return bool(np.isfinite(self.field(goal).seconds.flat[self.surfaces.nearest(start)]))
+
     def field_from(self, start: Point, goal: Point) -> Field:
         """The way to ``goal``, or where none leads there from ``start`` to the nearest place that one leads to."""
         field = self.field(goal)

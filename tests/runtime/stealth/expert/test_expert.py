@@ -168,3 +168,11 @@ def test_it_comes_down_from_a_barrier_that_is_shut(tmp_path: Path) -> None:
     with _expert(str(tmp_path / "block.toml")) as (env, expert):
         episode = _played(env, expert, 0)
     assert episode.success
+
+
+def test_switches_that_the_spec_does_not_name_are_pressed_where_they_open_the_way() -> None:
+    spec = "import stealth\nclock 0.15 s\nentity exit\nspec leave { limit 60 s  reach near(exit)  keep alive }\n"
+    env = make_env("cover_and_hide", spec=spec)
+    assert play_episode(env, Expert(env), 0)["success"]
+    assert env.unwrapped.game.active == [True, True]  # type: ignore[attr-defined]
+    env.close()
