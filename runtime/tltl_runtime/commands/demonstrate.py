@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import click
 
@@ -18,8 +18,6 @@ from tltlc.spec_file import split
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
     from tltl_runtime.stealth.episodes.summary import Notation
-
-CARELESS: Final = "careless expert"
 
 
 @click.command(
@@ -71,7 +69,8 @@ def command(
     """Have the scripted expert play a level.
 
     Writes for each episode the recording LEVEL-VARIANT-SEED.episode.npz and the plan of its way as a .png, and says
-    why those failed that did.  The exit status is 1 where an episode does not succeed.
+    why those failed that did.  What is there stays: another episode of the same name becomes LEVEL-VARIANT-SEED-2 and
+    so on.  The exit status is 1 where an episode does not succeed.
     """
     from tltl_runtime.stealth.env import make_env
     from tltl_runtime.stealth.expert.expert import Expert, play_episode
@@ -80,7 +79,7 @@ def command(
 
     with Report() as report, requests_heard():
         file, variant = split(level)
-        env = RecordEpisode(make_env(file, variant or "v0", spec), CARELESS if careless else "expert")
+        env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
         played = succeeded = 0
         try:
             report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
@@ -104,15 +103,14 @@ def command(
 
 def _write(folder: Path, episode: Episode, film: str | None, notation: Notation) -> Path:
     """Write the recording and the pictures of an episode; the path of the recording."""
-    from tltl_runtime.stealth.episodes.file import SUFFIX, file_stem, write_episode
+    from tltl_runtime.stealth.episodes.file import SUFFIX, file_stem, new_path, to_bytes
     from tltl_runtime.stealth.pictures.plan import draw_episode
     from tltlc.writing import write_files
 
-    # Who minds no enemy leaves the recordings of who does.
-    name = file_stem(episode) + ("-careless" if episode.player == CARELESS else "")
-    write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation)})
-    path = folder / f"{name}{SUFFIX}"
-    write_episode(path, episode)
+    recording = to_bytes(episode)
+    path = new_path(folder, file_stem(episode), recording)
+    name = path.name.removesuffix(SUFFIX)
+    write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation), path.name: recording})
     if film:
         span = (0.0, episode.snapshots[-1].time)
         write_film(folder / f"{name}.{film}", episode, span, Film(notation=notation))

@@ -31,6 +31,14 @@ def test_it_records_what_it_plays(tltlc, tmp_path: Path) -> None:  # type: ignor
     assert (folder / f"{names[0]}.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_it_writes_the_same_again_and_over_nothing_else(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    for options in ([], [], ["--careless"]):
+        tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path), *options)
+    names = ["cover_and_hide-v0-0", "cover_and_hide-v0-0-2"]
+    assert [read_episode(tmp_path / f"{name}.episode.npz").player for name in names] == ["expert", "careless expert"]
+    assert sorted(path.name for path in tmp_path.glob("*.png")) == sorted(f"{name}.png" for name in names)
+
+
 def test_failing_is_a_finding(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     (tmp_path / "never.tltl").write_text("import stealth\nspec never { limit 5 steps\n reach seen }")
     spec = f"{tmp_path / 'never.tltl'}"

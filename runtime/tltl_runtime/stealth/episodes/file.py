@@ -77,10 +77,13 @@ def file_stem(episode: Episode) -> str:
     return f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
 
 
-def new_path(folder: Path, stem: str) -> Path:
-    """Where an episode can be written without harm to an older one: ``STEM.episode.npz``, or ``STEM-2`` and so on."""
+def new_path(folder: Path, stem: str, content: bytes | None = None) -> Path:
+    """Where an episode can be written without harm to an older one: ``STEM.episode.npz``, or ``STEM-2`` and so on.
+
+    A file that holds just this ``content`` already is no harm to write again.
+    """
     path, number = folder / f"{stem}{SUFFIX}", 1
-    while path.exists():
+    while path.exists() and not (path.is_file() and path.read_bytes() == content):
         number += 1
         path = folder / f"{stem}-{number}{SUFFIX}"
     return path
