@@ -3,8 +3,8 @@
 The code computes what :func:`tltlc.expression_eval.evaluate` does, for all environments.  Where that raises an
 error, the value here is arbitrary and the environment is marked as failed; a case that an environment does not
 take cannot fail there.  On a CPU in float64 the values are equal to the last bit, the sign of zeros aside, but for
-``exp``, ``tanh`` and powers other than 2 and 3, which torch rounds otherwise than the C library (by less than 1e-12,
-relatively).
+``exp``, ``tanh``, ``sqrt`` and powers other than 2 and 3, which torch rounds otherwise than the C library (by less than
+1e-12, relatively).
 """
 
 from __future__ import annotations
