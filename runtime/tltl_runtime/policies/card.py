@@ -1,0 +1,36 @@
+"""What a policy file says beside the weights."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tltl_runtime.policies.network import Network
+from tltl_runtime.stealth.level import Sensors
+from tltlc.automaton.fspa import Fspa
+from tltlc.monitor import RewardOptions
+from tltlc.record import record
+
+
+@record
+class Card:
+    """What a policy was trained for, and how.
+
+    ``level`` and ``variant`` name where it was trained, ``level_hash`` is that place's
+    (:func:`~tltl_runtime.policies.identity.level_hash`); ``fspa`` is the spec's automaton with ``params`` in SI units;
+    ``sensors`` are all that it senses.  ``shapes`` are those of the observation by key, in the order in which the
+    network takes them, ``branches`` those of the action.  ``training`` is the record of its training, JSON data.
+    """
+
+    level: str
+    variant: str
+    level_hash: str
+    fspa: Fspa
+    params: Mapping[str, float]
+    reward: RewardOptions
+    sensors: Sensors
+    shapes: tuple[tuple[str, tuple[int, ...]], ...]
+    branches: tuple[int, ...]
+    network: Network
+    versions: Mapping[str, str]
+    training: Mapping[str, Any]

@@ -1,0 +1,53 @@
+"""The network of a policy: Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, section V.
+
+One-hot automaton state, progress, entities and variables join the convolved semantic map; two fully connected layers
+follow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from tltlc.record import record
+
+Shapes = Mapping[str, tuple[int, ...]]
+"""The shapes of observations by key, as of one environment: (n,), or (channels, height, width)."""
+
+
+@record
+class Network:
+    """``hidden`` widths of the connected layers, after a convolution of each map by ``channels`` in turn.
+
+    ``activation`` is a name that rsl-rl knows; ``kernel`` and ``stride`` are in cells, the same for each convolution.
+    """
+
+    hidden: tuple[int, ...] = (512, 512)
+    activation: str = "elu"
+    channels: tuple[int, ...] = (16, 32)
+    kernel: int = 3
+    stride: int = 2
+
+
+def model_config(network: Network, shapes: Shapes, branches: Sequence[int] | None = None) -> dict[str, Any]:
+    """rsl-rl's configuration of a model: of an actor with these ``branches`` of actions, or of a critic."""
+    config: dict[str, Any] = {
+        "class_name": "MLPModel",
+        "hidden_dims": list(network.hidden),
+        "activation": network.activation,
+    }
+    if any(len(shape) == 3 for shape in shapes.values()):
+        config |= {
+            "class_name": "CNNModel",
+            "cnn_cfg": {
+                "output_channels": list(network.channels),
+                "kernel_size": network.kernel,
+                "stride": network.stride,
+                "padding": "zeros",
+                "activation": network.activation,
+            },
+        }
+    if branches is not None:
+        distribution = "tltl_runtime.policies.actions:MultiCategorical"
+        config["distribution_cfg"] = {"class_name": distribution, "branches": tuple(branches)}
+    return config
