@@ -1,0 +1,52 @@
+"""What a training says of itself after each iteration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal
+
+from tltl_runtime.training.runner import Iteration
+from tltlc.record import record
+
+StopReason = Literal["met", "steps", "minutes"]
+
+
+@record
+class Window:
+    """The last episodes, ``count`` of them, ``successes`` among these.
+
+    Means: ``progress`` in [0, 1], ``reward`` with the undiscounted terminal penalty whatever the training counts, and
+    length in ``steps``; all are 0 where there is no episode.  ``states`` has the share of episodes that ended in each
+    state of the automaton, in [0, 1], by the state's number; states where none ended are left out.
+    """
+
+    count: int
+    successes: int
+    progress: float
+    reward: float
+    steps: float
+    states: Mapping[int, float]
+
+    @property
+    def pass_rate(self) -> float:
+        """The share of successes, in [0, 1]; 0 where there is no episode."""
+        return self.successes / self.count if self.count else 0.0
+
+
+@record
+class Report:
+    """An iteration, and where the training stands after it.
+
+    ``steps`` are all decisions so far, of all environments and processes; ``seconds`` the training time so far, over
+    resumptions.  ``best_pass_rate`` is that of the policy that is kept, None as long as there is none.  ``stop`` says
+    why the training ends here, None where it goes on; ``checkpointed`` whether a checkpoint of this iteration was
+    written.
+    """
+
+    iteration: Iteration
+    steps: int
+    seconds: float
+    window: Window
+    best_pass_rate: float | None
+    stop: StopReason | None
+    checkpointed: bool
