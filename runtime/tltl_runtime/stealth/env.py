@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from math import ceil
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import gymnasium
 import numpy as np
@@ -32,6 +33,9 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import RewardOptions
 
+_CELL: Final = 0.5
+"""Width of the cells of ``info``, in metres."""
+
 
 class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     """A level without a spec: what the agent senses, no reward and no end.
@@ -40,7 +44,8 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     one that was played.  Observation: that of :class:`~tltl_runtime.stealth.senses.observation.Senses`.  ``level`` is
     the name of a shipped level or a ``.toml`` file, ``sensors`` what
     :func:`~tltl_runtime.stealth.senses.sensors.chosen` takes.  ``reset(seed=...)`` reproduces an episode bit for bit;
-    ``game.seed`` is the seed to give for that, drawn where a reset was given none.
+    ``game.seed`` is the seed to give for that, drawn where a reset was given none.  ``info["cell"]`` is the number of
+    the cell, half a metre wide in each direction, that the player's feet are in.
 
     ``render_mode`` ``rgb_array`` makes :meth:`render` return pictures of ``render_size`` (width, height), each from 16
     to 4096 pixels, ``human`` shows them in a window as the episode goes on, a decision taking its time;
@@ -95,7 +100,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         super().reset(seed=seed)
         self.game.reset(int(self.np_random.integers(2**31)) if seed is None else seed)
         self._show()
-        return self._senses.look(self.game), {}
+        return self._senses.look(self.game), {"cell": self._cell()}
 
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Play one decision."""
@@ -103,7 +108,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self.action = _numbers(action)
         self.game.step(self.action)
         self._show()
-        return self._senses.look(self.game), 0.0, False, False, {}
+        return self._senses.look(self.game), 0.0, False, False, {"cell": self._cell()}
 
     def render(self) -> NDArray[np.uint8] | None:
         """The picture of this moment, (height, width, 3), or None where it is shown in a window.
@@ -120,6 +125,14 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
         self._closed = True
         self._screen.close()
         self.game.close()
+
+    def _cell(self) -> int:
+        low, high = self.level.bounds.low, self.level.bounds.high
+        number = 0
+        for at, least, most in zip(self.game.world.player.position, low, high, strict=True):
+            width = ceil((most - least) / _CELL)
+            number = number * width + min(max(int((at - least) / _CELL), 0), width - 1)
+        return number
 
     def _check_open(self) -> None:
         if self._closed:

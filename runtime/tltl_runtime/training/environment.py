@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 import gymnasium
 import numpy as np
@@ -14,6 +14,8 @@ from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 from torch import Tensor
 
+from tltl_runtime.training.exploration import Visits
+from tltl_runtime.vector.env import TLTL_INFO
 from tltlc.record import record
 
 
@@ -31,17 +33,29 @@ class Finished:
     state: int
 
 
+PLACES: Final = {**TLTL_INFO, "cell": np.int64}
+"""What a vector environment tells at each step where visits of places count."""
+
+
 class TrainingEnv(VecEnv):
     """A vector environment of :class:`~tltl_runtime.wrapper.TltlEnv` with ``SAME_STEP`` autoreset, for rsl-rl.
 
     Observation groups are the keys of the observation, float32 tensors [num_envs, ...].  Episodes that end go to
     :meth:`finished`.  ``seed`` is that of the first environment's first episode, see the vector environment's reset.
+    With ``visits`` the agent is rewarded, beside what the environment gives, for places that are new, which the
+    environment tells in the columns :data:`PLACES` of its ``infos``.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
     """
 
-    def __init__(self, env: gymnasium.vector.VectorEnv[Any, Any, Any], seed: int, device: str = "cpu") -> None:
+    def __init__(
+        self,
+        env: gymnasium.vector.VectorEnv[Any, Any, Any],
+        seed: int,
+        device: str = "cpu",
+        visits: Visits | None = None,
+    ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
             raise TypeError(f"actions of several branches are needed, a MultiDiscrete, not {env.single_action_space}")
         self.env = env
@@ -49,6 +63,7 @@ class TrainingEnv(VecEnv):
         self.branches = tuple(int(each) for each in env.single_action_space.nvec)
         self.num_actions = len(self.branches)
         self.device = device
+        self.visits = visits
         self.cfg: dict[str, Any] = {}
         # Nothing is cut by rsl-rl: the spec's limit ends an episode.
         self.max_episode_length = 2**31
@@ -67,6 +82,9 @@ class TrainingEnv(VecEnv):
         observation, reward, terminated, truncated, infos = self.env.step(taken)
         self._observation = self._tensors(observation)
         over = terminated | truncated
+        if self.visits is not None:
+            # The place that an ended episode came to is not among the infos: the next one's is.
+            reward = reward + np.where(over, 0.0, self.visits.bonus(infos["cell"], infos["state"]))
         if over.any():
             self._finished += _finished(infos["final_info"], np.flatnonzero(over))
         return (

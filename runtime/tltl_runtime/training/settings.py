@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tltl_runtime.policies.network import Network
+from tltl_runtime.training.exploration import Exploration
 from tltlc.monitor import RewardOptions
 from tltlc.record import record
 
@@ -52,6 +53,7 @@ class Settings:
     ppo: Ppo = Ppo()
     rollout: Rollout = Rollout()
     network: Network = Network()
+    exploration: Exploration = Exploration()
     reward: RewardOptions = RewardOptions(terminal_penalty="discounted", gamma=0.99)
     stop: Stop = Stop()
     checkpoint_s: float = 60.0
