@@ -1,0 +1,34 @@
+"""The picture of a training: how often the spec was met, and how far towards it agents came, by steps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from io import BytesIO
+from typing import Any, Final
+
+from matplotlib.figure import Figure
+
+_PASS_RATE, _PROGRESS, _INK = "#16a34a", "#2563eb", "#0f172a"
+_SIZE: Final = (8.0, 4.5)
+_DPI: Final = 100
+
+
+def draw_curve(title: str, curve: Sequence[Mapping[str, Any]]) -> bytes:
+    """A PNG of the points of a training's ``curve``: ``steps`` and, from the first episode on, the other two."""
+    shown = [point for point in curve if point["pass_rate"] is not None]
+    steps = [point["steps"] for point in shown]
+    figure = Figure(figsize=_SIZE, dpi=_DPI, layout="constrained")
+    axes = figure.add_subplot()
+    axes.plot(steps, [point["progress"] for point in shown], color=_PROGRESS, linewidth=1.2, label="progress")
+    axes.plot(steps, [point["pass_rate"] for point in shown], color=_PASS_RATE, linewidth=2.0, label="pass rate")
+    axes.set_title(title, color=_INK, fontsize=11)
+    axes.set_xlabel("steps of all environments")
+    axes.set_ylim(-0.02, 1.02)
+    axes.set_xlim(left=0)
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
+    axes.grid(color="#e2e8f0")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(loc="lower right", frameon=False)
+    picture = BytesIO()
+    figure.savefig(picture, format="png", metadata={"Software": None})
+    return picture.getvalue()

@@ -1,0 +1,140 @@
+"""What a training measured, a line an iteration: ``metrics.jsonl``, and the same for TensorBoard."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from torch.utils.tensorboard import SummaryWriter
+
+from tltl_runtime.training.report import Report
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reading_error, reason
+from tltlc.writing import write_file
+
+METRICS: Final = "metrics.jsonl"
+
+_ADVICE: Final = "see that there is room, and that you may write there"
+_OF_THE_WINDOW: Final = ("pass_rate", "progress", "reward", "episode_steps")
+_OF_THE_ITERATION: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
+
+
+class Metrics:
+    """The files of measurements in the folder of a training, to which it adds a line and a step for each report.
+
+    After a training that is resumed, what was measured later than the iteration ``after`` and its ``steps`` is gone:
+    it is measured again.
+
+    Raises:
+        TltlError: TLT0005, nothing can be written there, of ``add`` too; TLT0001, a file there cannot be read.
+    """
+
+    def __init__(self, folder: Path, fspa: Fspa, *, after: int = 0, steps: int = 0) -> None:
+        self._path, self._fspa = folder / METRICS, fspa
+        truncate(self._path, after)
+        try:
+            # TensorBoard hides what other files of this folder say of this step and of later ones.
+            self._events = SummaryWriter(str(folder), purge_step=steps + 1)
+        except OSError as error:
+            raise _unwritable(folder, error) from None
+
+    def add(self, report: Report) -> None:
+        """Write what an iteration measured."""
+        measured = measurements(report, self._fspa)
+        try:
+            _append(self._path, _line(measured).encode())
+            for tag, value in _scalars(measured):
+                self._events.add_scalar(tag, value, report.steps)
+            self._events.flush()
+        except OSError as error:
+            raise _unwritable(self._path, error) from None
+
+    def close(self) -> None:
+        """Close the files."""
+        self._events.close()
+
+
+def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
+    """A line of ``metrics.jsonl``, as ``docs/training.md`` describes it."""
+    iteration, window = report.iteration, report.window
+    return {
+        "iteration": iteration.number,
+        "steps": report.steps,
+        "seconds": round(report.seconds, 3),
+        "steps_per_s": round(iteration.steps / (iteration.collect_s + iteration.learn_s), 1),
+        "collect_s": round(iteration.collect_s, 4),
+        "learn_s": round(iteration.learn_s, 4),
+        "episodes": len(iteration.finished),
+        "window": window.count,
+        "pass_rate": window.pass_rate if window.count else None,
+        "progress": window.progress if window.count else None,
+        "reward": window.reward if window.count else None,
+        "episode_steps": window.steps if window.count else None,
+        "states": [
+            {"state": state, "label": fspa.states[state].label.ascii, "share": share}
+            for state, share in sorted(window.states.items())
+        ],
+        "losses": iteration.losses,
+    }
+
+
+def read_metrics(path: Path) -> list[dict[str, Any]]:
+    """The lines of ``metrics.jsonl`` in order, none where there is no file; one that was cut short is left out.
+
+    Raises:
+        TltlError: TLT0001, the system does not give us the file.
+    """
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise reading_error(str(path), error) from None
+    return [measured for line in text.splitlines() if (measured := _measured(line)) is not None]
+
+
+def truncate(path: Path, iteration: int) -> None:
+    """Leave of ``metrics.jsonl`` the lines up to an iteration; raises TltlError, TLT0001 and TLT0005."""
+    kept = [measured for measured in read_metrics(path) if measured["iteration"] <= iteration]
+    write_file(path, "".join(map(_line, kept)), _ADVICE)
+
+
+def _line(measured: Mapping[str, Any]) -> str:
+    return json.dumps(measured, ensure_ascii=False) + "\n"
+
+
+def _measured(line: str) -> dict[str, Any] | None:
+    """What a line says; None where it is no whole one."""
+    try:
+        measured = json.loads(line)
+    except ValueError:
+        return None
+    return measured if isinstance(measured, dict) and "iteration" in measured else None
+
+
+def _append(path: Path, line: bytes) -> None:
+    """Add a line with a single write: a process that is killed leaves all of it or nothing."""
+    descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+    try:
+        if os.write(descriptor, line) < len(line):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    finally:
+        os.close(descriptor)
+
+
+def _scalars(measured: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """The measurements as TensorBoard takes them, by tag."""
+    yield from ((f"train/{name}", measured[name]) for name in _OF_THE_WINDOW if measured["window"])
+    yield from ((f"time/{name}", measured[name]) for name in _OF_THE_ITERATION)
+    yield from ((f"state/{each['state']}", each["share"]) for each in measured["states"])
+    yield from ((f"loss/{name}", value) for name, value in measured["losses"].items())
+
+
+def _unwritable(path: Path, error: OSError) -> TltlError:
+    title = f"cannot write `{path}`: {reason(error)}"
+    return TltlError([Diagnostic("TLT0005", title, help=_ADVICE)])

@@ -1,0 +1,38 @@
+"""Reports of a training that nobody ran."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tltl_runtime.training.environment import Finished
+from tltl_runtime.training.report import Report, StopReason, Window
+from tltl_runtime.training.runner import Iteration
+
+
+def a_report(
+    number: int = 1,
+    *,
+    count: int = 50,
+    successes: int = 40,
+    states: Mapping[int, float] | None = None,
+    finished: tuple[Finished, ...] = (),
+    stop: StopReason | None = None,
+    checkpointed: bool = False,
+) -> Report:
+    """The report of an iteration of 4096 steps, of which there were 2048 a second."""
+    progress = 0.5 + successes / count / 2 if count else 0.0
+    return Report(
+        iteration=Iteration(number, 4096, finished, {"value": 0.25, "entropy": 3.5}, 1.5, 0.5),
+        steps=4096 * number,
+        seconds=2.0 * number,
+        window=Window(
+            count, successes, progress, progress - 0.25, 130.0, states or ({4: 0.8, 2: 0.2} if count else {})
+        ),
+        best_pass_rate=successes / count if count else None,
+        stop=stop,
+        checkpointed=checkpointed,
+    )
+
+
+def an_episode(success: bool) -> Finished:
+    return Finished(success, 1.0 if success else 0.4, 0.8 if success else -0.6, 100, 4 if success else 2)

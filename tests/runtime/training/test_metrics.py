@@ -1,0 +1,88 @@
+"""What a training measured: the lines of ``metrics.jsonl``, and what TensorBoard shows."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+from tests.docs.blocks import DOCS
+from tests.runtime.training.reports import a_report, an_episode
+from tltl_runtime.task import read_spec
+from tltl_runtime.training.metrics import METRICS, Metrics, read_metrics
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import TltlError
+
+
+@pytest.fixture(scope="module")
+def fspa() -> Fspa:
+    return read_spec(DOCS.parent / "examples" / "cover_and_hide.tltl")[0]
+
+
+def _measure(folder: Path, fspa: Fspa, numbers: range, after: int = 0) -> None:
+    metrics = Metrics(folder, fspa, after=after, steps=4096 * after)
+    for number in numbers:
+        metrics.add(a_report(number))
+    metrics.close()
+
+
+def test_a_line_an_iteration(tmp_path: Path, fspa: Fspa) -> None:
+    metrics = Metrics(tmp_path, fspa)
+    metrics.add(a_report(1, count=0, successes=0))
+    metrics.add(a_report(2, finished=(an_episode(True), an_episode(False))))
+    first, second = read_metrics(tmp_path / METRICS)  # each is there before the files are closed
+    metrics.close()
+    assert (first["window"], first["pass_rate"], first["reward"], first["states"]) == (0, None, None, [])
+    assert second == {
+        "iteration": 2,
+        "steps": 8192,
+        "seconds": 4.0,
+        "steps_per_s": 2048.0,
+        "collect_s": 1.5,
+        "learn_s": 0.5,
+        "episodes": 2,
+        "window": 50,
+        "pass_rate": 0.8,
+        "progress": 0.9,
+        "reward": 0.65,
+        "episode_steps": 130.0,
+        "states": [
+            {"state": 2, "label": "false", "share": 0.2},
+            {"state": 4, "label": "G alive", "share": 0.8},
+        ],
+        "losses": {"value": 0.25, "entropy": 3.5},
+    }
+
+
+def test_the_page_names_the_keys(tmp_path: Path, fspa: Fspa) -> None:
+    _measure(tmp_path, fspa, range(1, 2))
+    page = (DOCS / "training.md").read_text(encoding="utf-8")
+    table = page[page.index("### `metrics.jsonl`") : page.index("## The record")]
+    said = [name for row in re.findall(r"^\| (`.*?) \|", table, re.MULTILINE) for name in re.findall(r"`(\w+)`", row)]
+    assert said == list(read_metrics(tmp_path / METRICS)[0])
+
+
+def test_what_came_after_the_checkpoint_is_measured_again(tmp_path: Path, fspa: Fspa) -> None:
+    _measure(tmp_path, fspa, range(1, 6))
+    with (tmp_path / METRICS).open("a") as file:
+        file.write('{"iteration": 6, "st')  # as a machine leaves it that lost power
+    _measure(tmp_path, fspa, range(4, 8), after=3)
+    assert [line["iteration"] for line in read_metrics(tmp_path / METRICS)] == list(range(1, 8))
+
+
+def test_tensorboard_shows_each_step_once(tmp_path: Path, fspa: Fspa) -> None:
+    _measure(tmp_path, fspa, range(1, 6))
+    _measure(tmp_path, fspa, range(4, 8), after=3)
+    events = EventAccumulator(str(tmp_path))
+    events.Reload()
+    for tag in ("train/pass_rate", "train/progress", "state/4", "time/steps_per_s", "loss/entropy"):
+        assert [event.step for event in events.Scalars(tag)] == [4096 * number for number in range(1, 8)], tag
+    assert events.Scalars("train/pass_rate")[0].value == pytest.approx(0.8)
+
+
+def test_a_place_that_cannot_be_written_to(tmp_path: Path, fspa: Fspa) -> None:
+    (tmp_path / METRICS).mkdir()
+    with pytest.raises(TltlError, match="it is a folder"):
+        Metrics(tmp_path, fspa)
