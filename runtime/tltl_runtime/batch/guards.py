@@ -76,8 +76,8 @@ class PrimeSets:
 
     def _gathered(self, rows: Tensor, values: Tensor) -> Tensor:
         """The literals of the chosen sets, shape [primes, literals, N]."""
-        constants = values.new_tensor([[1.0], [self._empty]]).expand(2, values.shape[1])
-        signed = torch.cat([values, -values, constants])
+        one, empty = (values.new_full((1, values.shape[1]), constant) for constant in (1.0, self._empty))
+        signed = torch.cat([values, -values, one, empty])
         found = signed.gather(0, self._literals.index_select(1, rows))
         return found.view(self._depth, self._width, values.shape[1])
 
@@ -102,9 +102,13 @@ class PrimeSets:
 
 
 class Transitions:
-    """The number of the edge that is taken: of those that leave a state exactly one has a true guard."""
+    """The number of the edge that is taken: of those that leave a state exactly one has a true guard.
 
-    def __init__(self, fspa: Fspa, device: torch.device) -> None:
+    Unless truth is ``checked``, some edge of the state is taken where exclusive atoms hold at once.
+    """
+
+    def __init__(self, fspa: Fspa, device: torch.device, checked: bool) -> None:
+        self._checked = checked
         self._fspa = fspa
         self._atoms = len(fspa.atoms)
         self._letters = 1 << self._atoms
@@ -120,7 +124,8 @@ class Transitions:
             MonitorError: TLT0614 exclusive atoms that hold at once.
         """
         if self._table is None:
-            check_exclusive(self._fspa, truth)
+            if self._checked:
+                check_exclusive(self._fspa, truth)
             return self._by_primes(state, truth)
         # Bytes are added four times as fast as wide integers.
         bits = truth.view(torch.uint8) if self._atoms <= 8 else truth.to(torch.int16)
@@ -129,7 +134,7 @@ class Transitions:
             letter = torch.add(letter, bits[atom], alpha=1 << atom)
         cell = torch.add(letter.to(torch.int64), state, alpha=self._letters)
         edge = self._table.index_select(0, cell)
-        if self._fspa.exclusive and int(edge.amin()) < 0:
+        if self._checked and self._fspa.exclusive and int(edge.amin()) < 0:
             check_exclusive(self._fspa, truth)
         return edge
 
@@ -151,15 +156,20 @@ class Transitions:
         return torch.tensor([row + row[:1] * (most - len(row)) for row in leaving], dtype=torch.int64).t().contiguous()
 
     def _edge_table(self) -> Tensor:
-        """int64 [states * letters]; a letter has the bit 2^i iff atom i is true; -1 where exclusive atoms are."""
+        """int64 [states * letters]; a letter has the bit 2^i iff atom i is true.
+
+        -1 stands where exclusive atoms are true at once, if that is checked.
+        """
         letters = torch.arange(self._letters)
         table = torch.zeros((len(self._fspa.states), self._letters), dtype=torch.int64)
+        for number, edge in reversed(list(enumerate(self._fspa.edges))):
+            table[edge.source] = number
         for number, edge in enumerate(self._fspa.edges):
             for prime in edge.guard.primes:
                 mask = sum(1 << atom for atom, _ in prime)
                 bits = sum(1 << atom for atom, polarity in prime if polarity)
                 table[edge.source][(letters & mask) == bits] = number
-        for group in self._fspa.exclusive:
+        for group in self._fspa.exclusive if self._checked else ():
             held = sum(((letters >> atom) & 1 for atom in group), torch.zeros_like(letters))
             table[:, held > 1] = -1
         return table.view(-1)

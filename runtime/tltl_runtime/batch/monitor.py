@@ -16,6 +16,8 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
 from tltlc.monitor.arguments import automaton, reward_options
 
+_VIOLATED = VERDICTS.index("violated")
+
 
 class BatchStep:
     """What one sample did in each of N environments; every tensor has shape [N] and is never changed later.
@@ -47,6 +49,11 @@ class BatchStep:
         return self._monitor.accepting_states.index_select(0, self.state)
 
     @cached_property
+    def truncated(self) -> Tensor:
+        """Whether an episode ends here by the spec's limit, neither in success nor in a violation, bool."""
+        return self.done & ~self.success & (self.verdict != _VIOLATED)
+
+    @cached_property
     def verdict(self) -> Tensor:
         """The verdict of the prefix so far, int64: an index into ``VERDICTS``."""
         return self._monitor.state_verdicts.index_select(0, self.state)
@@ -74,6 +81,10 @@ class BatchMonitor:
     ``state`` int64 [N], ``steps`` and ``progress`` [N] speak of the last step; ``clamped`` counts values out of range,
     by the names of signals and atoms.  ``signal_names`` is the order of signals in a tensor.
 
+    To check samples is to wait for the device a few times a step.  With ``checked=False`` a step waits for nothing:
+    values out of range are clamped and not counted, what is not a number makes its atoms false and may come out in
+    progress and reward, and where exclusive atoms hold at once some edge of the state is taken.
+
     Raises:
         MonitorError: TLT0307, TLT0308 for ``params`` that do not fit.
         TypeError: ``fspa`` is no automaton, or ``reward`` no options.
@@ -89,14 +100,16 @@ class BatchMonitor:
         params: Mapping[str, float] | None = None,
         device: torch.device | str = "cpu",
         dtype: torch.dtype = torch.float64,
+        checked: bool = True,
     ) -> None:
         self.fspa, options = automaton(fspa), reward_options(reward)
         self.count, self.device, self.dtype = count, torch.device(device), dtype
+        self._checked = checked
         if count < 1:
             raise ValueError(f"at least one environment is needed, not {count}")
-        self._samples = BatchSamples(fspa, count, params, self.device, dtype)
+        self._samples = BatchSamples(fspa, count, params, self.device, dtype, checked)
         self.signal_names, self.clamped = self._samples.names, self._samples.clamped
-        self._transitions = Transitions(fspa, self.device)
+        self._transitions = Transitions(fspa, self.device, checked)
         self._targets = torch.tensor([edge.target for edge in fspa.edges], dtype=torch.int64, device=self.device)
         self.outcomes = Outcomes(fspa, options, self.device, dtype)
         self.guards = PrimeSets([edge.guard.primes for edge in fspa.edges], len(fspa.atoms), self.device, -1.0)
@@ -141,7 +154,8 @@ class BatchMonitor:
             ValueError: a value is not in [-1, 1], or another shape.
         """
         given = torch.as_tensor(values)
-        if given.shape != (self.count, len(self.fspa.atoms)) or not bool((given.abs() <= 1.0).all()):
+        fits = given.shape == (self.count, len(self.fspa.atoms))
+        if not fits or (self._checked and not bool((given.abs() <= 1.0).all())):
             raise ValueError(f"values in [-1, 1] of shape {(self.count, len(self.fspa.atoms))} are needed")
         return self._take(given.to(self.device, self.dtype).t().contiguous())
 

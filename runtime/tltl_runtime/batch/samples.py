@@ -21,13 +21,21 @@ class BatchSamples:
     """Computes the values of the atoms, shape [atoms, N], from the signals of N environments.
 
     ``clamped`` counts, per name of a signal or atom, the values that had to be clamped, as the notices of the
-    scalar monitor report (an atom's only where it is more than 1e-9 outside [-1, 1]).
+    scalar monitor report (an atom's only where it is more than 1e-9 outside [-1, 1]).  Unless they are ``checked``,
+    values are clamped and nothing is counted or refused.
     """
 
     def __init__(
-        self, fspa: Fspa, count: int, params: Mapping[str, float] | None, device: torch.device, dtype: torch.dtype
+        self,
+        fspa: Fspa,
+        count: int,
+        params: Mapping[str, float] | None,
+        device: torch.device,
+        dtype: torch.dtype,
+        checked: bool,
     ) -> None:
         self._fspa, self._count, self._params, self._device, self._dtype = fspa, count, params, device, dtype
+        self._checked = checked
         self.names = tuple(signal.name for signal in fspa.signals)
         self.clamped: dict[str, int] = {}
         self._program = Program(
@@ -54,6 +62,9 @@ class BatchSamples:
             ValueError: an array has another shape.
         """
         columns = self._columns(signals)
+        if not self._checked:
+            values, _ = self._program.run(torch.clamp(columns, self._low, self._high))
+            return torch.clamp(values, -1.0, 1.0)
         if self.names and not self._in_range(columns):
             given, columns = columns, torch.clamp(columns, self._low, self._high)
             self._check_signals(given, columns)

@@ -266,3 +266,90 @@ def test_what_is_no_automaton_or_no_reward_is_refused() -> None:
         BatchMonitor("plan.tltl", 3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="RewardOptions"):
         BatchMonitor(cover_and_hide(), 3, reward="sparse")  # type: ignore[arg-type]
+
+
+# --- unchecked ------------------------------------------------------------------------------------
+
+MODES = ("progress", "sparse", "edge", "potential")
+FIELDS = ("state", "done", "success", "truncated", "progress", "reward", "verdict", "robustness", "limiting", "values")
+
+
+@pytest.fixture(params=[False, True], ids=["by letters", "by primes"])
+def by_primes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Transitions by a table of letters, and without one."""
+    if request.param:
+        monkeypatch.setattr(batch_guards, "_LETTER_ATOMS", -1)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.usefixtures("by_primes")
+def test_good_samples_are_judged_the_same_unchecked(mode: Any) -> None:
+    fspa, reward = cover_and_hide(), RewardOptions(mode=mode)
+    checked, unchecked = (BatchMonitor(fspa, 64, reward=reward, checked=each) for each in (True, False))
+    health = checked.signal_names.index("health")
+    places = torch.tensor([column for column in range(4) if column != health])
+    generator, seen = torch.Generator().manual_seed(1), set[int]()
+    for _ in range(40):
+        rows = 1.0 + 19.0 * torch.rand(64, 4, generator=generator, dtype=torch.float64)
+        rows[torch.arange(64), places[torch.randint(3, (64,), generator=generator)]] -= 1.0
+        rows[:, health] = 1.0
+        one, other = checked.step(rows), unchecked.step(rows)
+        for field in FIELDS:
+            assert torch.equal(getattr(one, field), getattr(other, field)), field
+        seen |= set(one.state.tolist())
+        for monitor in (checked, unchecked):
+            monitor.reset(one.done)
+    assert len(seen) == len(fspa.states) - 1
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.usefixtures("by_primes")
+def test_an_unchecked_step_reads_nothing_back(mode: Any) -> None:
+    """Tensors on the device "meta" have no values: to look at one is an error."""
+    monitor = BatchMonitor(cover_and_hide(), 4096, reward=RewardOptions(mode=mode), device="meta", checked=False)
+    for signals in (torch.empty(4096, 4, device="meta"), {name: torch.empty(4096, device="meta") for name in FAR}):
+        step = monitor.step(signals)
+        monitor.reset(step.done)
+        found = [getattr(step, field) for field in FIELDS] + [monitor.one_hot(), monitor.state, monitor.progress]
+        assert {each.device.type for each in found} == {"meta"}
+    with pytest.raises((NotImplementedError, RuntimeError)):
+        BatchMonitor(cover_and_hide(), 4096, device="meta").step(signals)
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU is at hand")
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.usefixtures("by_primes")
+def test_an_unchecked_step_does_not_wait_for_a_gpu(mode: Any) -> None:
+    monitor = BatchMonitor(cover_and_hide(), 4096, reward=RewardOptions(mode=mode), device="cuda", checked=False)
+    rows = torch.full((4096, 4), 0.5, device="cuda")
+    torch.cuda.set_sync_debug_mode("error")
+    try:
+        for _ in range(3):
+            step = monitor.step(rows)
+            monitor.reset(step.done | step.truncated)
+            monitor.one_hot()
+    finally:
+        torch.cuda.set_sync_debug_mode("default")
+
+
+@pytest.mark.usefixtures("by_primes")
+def test_what_is_unusable_spoils_its_own_environment_alone_when_unchecked() -> None:
+    batch = BatchMonitor(cover_and_hide(), 4, checked=False)
+    near = tensor([20.0, 20.0, 20.0, 0.0])
+    rows = {name: tensor([value] * 4) for name, value in FAR.items()}
+    rows |= {"health": tensor([1.0, float("nan"), 100.0, 1.0]), "distance(s1)": near, "distance(s2)": near}
+    step = batch.step(rows)
+    assert step.state.tolist()[:3] == [0, 2, 0]
+    assert torch.isfinite(step.reward)[[0, 2, 3]].all()
+    assert step.values[:, 2].tolist() == [-1.0, -1.0, -1.0, 1.0]
+    assert batch.fspa.edges[int(step.edge[3])].source == 0
+    assert batch.clamped == {}
+
+
+def test_the_limit_truncates_and_nothing_else_does() -> None:
+    text = "signal x in [-1, 1]\npredicate p in [-1, 1] = x\nspec s { limit 2 steps reach p keep x > -0.5 }"
+    (fspa,) = compile_text(text)
+    batch = BatchMonitor(fspa, 3)
+    steps = [batch.step({"x": tensor(row)}) for row in ([-0.25, -0.25, -0.25], [-0.25, 0.5, -0.75])]
+    assert [step.truncated.tolist() for step in steps] == [[False, False, False], [True, False, False]]
+    assert steps[1].done.tolist() == [True, True, True]
