@@ -43,3 +43,7 @@ class TltlError(Exception):
     def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
         self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)
         super().__init__("; ".join(f"{d.code}: {d.title}" for d in self.diagnostics))
+
+    def __reduce__(self) -> tuple[type[TltlError], tuple[tuple[Diagnostic, ...]]]:
+        # Its text is not what it is made of; processes send it to each other.
+        return type(self), (self.diagnostics,)

@@ -21,6 +21,7 @@ from tltl_runtime.stealth.episodes.episode import End, Episode
 from tltl_runtime.stealth.episodes.summary import Notation
 from tltl_runtime.stealth.level import Box, Enemy, Level, Point
 from tltl_runtime.stealth.supply.reach import Reach
+from tltlc.automaton.fspa import Fspa
 
 _SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
 BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
@@ -30,7 +31,7 @@ _STATES: Final = ("#2563eb", "#9333ea", "#0d9488", "#ca8a04", "#db2777", "#65a30
 _INK: Final = "#0f172a"
 _SWITCH, _EXIT, _MOVER, _ROUTE = "#facc15", "#16a34a", "#7c3aed", "#dc2626"
 _UNREACHED: Final = (0.86, 0.0, 0.0, 0.3)
-_ENDS: Final[dict[End, tuple[str, str]]] = {
+ENDS: Final[dict[End, tuple[str, str]]] = {
     "success": ("D", "#16a34a"),
     "violation": ("X", "#dc2626"),
     "limit": ("s", "#64748b"),
@@ -38,12 +39,12 @@ _ENDS: Final[dict[End, tuple[str, str]]] = {
 }
 """Marker and colour."""
 
-_DPI: Final = 100
+DPI: Final = 100
 _METRES_PER_INCH: Final = 2.0
 _LONGEST_SIDE: Final = 40.0
 """Of a picture, in inches: larger levels are drawn smaller."""
 
-_LINE: Final = 0.22
+LINE: Final = 0.22
 """Height of a line of the legend, in inches."""
 
 _COLUMN: Final = 2.0
@@ -52,23 +53,23 @@ _COLUMN: Final = 2.0
 _ROOMY: Final = 6.0
 """Inches to a side from which letters have their full size, in plans of less than their natural size."""
 
-_MOST_LISTED: Final = 12
+MOST_LISTED: Final = 12
 """Of the states of an episode, as many are in the legend."""
 
-_LETTERS_PER_INCH: Final = 12
+LETTERS_PER_INCH: Final = 12
 """Of a line of the legend; what is longer is cut."""
 
 
 def draw_level(level: Level, reach: Reach) -> bytes:
     """The plan of a level as a PNG; red lies over all that nobody can stand on."""
-    width, height = _natural_size(level)
+    width, height = natural_size(level)
     key = _key(level)
     columns = max(1, int(width / _COLUMN))
-    figure = Figure(figsize=(width, height + (ceil(len(key) / columns) + 1) * _LINE), dpi=_DPI, layout="constrained")
-    axes = _level_axes(figure, level)
+    figure = Figure(figsize=(width, height + (ceil(len(key) / columns) + 1) * LINE), dpi=DPI, layout="constrained")
+    axes = level_axes(figure, level)
     _add_reach(axes, reach)
     figure.legend(handles=key, loc="outside lower left", ncols=columns, fontsize=8, frameon=False)
-    return _png(figure)
+    return png(figure)
 
 
 def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation: Notation = "english") -> bytes:
@@ -78,12 +79,12 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     """
     states = episode.states.tolist()
     path = [shot.player.position for shot in episode.snapshots]
-    visited = list(dict.fromkeys(states))[:_MOST_LISTED]
-    below = (len(visited) + 2) * _LINE
-    width, height = _natural_size(episode.level)
-    inches = (size[0] / _DPI, size[1] / _DPI) if size else (width, height + below)
-    figure = Figure(figsize=inches, dpi=_DPI, layout="constrained")
-    axes = _level_axes(figure, episode.level, start=False)
+    visited = list(dict.fromkeys(states))[:MOST_LISTED]
+    below = (len(visited) + 2) * LINE
+    width, height = natural_size(episode.level)
+    inches = (size[0] / DPI, size[1] / DPI) if size else (width, height + below)
+    figure = Figure(figsize=inches, dpi=DPI, layout="constrained")
+    axes = level_axes(figure, episode.level, start=False)
     shrunk = _shrunk(figure, episode.level)
     title = f"{episode.level.name} {episode.level.variant}, {episode.player}, seed {episode.seed}: {episode.end}"
     axes.set_title("")
@@ -98,20 +99,22 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     died = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
     if died is not None:
         marks.append(_mark(axes, path[died], "P", "#dc2626", "without health", dot))
-    marks.append(_mark(axes, path[-1], *_ENDS[episode.end], f"end: {episode.end}", dot))
-    letters = int(inches[0] * _LETTERS_PER_INCH / shrunk)
+    marks.append(_mark(axes, path[-1], *ENDS[episode.end], f"end: {episode.end}", dot))
+    letters = int(inches[0] * LETTERS_PER_INCH / shrunk)
     lines = [
-        Line2D([], [], color=state_colour(state), linewidth=3, label=_label(episode, state, letters, notation))
+        Line2D(
+            [], [], color=state_colour(state), linewidth=3, label=state_label(episode.fspa, state, letters, notation)
+        )
         for state in visited
     ]
     figure.legend(handles=[*lines, *marks], loc="outside lower left", fontsize=8 * shrunk, frameon=False)
-    return _png(figure)
+    return png(figure)
 
 
 def backdrop(level: Level, size: tuple[int, int]) -> tuple[NDArray[np.uint8], Callable[[Point], tuple[float, float]]]:
     """The plan of a level without its moving parts, (height, width, 3), and where in it a place is, in pixels."""
-    figure = Figure(figsize=(size[0] / _DPI, size[1] / _DPI), dpi=_DPI, layout="constrained")
-    axes = _level_axes(figure, level, moving=False, start=False)
+    figure = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout="constrained")
+    axes = level_axes(figure, level, moving=False, start=False)
     canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
     transform = axes.transData
@@ -156,7 +159,7 @@ def _key(level: Level) -> list[Any]:
     return handles
 
 
-def _natural_size(level: Level) -> tuple[float, float]:
+def natural_size(level: Level) -> tuple[float, float]:
     """Width and height in inches."""
     (x0, y0, _), (x1, y1, _) = level.bounds.low, level.bounds.high
     width, height = (x1 - x0) / _METRES_PER_INCH, (y1 - y0) / _METRES_PER_INCH
@@ -166,11 +169,11 @@ def _natural_size(level: Level) -> tuple[float, float]:
 
 def _shrunk(figure: Figure, level: Level) -> float:
     """How much smaller letters are than in a plan of the natural size, so that a small one has room for them."""
-    roomy = np.minimum(_natural_size(level), _ROOMY)
+    roomy = np.minimum(natural_size(level), _ROOMY)
     return float(np.clip((figure.get_size_inches() / roomy).min(), 0.6, 1.0))
 
 
-def _level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = True) -> Any:
+def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = True) -> Any:
     """Axes in metres with all that a level has; what moves is drawn where it begins.
 
     Without room for letters of full size, only switches and exits have their names.
@@ -246,9 +249,9 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: f
     return mark
 
 
-def _label(episode: Episode, state: int, letters: int, notation: Notation) -> str:
+def state_label(fspa: Fspa, state: int, letters: int, notation: Notation = "english") -> str:
     """A state in the legend: its number, what remains to be satisfied, and its verdict where that is settled."""
-    known = episode.fspa.states[state]
+    known = fspa.states[state]
     text = getattr(known.label, notation)
     if len(text) > letters:
         text = text[: letters - 1] + "…"
@@ -257,9 +260,10 @@ def _label(episode: Episode, state: int, letters: int, notation: Notation) -> st
     return f"state {state}: {text}{settled}".replace("$", r"\$")
 
 
-def _png(figure: Figure) -> bytes:
+def png(figure: Figure) -> bytes:
+    """The figure as a PNG; equal figures give equal bytes."""
     written = BytesIO()
-    figure.savefig(written, format="png", dpi=_DPI, metadata={"Software": None})
+    figure.savefig(written, format="png", dpi=DPI, metadata={"Software": None})
     return written.getvalue()
 
 

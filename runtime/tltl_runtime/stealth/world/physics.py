@@ -50,6 +50,11 @@ class WorldError(RuntimeError):
     def __init__(self, level: Level, step: int, body: str, what: str) -> None:
         super().__init__(f"level {level.name} {level.variant}, step {step}, {body}: {what}")
         self.level, self.variant, self.step, self.body = level.name, level.variant, step, body
+        self._made_of = level, step, body, what
+
+    def __reduce__(self) -> tuple[type[WorldError], tuple[Level, int, str, str]]:
+        # Its text is not what it is made of; processes send it to each other.
+        return type(self), self._made_of
 
 
 class World:

@@ -1,0 +1,105 @@
+"""Evaluations: a policy plays many episodes, on one core, on several or on a Ray cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Literal
+
+from tltl_runtime.evaluation.local import Here, Process
+from tltl_runtime.evaluation.play import Played
+from tltl_runtime.evaluation.player import Recorded, Result, Setup, Task
+from tltl_runtime.evaluation.spread import Worker, spread
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.stealth.env import check_fit
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.supply.offer import params as level_params
+from tltl_runtime.task import load_task
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+Workers = int | Literal["ray"]
+
+
+def evaluate(
+    policy: Policy | str | Path,
+    level: str | None = None,
+    variant: str | None = None,
+    *,
+    episodes: int,
+    seed: int,
+    workers: Workers = 1,
+    sampled: bool = True,
+    spec: str | Path | Fspa | None = None,
+) -> Iterator[Played]:
+    """Have a policy play ``episodes``, and tell how each went, in their order and as soon as they are over.
+
+    ``level``, ``variant`` and ``spec`` are by default those that the policy was trained for.  ``workers`` are this
+    process (1), so many others, or those of a Ray cluster (``ray``): the episodes are the same.  A process starts by
+    importing the main module, so a script's own work stands under ``if __name__ == "__main__"``.
+
+    Raises:
+        TltlError: what :func:`set_up`, :func:`results` and ``read_policy`` raise.
+    """
+    read = policy if isinstance(policy, Policy) else read_policy(Path(policy))
+    setup = set_up(read, level, variant, spec, seed)
+    for result in results(setup, [Task(index, sampled) for index in range(episodes)], workers):
+        yield result.played
+
+
+def set_up(
+    policy: Policy,
+    level: str | None,
+    variant: str | None,
+    spec: str | Path | Fspa | None,
+    seed: int,
+    recorded: Recorded | None = None,
+) -> Setup:
+    """An evaluation that can be played.
+
+    Raises:
+        TltlError: there is no such level, variant or spec; what the spec asks of the level and does not get; what
+            :func:`~tltl_runtime.policies.fit.check_policy` finds; TLT0851, the spec has no limit.
+    """
+    card = policy.card
+    name = level or card.level
+    place = load_level(name, variant or (card.variant if name == card.level else "v0"))
+    offered = level_params(place)
+    own = {key: value for key, value in card.params.items() if key not in offered} if spec is None else {}
+    task = load_task(card.fspa if spec is None else spec, own, offered=offered)
+    check_fit(place, task.fspa, card.fspa if spec is None else spec)
+    if task.fspa.limit_steps is None:
+        title = f"`{task.fspa.name}` has no limit, so an episode may go on for ever"
+        raise TltlError([Diagnostic("TLT0851", title, help="write `limit 60 s` or the like in the spec")])
+    return Setup(policy, name, place.variant, task.fspa, seed, task.params, recorded)
+
+
+def results(setup: Setup, tasks: Sequence[Task], workers: Workers = 1) -> Iterator[Result]:
+    """Play the tasks and give their results in order; closing the iterator ends the workers.
+
+    Raises:
+        TltlError: TLT0850, a worker was lost; TLT0730, where Ray is asked for and is not installed.
+        ValueError: there are less than one workers.
+    """
+    with ExitStack() as stack:
+        team: list[Worker] = []
+        for make in _makers(setup, workers, len(tasks), stack):
+            team.append(make)
+            stack.callback(make.close)
+        yield from spread(team, tasks, setup.seed)
+
+
+def _makers(setup: Setup, workers: Workers, most: int, stack: ExitStack) -> Iterator[Worker]:
+    if workers == "ray":
+        from tltl_runtime.evaluation.ray_pool import ray_workers
+
+        yield from stack.enter_context(ray_workers(setup, most))
+    elif workers < 1:
+        raise ValueError(f"at least one worker is needed, not {workers}")
+    elif workers == 1:
+        yield Here(setup)
+    else:
+        for _ in range(min(workers, most)):
+            yield Process(setup)

@@ -1,0 +1,85 @@
+"""Workers of this machine: this process itself, or others."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+
+from tltl_runtime.evaluation.player import Player, Result, Setup, Task
+from tltl_runtime.evaluation.spread import LostError
+
+
+class Here:
+    """The process that asks: an episode is over when :meth:`play` returns."""
+
+    def __init__(self, setup: Setup) -> None:
+        self._player = Player(setup)
+
+    def play(self, task: Task) -> Future[Result]:
+        """Play an episode now."""
+        future: Future[Result] = Future()
+        try:
+            future.set_result(self._player.play(task))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+    def close(self) -> None:
+        """Free the game."""
+        self._player.close()
+
+
+class Process:
+    """A process of its own, an executor's only one: where it breaks, it is known what it was playing."""
+
+    def __init__(self, setup: Setup) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._executor = ProcessPoolExecutor(1, context, initializer=_begin, initargs=(setup,))
+
+    def play(self, task: Task) -> Future[Result]:
+        """Begin an episode."""
+        future: Future[Result] = Future()
+        self._executor.submit(_play, task).add_done_callback(lambda done: _pass_on(done, future))
+        return future
+
+    def close(self) -> None:
+        """End the process, after the episode that it plays."""
+        self._executor.shutdown(wait=True, cancel_futures=True)
+
+
+_player: Player
+"""Of a process that plays."""
+
+
+def _begin(setup: Setup) -> None:
+    global _player
+    # Ctrl-C goes to the whole group of processes; whoever started this one decides what it means.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    _player = Player(setup)
+
+
+def _end_with_parent() -> None:
+    """An executor's process would wait for ever for the next task of a parent that was killed."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)
+
+
+def _play(task: Task) -> Result:
+    return _player.play(task)
+
+
+def _pass_on(done: Future[Result], future: Future[Result]) -> None:
+    error = done.exception()
+    if isinstance(error, BrokenProcessPool):
+        future.set_exception(LostError("its process ended, perhaps killed for want of memory"))
+    elif error is not None:
+        future.set_exception(error)
+    else:
+        future.set_result(done.result())

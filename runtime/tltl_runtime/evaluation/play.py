@@ -1,0 +1,80 @@
+"""A policy plays an episode."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.stealth.episodes.episode import End
+from tltlc.record import record
+
+_OF_LEVEL, _OF_ACTIONS = 0, 1
+"""The streams of random numbers of an episode."""
+
+
+@record
+class Played:
+    """How episode ``index`` of an evaluation went; ``seed`` is that of the environment's reset.
+
+    ``progress`` is the best, in [0, 1]; ``reward`` the sum over the ``steps``; ``seconds`` are those of the game.
+    ``state`` is the automaton's at the end.  ``unmet`` is that state, or the one before a violation, and ``label``
+    says in English what remained to be done there.
+    """
+
+    index: int
+    seed: int
+    success: bool
+    verdict: str
+    end: End
+    progress: float
+    reward: float
+    steps: int
+    seconds: float
+    state: int
+    unmet: int
+    label: str
+
+
+def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sampled: bool) -> Played:
+    """Play episode ``index`` of an evaluation's ``seed``, with sampled or with the likeliest actions, to its end.
+
+    ``env`` is a :class:`~tltl_runtime.wrapper.TltlEnv`, or wrappers around one, whose spec has a limit.  The episode
+    depends on policy, environment and these three numbers alone; sampled or not, the environment's seed is the same.
+    """
+    generator = np.random.default_rng(_stream(seed, index, _OF_ACTIONS)) if sampled else None
+    reset_seed = episode_seed(seed, index)
+    observation, info = env.reset(seed=reset_seed)
+    before, reward, steps, over = 0, 0.0, 0, False
+    while not over:
+        before = info["state"]
+        observation, gained, terminated, truncated, info = env.step(policy.choose(observation, generator))
+        reward, steps, over = reward + float(gained), steps + 1, terminated or truncated
+    violated = info["verdict"] == "violated"
+    fspa = env.get_wrapper_attr("task").fspa
+    unmet = before if violated else info["state"]
+    return Played(
+        index=index,
+        seed=reset_seed,
+        success=info["success"],
+        verdict=info["verdict"],
+        end="success" if info["success"] else "violation" if violated else "limit",
+        progress=info["progress"],
+        reward=reward,
+        steps=steps,
+        seconds=steps * env.get_wrapper_attr("tltl_clock_s"),
+        state=info["state"],
+        unmet=unmet,
+        label=fspa.states[unmet].label.english,
+    )
+
+
+def episode_seed(seed: int, index: int) -> int:
+    """The seed of the environment for episode ``index`` of an evaluation's ``seed``, in [0, 2**31)."""
+    return int(_stream(seed, index, _OF_LEVEL).generate_state(1)[0]) >> 1
+
+
+def _stream(seed: int, index: int, purpose: int) -> np.random.SeedSequence:
+    return np.random.SeedSequence(seed, spawn_key=(index, purpose))

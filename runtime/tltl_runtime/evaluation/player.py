@@ -1,0 +1,90 @@
+"""What is played in an evaluation, and who plays it: one of these stands in each worker."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import gymnasium
+
+from tltl_runtime.evaluation.play import Played, play
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.threads import one_thread
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.file import to_bytes
+from tltl_runtime.stealth.episodes.way import Way, way
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltlc.automaton.fspa import Fspa
+from tltlc.monitor import RewardOptions
+from tltlc.record import EMPTY, record
+
+Recorded = Literal["none", "failures", "all"]
+
+
+@record
+class Setup:
+    """What an evaluation plays: ``policy`` on a level with a spec, rewarded as every reported figure is.
+
+    ``level`` is what :func:`~tltl_runtime.stealth.levels.file.load_level` takes.  ``params`` are in SI units.
+    ``recorded`` says of which episodes recordings are wanted.
+    """
+
+    policy: Policy
+    level: str
+    variant: str
+    fspa: Fspa
+    seed: int
+    params: Mapping[str, float] = EMPTY
+    recorded: Recorded | None = None
+
+
+@record
+class Task:
+    """Episode ``index``, with sampled or with the likeliest actions."""
+
+    index: int
+    sampled: bool = True
+
+
+@record
+class Result:
+    """An episode that was played; its way and the bytes of its recording where these are wanted."""
+
+    task: Task
+    played: Played
+    way: Way | None = None
+    recording: bytes = b""
+
+
+class Player:
+    """Plays the episodes of an evaluation, one after the other in an environment of its own."""
+
+    def __init__(self, setup: Setup) -> None:
+        self._setup = setup
+        card = setup.policy.card
+        self._env: gymnasium.Env[Any, Any] = make_env(
+            setup.level,
+            setup.variant,
+            setup.fspa,
+            sensors=card.sensors,
+            reward=RewardOptions(),
+            params=setup.params,
+        )
+        self._recorder: RecordEpisode | None = None
+        if setup.recorded is not None:
+            self._env = self._recorder = RecordEpisode(self._env, "policy")
+
+    def play(self, task: Task) -> Result:
+        """Play one episode."""
+        setup = self._setup
+        with one_thread():
+            played = play(setup.policy, self._env, setup.seed, task.index, task.sampled)
+        if self._recorder is None:
+            return Result(task, played)
+        episode = self._recorder.episode
+        kept = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
+        return Result(task, played, way(episode), to_bytes(episode) if kept else b"")
+
+    def close(self) -> None:
+        """Free the game."""
+        self._env.close()

@@ -1,0 +1,45 @@
+"""The statistics of reported figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import sqrt
+from statistics import NormalDist, fmean, stdev
+from typing import Final
+
+from tltlc.record import record
+
+Z_95: Final = NormalDist().inv_cdf(0.975)
+"""The quantile of the normal distribution for an interval of 95 %."""
+
+
+@record
+class Spread:
+    """The mean of a sample and its standard deviation, that of a sample: the divisor is n - 1; 0 for a single value."""
+
+    mean: float
+    std: float
+
+
+def spread_of(values: Sequence[float]) -> Spread:
+    """Mean and standard deviation; raises ValueError where there are no values."""
+    if not values:
+        raise ValueError("there are no values")
+    return Spread(fmean(values), stdev(values) if len(values) > 1 else 0.0)
+
+
+def wilson(successes: int, count: int, z: float = Z_95) -> tuple[float, float]:
+    """The score interval of a share, by default that of 95 %: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
+
+    Raises ValueError unless 0 <= ``successes`` <= ``count`` and 0 < ``count``.
+    """
+    if not 0 <= successes <= count or count == 0:
+        raise ValueError(f"{successes} of {count} is no share")
+    share = successes / count
+    middle = share + z * z / (2 * count)
+    half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    scale = 1 + z * z / count
+    # Rounding would leave the ends of [0, 1] by a hair.
+    low = (middle - half) / scale if successes else 0.0
+    high = (middle + half) / scale if successes < count else 1.0
+    return low, high

@@ -1,0 +1,69 @@
+"""What an evaluation comes to: the figures that are reported, and where failed episodes ended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tltl_runtime.evaluation.play import Played
+from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
+from tltl_runtime.stealth.episodes.episode import End
+from tltlc.record import record
+
+
+@record
+class Ended:
+    """Failed episodes that ended alike: what remained in ``state`` (``label``), and how they ended.
+
+    Of violated ones it is the state from which they were.  ``share`` is that of all episodes that were played;
+    ``episodes`` are their indices.
+    """
+
+    state: int
+    label: str
+    end: End
+    count: int
+    share: float
+    episodes: tuple[int, ...]
+
+
+@record
+class Summary:
+    """The figures over ``episodes``: ``pass_rate`` with its Wilson interval of 95 %, and the spread of the others.
+
+    ``progress`` is the best of an episode, in [0, 1], ``reward`` its undiscounted sum, ``steps`` are decisions.
+    """
+
+    pass_rate: float
+    pass_interval: tuple[float, float]
+    progress: Spread
+    reward: Spread
+    steps: Spread
+    ended: tuple[Ended, ...]
+    episodes: tuple[Played, ...]
+
+
+def summary(episodes: Sequence[Played]) -> Summary:
+    """The figures over episodes; raises ValueError where there are none."""
+    passed = sum(each.success for each in episodes)
+    return Summary(
+        pass_rate=passed / len(episodes) if episodes else 0.0,
+        pass_interval=wilson(passed, len(episodes)),
+        progress=spread_of([each.progress for each in episodes]),
+        reward=spread_of([each.reward for each in episodes]),
+        steps=spread_of([float(each.steps) for each in episodes]),
+        ended=_ended(episodes),
+        episodes=tuple(episodes),
+    )
+
+
+def _ended(episodes: Sequence[Played]) -> tuple[Ended, ...]:
+    """Those that failed, by state and end, the most frequent first."""
+    groups: dict[tuple[int, str, End], list[int]] = {}
+    for each in episodes:
+        if not each.success:
+            groups.setdefault((each.unmet, each.label, each.end), []).append(each.index)
+    found = [
+        Ended(state, label, end, len(indices), len(indices) / len(episodes), tuple(indices))
+        for (state, label, end), indices in groups.items()
+    ]
+    return tuple(sorted(found, key=lambda each: (-each.count, each.state, each.end)))

@@ -1,0 +1,56 @@
+"""The report of an evaluation for people."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from tltl_runtime.evaluation.statistics import Spread
+from tltl_runtime.evaluation.summary import Ended, Summary
+from tltl_runtime.stealth.episodes.episode import End
+
+_WIDTH: Final = 24
+"""Of a column, in letters."""
+
+_MOST_LISTED: Final = 12
+"""Of the episodes that ended alike, as many are named."""
+
+_ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of time", "stopped": "stopped"}
+
+
+def report_text(summaries: Mapping[str, Summary]) -> str:
+    """A table with a column for each way to choose actions, then where failed episodes ended."""
+    every = summaries.values()
+    lines = [
+        _row("", summaries),
+        _row("episodes", [str(len(each.episodes)) for each in every]),
+        _row("pass rate (95 %)", [_rate(each) for each in every]),
+        _row("progress", [_spread(each.progress, 2) for each in every]),
+        _row("reward", [_spread(each.reward, 2) for each in every]),
+        _row("steps", [_spread(each.steps, 0) for each in every]),
+    ]
+    for name, each in summaries.items():
+        failed = sum(ended.count for ended in each.ended)
+        if failed:
+            lines += ["", f"{name}: {failed} of {len(each.episodes)} failed"]
+            lines += [line for ended in each.ended for line in _failures(ended)]
+    return "\n".join(lines) + "\n"
+
+
+def _row(name: str, cells: Mapping[str, Summary] | list[str]) -> str:
+    return f"{name:<18}{''.join(f'{cell:<{_WIDTH}}' for cell in cells)}".rstrip()
+
+
+def _rate(each: Summary) -> str:
+    low, high = each.pass_interval
+    return f"{each.pass_rate:.2f} ({low:.2f} to {high:.2f})"
+
+
+def _spread(spread: Spread, places: int) -> str:
+    return f"{spread.mean:.{places}f} ± {spread.std:.{places}f}"
+
+
+def _failures(ended: Ended) -> tuple[str, str]:
+    listed = ", ".join(map(str, ended.episodes[:_MOST_LISTED])) + (", …" if ended.count > _MOST_LISTED else "")
+    what = f"  {ended.count} {_ENDS.get(ended.end, ended.end)} in state {ended.state}: {ended.label}"
+    return what, f"    episode{'s' if ended.count > 1 else ''} {listed}"

@@ -1,0 +1,125 @@
+"""The same episodes in this process, in others, and on a Ray cluster; what is said of a worker that is lost."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from importlib.util import find_spec
+
+import pytest
+
+from tests.runtime.evaluation.untrained import untrained
+from tltl_runtime.evaluation.evaluate import Workers, evaluate, results, set_up
+from tltl_runtime.evaluation.play import Played, episode_seed
+from tltl_runtime.evaluation.player import Setup, Task
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.stealth.episodes.file import from_bytes
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.world.physics import WorldError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+EPISODES = 8
+
+needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install 'tltlc[ray]'")
+POOLS = [2, pytest.param("ray", marks=needs_ray)]
+
+
+@pytest.fixture(scope="module")
+def policy() -> Policy:
+    return untrained()
+
+
+@pytest.fixture(scope="module")
+def expected(policy: Policy) -> list[Played]:
+    return list(evaluate(policy, episodes=EPISODES, seed=3))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def ray_here() -> Iterator[None]:
+    """A Ray instance of this machine, for all tests of this module."""
+    if find_spec("ray") is None:
+        yield
+        return
+    from tltl_runtime.vector.cluster import cluster
+
+    with cluster():
+        yield
+
+
+@pytest.mark.parametrize("workers", POOLS)
+def test_the_same_on_every_pool(policy: Policy, expected: list[Played], workers: Workers) -> None:
+    assert list(evaluate(policy, episodes=EPISODES, seed=3, workers=workers)) == expected
+
+
+def test_the_same_whatever_the_number_of_episodes(policy: Policy, expected: list[Played]) -> None:
+    alone = results(set_up(policy, None, None, None, 3), [Task(7)])
+    assert [each.played for each in alone] == [expected[7]]
+
+
+def test_recordings_where_they_are_wanted(policy: Policy, expected: list[Played]) -> None:
+    tasks = [Task(0), Task(1)]
+    for recorded, there in (("all", True), ("failures", True), ("none", False)):
+        for result in results(set_up(policy, None, None, None, 3, recorded), tasks):  # type: ignore[arg-type]
+            assert result.played == expected[result.task.index]
+            assert result.way is not None
+            assert result.way.points.shape == (21, 2)
+            assert bool(result.recording) is there
+            if there:
+                episode = from_bytes(result.recording, "it")
+                assert (episode.seed, episode.player) == (result.played.seed, "policy")
+
+
+class Deadly:
+    """A policy's stand-in whose choices end the process."""
+
+    def __init__(self, policy: Policy, end: Callable[[], object]) -> None:
+        self.card, self._end = policy.card, end
+
+    def choose(self, *_: object) -> object:
+        return self._end()
+
+
+def killed() -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def out_of_the_level() -> None:
+    raise WorldError(load_level("navigation"), 3, "player", "it left")
+
+
+@pytest.mark.parametrize("workers", POOLS)
+def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Workers) -> None:
+    setup = Setup(Deadly(policy, killed), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
+    with pytest.raises(TltlError) as found, closing(results(setup, [Task(6)], workers)) as each:
+        next(each)
+    (diagnostic,) = found.value.diagnostics
+    assert diagnostic.code == "TLT0850"
+    assert f"episode 6 of seed 3, sampled (seed {episode_seed(3, 6)} of the level): " in diagnostic.title
+    assert diagnostic.help == "play that one alone: `--seed 3 --first 6 --episodes 1 --workers 1`"
+
+
+@pytest.mark.parametrize("workers", [1, pytest.param("ray", marks=needs_ray)])
+def test_what_the_game_raises_comes_as_it_is(policy: Policy, workers: Workers) -> None:
+    setup = Setup(Deadly(policy, out_of_the_level), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
+    with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as found:
+        list(results(setup, [Task(0)], workers))
+    assert found.value.body == "player"
+
+
+def test_errors_can_be_sent() -> None:
+    error = TltlError([Diagnostic("TLT0850", "lost", help="look for it")])
+    assert pickle.loads(pickle.dumps(error)).diagnostics == error.diagnostics
+
+
+def test_no_workers(policy: Policy) -> None:
+    with pytest.raises(ValueError, match="at least one worker"):
+        list(evaluate(policy, episodes=1, seed=0, workers=0))
+
+
+def test_a_spec_without_a_limit_is_refused() -> None:
+    endless = untrained("import stealth\nspec endless { reach seen }")
+    with pytest.raises(TltlError, match="TLT0851: `endless` has no limit"):
+        list(evaluate(endless, episodes=1, seed=0))
