@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 def check_arguments(
     functions: Sequence[Callable[..., Any]],
-    workers: int | None,
+    workers: int | str | None,
     names: Sequence[str] | None,
     autoreset: AutoresetMode,
     on_death: str,
@@ -22,9 +22,9 @@ def check_arguments(
         raise ValueError("there is no function that makes an environment")
     if not all(map(callable, functions)):
         raise TypeError("functions are needed that make environments, not environments: `[lambda: make()] * 8`")
-    if workers is not None and (not isinstance(workers, int) or isinstance(workers, bool)):
-        raise TypeError(f"workers is a whole number, not {workers!r:.40}")
-    if workers is not None and workers < 1:
+    if workers not in (None, "ray") and (not isinstance(workers, int) or isinstance(workers, bool)):
+        raise TypeError(f"workers is a whole number or 'ray', not {workers!r:.40}")
+    if isinstance(workers, int) and workers < 1:
         raise ValueError(f"at least one worker is needed, not {workers}")
     if names is not None and len(names) != len(functions):
         raise ValueError(f"{len(functions)} names are needed, not {len(names)}")

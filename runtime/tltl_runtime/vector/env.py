@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import weakref
 from collections.abc import Mapping, Sequence
-from typing import Any, Final, Literal, NoReturn
+from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn
 
 import gymnasium
 import numpy as np
@@ -23,6 +23,9 @@ from tltl_runtime.vector.memory import Rows, read, write_batch
 from tltl_runtime.vector.worker import EnvFunction
 from tltl_runtime.vector.workers import Workers, shared_out
 from tltl_runtime.wrapper import TltlEnv
+
+if TYPE_CHECKING:
+    from tltl_runtime.vector.ray_workers import RayWorkers
 
 TLTL_INFO: Final[Mapping[str, DTypeLike]] = {
     "verdict": "U9",
@@ -43,7 +46,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     A worker steps its share one after the other; observations, actions and numbers are in memory that all share.
     ``workers`` is by default as many as there are cores, and never more than environments.  Same seeds and actions
-    give the same episodes, bit for bit, for any number of workers and in this process.
+    give the same episodes, bit for bit, for any number of workers and in this process.  With ``workers="ray"`` they are
+    actors of a Ray cluster, one on each of its free cores (:func:`~tltl_runtime.vector.cluster.cluster` says which).
 
     ``autoreset`` is ``SAME_STEP`` (the observation is the new episode's, ``final_obs`` and ``final_info`` are the
     old one's) or ``NEXT_STEP``, as Gymnasium defines them.  ``infos`` has the keys ``info`` at every step, an array
@@ -64,12 +68,13 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         ValueError: spaces of no fixed size, or other arguments that do not fit.
         TypeError: arguments of another type.
         WorkerError: an environment cannot be made, or has other spaces than the first.
+        TltlError: TLT0730 and TLT0852, there is no Ray or no cluster.
     """
 
     def __init__(
         self,
         functions: Sequence[EnvFunction],
-        workers: int | None = None,
+        workers: int | Literal["ray"] | None = None,
         *,
         names: Sequence[str] | None = None,
         autoreset: AutoresetMode | str = AutoresetMode.SAME_STEP,
@@ -99,10 +104,16 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         """Workers that were replaced and have not taken a step since."""
         context = multiprocessing.get_context("spawn")
         self._rows = Rows(context, self.num_envs, self.single_observation_space, self.single_action_space, info)
-        shares = list(shared_out(self.num_envs, min(workers or _cores(), self.num_envs)))
-        self._workers = Workers(context, functions, shares, self._rows, autoreset, timeout)
+        self._workers: Workers | RayWorkers
+        if workers == "ray":
+            from tltl_runtime.vector.ray_workers import RayWorkers
+
+            self._workers = RayWorkers(functions, self._rows, info, autoreset, timeout)
+        else:
+            shares = list(shared_out(self.num_envs, min(workers or _cores(), self.num_envs)))
+            self._workers = Workers(context, functions, shares, self._rows, autoreset, timeout)
         self._finalizer = weakref.finalize(self, self._workers.close)
-        for loss in self._workers.start(range(len(shares))):
+        for loss in self._workers.start(range(len(self._workers.shares))):
             self._stop(loss)
 
     def reset(
@@ -188,7 +199,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
     @property
     def worker_pids(self) -> tuple[int | None, ...]:
-        """The process ids of the workers."""
+        """The process ids of the workers; None for those of a Ray cluster."""
         return tuple(self._workers.pid(worker) for worker in range(len(self._workers.shares)))
 
     def _asked(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:

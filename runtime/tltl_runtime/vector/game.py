@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from tltl_runtime.stealth.env import check_fit, make_env, spec_of
 from tltl_runtime.stealth.levels.file import load_level
@@ -20,7 +20,7 @@ def make_vec(
     level: str,
     variant: str = "v0",
     num_envs: int = 1,
-    workers: int | None = None,
+    workers: int | Literal["ray"] | None = None,
     *,
     spec: str | Path | Fspa | None = None,
     sensors: SensorChoice | None = None,
@@ -29,7 +29,7 @@ def make_vec(
     render_mode: str | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
-    """``num_envs`` of what :func:`~tltl_runtime.stealth.env.make_env` makes, in ``workers`` processes.
+    """``num_envs`` of what :func:`~tltl_runtime.stealth.env.make_env` makes, stepped by ``workers``.
 
     ``options`` and errors are those of :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``.  Raises
     ValueError for the render mode ``human`` of several environments, each of which would open a window.

@@ -26,7 +26,7 @@ class Rows:
     ``observation`` and ``action`` are the columns of those spaces, ``reward terminated truncated`` those of a step.
     ``episode`` counts the episodes since the last reset with a seed, from 1; ``step`` the steps of the episode, the
     one that is being taken included; ``total`` its rewards; ``busy`` says that the environment is at work now.
-    ``info`` are further columns, by name.
+    ``info`` are further columns, by name; ``table`` has all columns of all rows.
 
     Raises:
         ValueError: a space that has no fixed size.
@@ -69,6 +69,7 @@ class Rows:
 
     def _view(self) -> None:
         rows: NDArray[Any] = np.frombuffer(self._block, dtype=self._dtype)
+        self.table = rows
         self.observation = _columns(self.spaces["observation_space"], rows["observation"])
         self.action = _columns(self.spaces["action_space"], rows["action"])
         self.reward, self.terminated, self.truncated = rows["reward"], rows["terminated"], rows["truncated"]

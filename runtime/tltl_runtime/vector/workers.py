@@ -18,7 +18,7 @@ from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
 from tltlc.record import replace
 
-_TO_START_S: Final = 120.0
+TO_START_S: Final = 120.0
 """How long a worker may take to import what it needs and to make its environments, at the least."""
 _TO_END_S: Final = 5.0
 """How long a worker that is told to end, or was killed, may take."""
@@ -76,7 +76,7 @@ class Workers:
             for file in (ours.fileno(), process.sentinel):
                 self._selector.register(file, selectors.EVENT_READ, worker)
             self._asked[worker] = None
-        patience = max(self._timeout, _TO_START_S)
+        patience = max(self._timeout, TO_START_S)
         return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:

@@ -114,7 +114,7 @@ def test_attributes_are_read_and_set(carts: WorkerVectorEnv) -> None:
 
 
 def test_arguments_of_another_kind_are_refused() -> None:
-    with pytest.raises(TypeError, match="workers is a whole number, not '2'"):
+    with pytest.raises(TypeError, match="workers is a whole number or 'ray', not '2'"):
         WorkerVectorEnv(CART, "2")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="functions are needed that make environments"):
         WorkerVectorEnv([gymnasium.make("CartPole-v1")])  # type: ignore[list-item]

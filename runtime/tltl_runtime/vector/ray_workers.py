@@ -1,0 +1,140 @@
+"""Workers of a Ray cluster that step environments: what :class:`~tltl_runtime.vector.workers.Workers` is here."""
+
+from __future__ import annotations
+
+import multiprocessing
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from typing import Any
+
+from gymnasium.vector import AutoresetMode
+from numpy.typing import DTypeLike, NDArray
+
+from tltl_runtime.vector.cluster import cluster, free_cores
+from tltl_runtime.vector.errors import Loss
+from tltl_runtime.vector.memory import Rows
+from tltl_runtime.vector.worker import EnvFunction, Share
+from tltl_runtime.vector.workers import TO_START_S, shared_out
+from tltlc.record import replace
+
+
+class RayWorkers:
+    """Actors that step environments, one on each free core; actor w has those of the w-th slice of ``shares``.
+
+    They share no memory: actions go with what is asked, and the answer brings the rows back to ``rows``.  All else is
+    as with processes; ``info`` are the further columns of ``rows``.
+    """
+
+    def __init__(
+        self,
+        functions: Sequence[EnvFunction],
+        rows: Rows,
+        info: Mapping[str, DTypeLike],
+        autoreset: AutoresetMode,
+        timeout: float,
+    ) -> None:
+        self._stack = ExitStack()
+        self._ray = self._stack.enter_context(cluster())
+        self.shares = tuple(shared_out(len(functions), min(free_cores(self._ray), len(functions))))
+        self._functions, self._rows, self._info = functions, rows, info
+        self._autoreset, self._timeout = autoreset, timeout
+        self._actors: dict[int, Any] = {}
+        self._asked: dict[Any, int] = {}
+        """Workers by references to their answers."""
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether an answer was not waited for, as after a Ctrl-C."""
+        return bool(self._asked)
+
+    def pid(self, worker: int) -> int | None:
+        """None: the process of an actor may be that of another machine."""
+        return None
+
+    def start(self, workers: Sequence[int]) -> list[Loss]:
+        """Start these, wait until their environments are made, and tell which did not come so far."""
+        for worker in workers:
+            share = self.shares[worker]
+            # Ray would restart an actor and go on, silently, with environments at their beginning.
+            actor = self._ray.remote(num_cpus=1, max_restarts=0)(_Actor)
+            arguments = (len(self._functions), dict(self._rows.spaces), dict(self._info), self._autoreset)
+            self._actors[worker] = actor.remote(list(self._functions[share]), share, *arguments)
+            self._asked[self._actors[worker].is_made.remote()] = worker
+        patience = max(self._timeout, TO_START_S)
+        return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
+
+    def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
+        """Tell all workers to do something, each with its own arguments, and wait for the answers."""
+        for worker, given in enumerate(arguments):
+            self.tell(worker, command, given)
+        return self.answers()
+
+    def tell(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
+        """Tell one worker to do something; ``answers`` has its answer."""
+        actions = self._rows.table["action"][self.shares[worker]]
+        self._asked[self._actors[worker].do.remote(command, arguments, actions)] = worker
+
+    def answers(self, patience: float | None = None) -> list[Any]:
+        """Wait for what was asked, for ``timeout`` or ``patience`` seconds."""
+        patience = self._timeout if patience is None else patience
+        deadline = time.monotonic() + patience
+        found: dict[int, Any] = {}
+        while self._asked:
+            left = max(0.0, deadline - time.monotonic())
+            ready, late = self._ray.wait(list(self._asked), timeout=left)
+            for reference in ready:
+                worker = self._asked.pop(reference)
+                found[worker] = self._answer(worker, reference)
+            if not ready:
+                for reference in late:
+                    worker = self._asked.pop(reference)
+                    self._ray.kill(self._actors.pop(worker))
+                    found[worker] = Loss(worker, silent=patience)
+        return [found[worker] for worker in sorted(found)]
+
+    def close(self) -> None:
+        """End all."""
+        for actor in self._actors.values():
+            self._ray.kill(actor)
+        self._actors.clear()
+        self._asked.clear()
+        self._stack.close()
+
+    def _answer(self, worker: int, reference: Any) -> Any:
+        errors = self._ray.exceptions
+        try:
+            answer, table = self._ray.get(reference)
+        except (errors.RayTaskError, errors.RayActorError) as error:
+            self._ray.kill(self._actors.pop(worker))
+            return Loss(worker, traceback=str(error))
+        if table is not None:
+            self._rows.table[self.shares[worker]] = table
+        return answer
+
+
+class _Actor:
+    """A share of the environments, somewhere in the cluster."""
+
+    def __init__(
+        self,
+        functions: Sequence[EnvFunction],
+        share: slice,
+        count: int,
+        spaces: Mapping[str, Any],
+        info: Mapping[str, DTypeLike],
+        autoreset: AutoresetMode,
+    ) -> None:
+        context = multiprocessing.get_context("spawn")
+        rows = Rows(context, count, spaces["observation_space"], spaces["action_space"], info)
+        self._table = rows.table[share]
+        self._share = Share(functions, rows, share.start, autoreset)
+
+    def is_made(self) -> tuple[None, None]:
+        """Answer as soon as the environments are made."""
+        return None, None
+
+    def do(self, command: str, arguments: tuple[Any, ...], actions: NDArray[Any]) -> tuple[Any, NDArray[Any]]:
+        """What the share gives, and its rows after that."""
+        self._table["action"] = actions
+        return getattr(self._share, command)(*arguments), self._table

@@ -1,0 +1,63 @@
+"""Actors of a Ray cluster give what worker processes give, bit for bit, and are missed alike."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+from tests.runtime.vector.envs import EXIT, GO, HANG, RAISE, Fragile
+from tests.runtime.vector.test_vector import COUNT, SPEC, played, same
+from tltl_runtime.vector import WorkerError, WorkerVectorEnv, make_vec
+
+pytestmark = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install 'tltlc[ray]'")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def ray_here() -> Iterator[None]:
+    """A Ray instance of this machine, for all tests of this module."""
+    from tltl_runtime.vector.cluster import cluster
+
+    with cluster():
+        yield
+
+
+def test_the_same_as_local_workers() -> None:
+    found = played(make_vec("cover_and_hide", "v2", COUNT, "ray", spec=SPEC))
+    expected = played(make_vec("cover_and_hide", "v2", COUNT, 2, spec=SPEC))
+    for ours, theirs in zip(found, expected, strict=True):
+        assert all(map(same, ours, theirs))
+
+
+def test_one_that_raises() -> None:
+    env = WorkerVectorEnv([Fragile] * 2, "ray")
+    env.reset(seed=[4, 8])
+    env.step(np.array([GO, GO]))
+    with pytest.raises(WorkerError) as found:
+        env.step(np.array([GO, RAISE]))
+    assert "the bridge is out" in str(found.value)
+    assert "seed 8, episode 1, step 1" in str(found.value)
+
+
+def test_another_takes_the_place_of_one_that_ended() -> None:
+    env = WorkerVectorEnv([Fragile] * 2, "ray", on_death="replace", timeout=5.0)
+    env.reset(seed=[4, 8])
+    for action in (EXIT, HANG):
+        *_, truncated, infos = env.step(np.array([GO, action]))
+        assert truncated[1]
+        assert infos["lost"][1]
+        *_, truncated, infos = env.step(np.array([GO, GO]))
+        assert not truncated.any()
+    env.close()
+
+
+def test_an_environment_that_cannot_be_made() -> None:
+    with pytest.raises(WorkerError, match="no room"):
+        WorkerVectorEnv([Fragile, partial(missing, True)], "ray")
+
+
+def missing(_: bool) -> Fragile:
+    raise RuntimeError("no room for another")
