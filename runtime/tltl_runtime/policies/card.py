@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from tltl_runtime.policies.network import Network
 from tltl_runtime.stealth.level import Sensors
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
 from tltlc.record import record
+
+OBSERVATION: Final = 1
+"""The version of what the environments show an agent: another one wherever the same numbers mean something else."""
 
 
 @record
@@ -34,3 +37,4 @@ class Card:
     network: Network
     versions: Mapping[str, str]
     training: Mapping[str, Any]
+    observation: int = OBSERVATION

@@ -7,12 +7,17 @@ follow.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Final, Literal, get_args
 
 from tltlc.record import record
 
 Shapes = Mapping[str, tuple[int, ...]]
 """The shapes of observations by key, as of one environment: (n,), or (channels, height, width)."""
+
+Activation = Literal["elu", "selu", "relu", "lrelu", "tanh", "sigmoid", "softplus", "gelu", "swish", "mish"]
+
+_LAYERS: Final = 16
+_WIDTH: Final = 16_384
 
 
 @record
@@ -20,13 +25,27 @@ class Network:
     """``hidden`` widths of the connected layers, after a convolution of each map by ``channels`` in turn.
 
     ``activation`` is a name that rsl-rl knows; ``kernel`` and ``stride`` are in cells, the same for each convolution.
+
+    Raises:
+        ValueError: there is no such activation, or a number is out of range.
     """
 
     hidden: tuple[int, ...] = (512, 512)
-    activation: str = "elu"
+    activation: Activation = "elu"
     channels: tuple[int, ...] = (16, 32)
     kernel: int = 3
     stride: int = 2
+
+    def __post_init__(self) -> None:
+        for name in ("hidden", "channels"):
+            widths = getattr(self, name)
+            if not (1 <= len(widths) <= _LAYERS and all(1 <= width <= _WIDTH for width in widths)):
+                raise ValueError(f"{name} are 1 to {_LAYERS} layers, each 1 to {_WIDTH} wide, not {widths!r:.60}")
+        for name, most in (("kernel", 15), ("stride", 8)):
+            if not 1 <= getattr(self, name) <= most:
+                raise ValueError(f"{name} is from 1 to {most} cells, not {getattr(self, name)!r:.40}")
+        if self.activation not in get_args(Activation):
+            raise ValueError(f"activation is one of {', '.join(get_args(Activation))}, not {self.activation!r:.40}")
 
 
 def model_config(network: Network, shapes: Shapes, branches: Sequence[int] | None = None) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rsl_rl.models import MLPModel
 from rsl_rl.utils import resolve_class
 from tensordict import TensorDict
+from torch import Tensor
 
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import model_config
@@ -19,30 +20,46 @@ from tltl_runtime.policies.network import model_config
 class Policy:
     """An actor's weights with their card.
 
-    What it chooses depends on nothing but the observation, and on the generator where it samples: an observation is
-    taken alone, never in a batch, whose size would change the last bits of the logits.
+    The weights are those of ``actor`` now, rounded to half precision: what a file holds is what plays, bit for bit,
+    and a training that goes on changes nothing.  What a policy chooses depends on nothing but the observation, and on
+    the generator where it samples: an observation is taken alone, never in a batch, whose size would change the last
+    bits of the logits.
+
+    Raises:
+        ValueError: a weight is no finite number in half precision, or the actor is none that the card describes.
     """
 
     def __init__(self, card: Card, actor: MLPModel) -> None:
         self.card = card
-        self.actor = actor.eval()
+        weights = {name: each.detach().to("cpu", torch.float16) for name, each in actor.state_dict().items()}
+        if not all(bool(each.isfinite().all()) for each in weights.values()):
+            raise ValueError("a weight of the actor is no finite number in half precision: its training has diverged")
+        self.actor = actor_of(card, weights)
+
+    def weights(self) -> dict[str, Tensor]:
+        """The weights by name, in half precision, without loss."""
+        return {name: each.to(torch.float16) for name, each in self.actor.state_dict().items()}
 
     def logits(self, observation: Mapping[str, NDArray[Any]]) -> NDArray[np.float32]:
         """The logits [sum(branches)] of the observation of one environment."""
+        # A plain dict will do for the model: a TensorDict takes as long to make as the network to run.
+        batch = {key: torch.from_numpy(np.asarray(observation[key], np.float32)[None]) for key, _ in self.card.shapes}
         with torch.inference_mode():
-            tensors = {key: torch.from_numpy(np.asarray(observation[key], np.float32)) for key, _ in self.card.shapes}
-            batch = TensorDict({key: each.unsqueeze(0) for key, each in tensors.items()}, batch_size=[1])
             return self.actor.mlp(self.actor.get_latent(batch))[0].numpy()  # type: ignore[no-any-return]
 
     def choose(
         self, observation: Mapping[str, NDArray[Any]], generator: np.random.Generator | None = None
     ) -> NDArray[np.int64]:
-        """The action [branches]: sampled with ``generator``, without one the likeliest choice of each branch."""
+        """The action [branches]: sampled with ``generator``, without one the likeliest choice of each branch.
+
+        Of equally likely choices the first is taken.
+        """
         logits = self.logits(observation).astype(np.float64)
-        parts = np.split(logits, np.cumsum(self.card.branches)[:-1])
         if generator is not None:
-            parts = [part + generator.gumbel(size=len(part)) for part in parts]
-        return np.array([int(part.argmax()) for part in parts])
+            # Of logits with such noise the greatest is a sample of their softmax.
+            logits += generator.gumbel(size=len(logits))
+        ends = np.cumsum(self.card.branches)
+        return np.array([logits[end - size : end].argmax() for size, end in zip(self.card.branches, ends, strict=True)])
 
 
 def new_actor(card: Card) -> MLPModel:
@@ -52,3 +69,19 @@ def new_actor(card: Card) -> MLPModel:
     blank = TensorDict({key: torch.zeros(1, *shape) for key, shape in shapes.items()}, batch_size=[1])
     actor: MLPModel = model(blank, {"actor": list(shapes)}, "actor", len(card.branches), **arguments)
     return actor
+
+
+def blank_actor(card: Card) -> MLPModel:
+    """An actor as the card describes it that has no weights yet but their names and shapes; nothing is drawn."""
+    with torch.device("meta"):
+        return new_actor(card)
+
+
+def actor_of(card: Card, weights: Mapping[str, Tensor]) -> MLPModel:
+    """An actor with such weights, ready to play; raises ValueError where they are not those of the card's network."""
+    actor = blank_actor(card)
+    try:
+        actor.load_state_dict({name: each.float() for name, each in weights.items()}, assign=True)
+    except RuntimeError as error:
+        raise ValueError(f"the weights are of another network than the card describes: {error}") from None
+    return actor.requires_grad_(False).eval()

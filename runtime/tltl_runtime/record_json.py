@@ -1,7 +1,7 @@
 """Records as JSON and back: the annotations of a record's fields say what its JSON looks like.
 
 A record is an object with a key for each field, a mapping from texts an object, a tuple a list; what is a text, a
-number, a bool or None stays what it is.
+number, a bool or None stays what it is, and so does what is annotated as ``Any``, which is JSON data already.
 """
 
 from __future__ import annotations
@@ -28,20 +28,21 @@ def to_json(value: object) -> Any:
         return {name: to_json(getattr(value, name)) for name in names}
     if isinstance(value, Mapping):
         return {name: to_json(each) for name, each in value.items()}
-    return [to_json(each) for each in value] if isinstance(value, tuple) else value
+    return [to_json(each) for each in value] if isinstance(value, (tuple, list)) else value
 
 
-def from_json(kind: type[T], data: object, where: str) -> T:
+def from_json(kind: type[T], data: object, where: str, **known: object) -> T:
     """The value of type ``kind`` that parsed JSON stands for; ``where`` names it in messages.
 
-    ``kind`` is a record whose fields are records, tuples, mappings from texts, ``Literal`` texts, plain types or unions
-    of these with None.
-    A key may be missing where its field has a default; numbers are finite.
+    ``kind`` is a record whose fields are records, tuples, mappings from texts, ``Literal`` texts, plain types, ``Any``
+    or unions of these with None.
+    A key may be missing where its field has a default; numbers are finite.  ``known`` are fields of the record that
+    the JSON does not hold.
 
     Raises:
         RecordJsonError: anything else than that.
     """
-    return cast(T, _value(kind, data, where))
+    return cast(T, _record(kind, data, where, known) if known else _value(kind, data, where))
 
 
 def _value(kind: Any, data: object, where: str) -> object:
@@ -59,9 +60,11 @@ def _value(kind: Any, data: object, where: str) -> object:
     if origin is Mapping:
         inner = get_args(kind)[1]
         return {name: _value(inner, each, f"{where}.{name}") for name, each in _object(data, where).items()}
+    if kind is Any:
+        return _any(data, where)
     if kind in _PLAIN:
         return _plain(kind, data, where)
-    return _record(kind, data, where)
+    return _record(kind, data, where, {})
 
 
 def _plain(kind: type, data: object, where: str) -> object:
@@ -70,6 +73,15 @@ def _plain(kind: type, data: object, where: str) -> object:
     if type(data) is kind and (kind is not float or isfinite(cast(float, data))):
         return data
     raise _wrong(where, _PLAIN[kind], data)
+
+
+def _any(data: object, where: str) -> object:
+    """JSON data of any kind; what ``json.loads`` reads beyond JSON are numbers that are not finite."""
+    if isinstance(data, dict):
+        return {name: _any(each, f"{where}.{name}") for name, each in data.items()}
+    if isinstance(data, list):
+        return [_any(each, f"{where}[{index}]") for index, each in enumerate(data)]
+    return _plain(float, data, where) if isinstance(data, float) else data
 
 
 def _tuple(kinds: tuple[Any, ...], data: object, where: str) -> tuple[object, ...]:
@@ -83,14 +95,14 @@ def _tuple(kinds: tuple[Any, ...], data: object, where: str) -> tuple[object, ..
     return tuple(_value(kind, each, f"{where}[{index}]") for index, (kind, each) in pairs)
 
 
-def _record(kind: Any, data: object, where: str) -> object:
-    kinds = _fields(kind)
+def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) -> object:
+    kinds = {name: each for name, each in _fields(kind).items() if name not in known}
     unknown = _object(data, where).keys() - kinds.keys()
     if unknown:
         raise RecordJsonError(f"`{where}` has a key `{min(unknown)}`, which nothing is known of")
     values = {name: _value(kinds[name], each, f"{where}.{name}") for name, each in _object(data, where).items()}
     try:
-        made: object = kind(**values)
+        made: object = kind(**values, **known)
         return made
     except ValueError as error:
         raise RecordJsonError(f"`{where}`: {error}") from None

@@ -1,0 +1,183 @@
+"""The file of a policy: safetensors, ``docs/policy-file.md`` describes it; nothing in it is ever executed."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from math import prod
+from pathlib import Path
+from typing import Any, Final
+
+from safetensors import SafetensorError
+from safetensors.torch import load, save
+from torch import Tensor
+
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.policy import Policy, actor_of, blank_actor
+from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reading_error
+from tltlc.pipeline import read_artefact
+from tltlc.source import SourceFile
+from tltlc.writing import write_file
+
+SUFFIX: Final = ".safetensors"
+FORMAT: Final = "tltl-policy"
+VERSION: Final = 1
+MAX_BYTES: Final = 1 << 26
+"""Greatest size of a file, thirty million weights: 64 MiB."""
+
+_PREFIX: Final = "actor."
+_KEY: Final = "card"
+"""The one text beside the weights: with several, equal policies would give files that differ in their order."""
+
+_AGAIN: Final = "get a whole copy of the file, or train the policy again"
+_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
+
+
+def write_policy(path: str | os.PathLike[str], policy: Policy) -> None:
+    """Write a policy to a file, which is there as a whole or not at all; equal policies give equal bytes.
+
+    Raises:
+        TltlError: TLT0005 where the system refuses.
+        ValueError: the record of the training is not JSON data.
+    """
+    write_file(Path(path), to_bytes(policy))
+
+
+def read_policy(path: str | os.PathLike[str]) -> Policy:
+    """The policy in a file.
+
+    Raises:
+        TltlError: TLT0001 it cannot be read; TLT0840 it is no policy, or is damaged; TLT0841 of another version;
+            TLT0842 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0605.
+    """
+    name = os.fspath(path)
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        raise reading_error(name, error) from None
+    return from_bytes(data, name)
+
+
+def to_bytes(policy: Policy) -> bytes:
+    """What :func:`write_policy` writes."""
+    card = policy.card
+    (artefact,) = emit("json", card.fspa).values()
+    names: tuple[str, ...] = Card.__match_args__
+    document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
+    document |= {name: to_json(getattr(card, name)) for name in names if name != "fspa"}
+    document["artefact"] = json.loads(artefact)
+    text = json.dumps(document, ensure_ascii=False, allow_nan=False)
+    weights = {f"{_PREFIX}{name}": each.contiguous() for name, each in policy.weights().items()}
+    return save(weights, {_KEY: text})
+
+
+def from_bytes(data: bytes, name: str) -> Policy:
+    """The policy in the bytes of a file, which messages call ``name``; errors as of :func:`read_policy`."""
+    if len(data) > MAX_BYTES:
+        raise _unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
+    header = _header(data, name)
+    card = _card(header, name)
+    _check_tensors(header, card, name)
+    return Policy(card, actor_of(card, _weights(data, name)))
+
+
+# --- reading what nobody vouches for ----------------------------------------------------------------
+
+
+def _header(data: bytes, name: str) -> dict[str, Any]:
+    """What the file says of itself: a JSON object, of as many bytes as its first eight say."""
+    length = int.from_bytes(data[:8], "little")
+    try:
+        header = json.loads(data[8 : 8 + length]) if length <= len(data) - 8 else None
+    except (ValueError, RecursionError):
+        header = None
+    if not isinstance(header, dict):
+        raise _unreadable(name, "it is no whole safetensors file")
+    return header
+
+
+def _card(header: dict[str, Any], name: str) -> Card:
+    try:
+        document = json.loads(header["__metadata__"][_KEY])
+    except (KeyError, TypeError):
+        document = None
+    except (ValueError, RecursionError):
+        raise _broken(name, "its card is not JSON") from None
+    if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
+        raise _unreadable(name, "it holds the weights of something else")
+    version = document.pop("version", None)
+    if type(version) is not int or version != VERSION:
+        help_ = "use a newer tltlc" if type(version) is int and version > VERSION else "train the policy again"
+        title = f"`{name}` has version {version!r:.20}, and only version {VERSION} can be read"
+        raise TltlError([Diagnostic("TLT0841", title, help=help_)])
+    try:
+        fspa = _fspa(document.pop("artefact", None), name)
+        card = from_json(Card, document, "card", fspa=fspa)
+    except (RecordJsonError, RecursionError) as error:
+        raise _broken(name, str(error)) from None
+    if wrong := _fault(card):
+        raise _broken(name, wrong)
+    return card
+
+
+def _fspa(document: object, name: str) -> Fspa:
+    return read_artefact(SourceFile(f"{name}/artefact", json.dumps(document, ensure_ascii=False)))
+
+
+def _fault(card: Card) -> str | None:
+    """What is wrong with a card whose parts are of the right types."""
+    keys = [key for key, _ in card.shapes]
+    if not keys or len(set(keys)) < len(keys) or not all(map(_NAME.match, keys)):
+        return "`card.shapes` do not name each part of an observation once"
+    shapes = [shape for _, shape in card.shapes]
+    if not all(len(shape) in (1, 3) and min(shape) >= 1 and prod(shape) <= MAX_BYTES for shape in shapes):
+        return "`card.shapes` are none of vectors and maps"
+    if not card.branches or min(card.branches) < 1 or sum(card.branches) > 1 << 16:
+        return "`card.branches` are none of an action"
+    if dict(card.shapes).get("automaton") != (len(card.fspa.states),):
+        return "`card.shapes` are not those of its spec"
+    return None if _HASH.match(card.level_hash) else "`card.level_hash` is no hash"
+
+
+def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
+    """That there are the weights of the card's network, no more and no less, before memory is taken for them."""
+    try:
+        wanted = {f"{_PREFIX}{key}": list(each.shape) for key, each in blank_actor(card).state_dict().items()}
+    except (ValueError, RuntimeError, OverflowError) as error:
+        raise _broken(name, f"its card describes no network: {error!s:.80}") from None
+    there = {key: each for key, each in header.items() if key != "__metadata__"}
+    for key in sorted(wanted.keys() | there.keys()):
+        if key not in there:
+            raise _broken(name, f"the tensor `{key}` is missing")
+        if key not in wanted:
+            raise _broken(name, f"there is a tensor `{key:.60}`, which its network has no use for")
+        found = there[key] if isinstance(there[key], dict) else {}
+        if found.get("dtype") != "F16" or found.get("shape") != wanted[key]:
+            is_ = f"{found.get('dtype')!s:.20} of shape {found.get('shape')!s:.40}"
+            raise _broken(name, f"the tensor `{key}` is {is_}, not F16 of shape {wanted[key]}")
+
+
+def _weights(data: bytes, name: str) -> dict[str, Tensor]:
+    try:
+        found = load(data)
+    except (SafetensorError, ValueError):
+        raise _unreadable(name, "its weights are cut off or damaged") from None
+    for key, each in found.items():
+        if not bool(each.isfinite().all()):
+            raise _broken(name, f"the tensor `{key}` has values that are no finite numbers")
+    return {key.removeprefix(_PREFIX): each for key, each in found.items()}
+
+
+def _unreadable(name: str, why: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0840", f"`{name}` cannot be read as a policy: {why}", help=_AGAIN)])
+
+
+def _broken(name: str, why: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0842", f"`{name}` is a broken policy: {why}", help=_AGAIN)])

@@ -1,0 +1,39 @@
+"""What two specs or two levels have in common that are called the same: hashes of what counts."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+
+from tltl_runtime.record_json import to_json
+from tltl_runtime.stealth.level import Level
+from tltlc.automaton.fspa import Fspa
+from tltlc.expression_json import to_json as expression_json
+
+
+def spec_hash(fspa: Fspa) -> str:
+    """SHA-256, in hexadecimal, of all that judges an episode; names, labels and documentation of the spec do not."""
+    return _hash(
+        {
+            "semantics": fspa.semantics,
+            "judge": fspa.judge,
+            "limit_steps": fspa.limit_steps,
+            "clock_s": fspa.clock_s,
+            "params": {param.name: param.value for param in fspa.params},
+            "atoms": [expression_json(atom.expression) for atom in fspa.atoms],
+            "exclusive": fspa.exclusive,
+            "states": [(state.accepting, state.verdict, state.distance) for state in fspa.states],
+            "edges": [(edge.source, edge.target, edge.guard.primes) for edge in fspa.edges],
+        }
+    )
+
+
+def level_hash(level: Level) -> str:
+    """SHA-256, in hexadecimal, of what is in a level; what it is called, made for and read from does not count."""
+    aside = ("name", "variant", "doc", "spec", "files")
+    return _hash({name: value for name, value in to_json(level).items() if name not in aside})
+
+
+def _hash(document: object) -> str:
+    text = json.dumps(document, sort_keys=True, separators=(",", ":"), ensure_ascii=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,64 @@
+"""Policies that nobody trained: real cards of real levels, weights as they are drawn."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.network import Network
+from tltl_runtime.policies.policy import Policy, new_actor
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.senses.sensors import SensorChoice
+from tltlc.monitor import RewardOptions
+
+SMALL = Network(hidden=(32, 32), channels=(4, 4))
+
+
+def card_of(
+    level: str = "cover_and_hide", variant: str = "v0", sensors: SensorChoice | None = None, network: Network = SMALL
+) -> Card:
+    env = make_env(level, variant, sensors=sensors)
+    there = env.get_wrapper_attr("level")
+    card = Card(
+        level=there.name,
+        variant=there.variant,
+        level_hash=level_hash(there),
+        fspa=env.task.fspa,
+        params={},
+        reward=RewardOptions(),
+        sensors=env.unwrapped._senses.sensors,  # type: ignore[attr-defined]
+        shapes=tuple((key, space.shape) for key, space in env.observation_space.spaces.items()),  # type: ignore[attr-defined]
+        branches=(3, 3, 2, 2, 2),
+        network=network,
+        versions={"tltlc": "0"},
+        training={"seed": 3, "curve": [[1, 0.5], [2, None]], "done": True},
+    )
+    env.close()
+    return card
+
+
+def policy_of(card: Card, seed: int = 0, sharpness: float = 50.0) -> Policy:
+    """A policy whose choices are not all nearly alike, as those of a new actor are."""
+    torch.manual_seed(seed)
+    actor = new_actor(card)
+    with torch.no_grad():
+        actor.mlp[-1].weight.mul_(sharpness)
+        actor.mlp[-1].bias.uniform_(-1, 1)
+    return Policy(card, actor)
+
+
+def observation_of(card: Card, rng: np.random.Generator, batch: tuple[int, ...] = ()) -> dict[str, NDArray[Any]]:
+    """Numbers such as an observation has; truth in maps."""
+    return {
+        key: (
+            rng.integers(0, 2, (*batch, *shape), dtype=np.uint8)
+            if len(shape) == 3
+            else rng.uniform(-1, 1, (*batch, *shape)).astype(np.float32)
+        )
+        for key, shape in card.shapes
+    }
