@@ -35,7 +35,6 @@ _KEY: Final = "card"
 """The one text beside the weights: with several, equal policies would give files that differ in their order."""
 
 _AGAIN: Final = "get a whole copy of the file, or train the policy again"
-_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 
 
@@ -133,17 +132,25 @@ def _fspa(document: object, name: str) -> Fspa:
 
 def _fault(card: Card) -> str | None:
     """What is wrong with a card whose parts are of the right types."""
-    keys = [key for key, _ in card.shapes]
-    if not keys or len(set(keys)) < len(keys) or not all(map(_NAME.match, keys)):
-        return "`card.shapes` do not name each part of an observation once"
-    shapes = [shape for _, shape in card.shapes]
-    if not all(len(shape) in (1, 3) and min(shape) >= 1 and prod(shape) <= MAX_BYTES for shape in shapes):
-        return "`card.shapes` are none of vectors and maps"
+    shapes = dict(card.shapes)
+    if len(shapes) < len(card.shapes) or shapes != _observed(card) or max(map(prod, shapes.values())) > MAX_BYTES:
+        return "`card.shapes` are not those of its spec and its sensors"
     if not card.branches or min(card.branches) < 1 or sum(card.branches) > 1 << 16:
         return "`card.branches` are none of an action"
-    if dict(card.shapes).get("automaton") != (len(card.fspa.states),):
-        return "`card.shapes` are not those of its spec"
     return None if _HASH.match(card.level_hash) else "`card.level_hash` is no hash"
+
+
+def _observed(card: Card) -> dict[str, tuple[int, ...]]:
+    """The shapes of what an agent with such a card sees."""
+    sensors = card.sensors
+    shapes: dict[str, tuple[int, ...]] = {"automaton": (len(card.fspa.states),), "progress": (1,)}
+    if sensors.entities:
+        shapes["entities"] = (3 * len(sensors.entities),)
+    if sensors.variables:
+        shapes["variables"] = (len(sensors.variables),)
+    if sensors.map is not None:
+        shapes["map"] = (len(sensors.map.types), sensors.map.extent, sensors.map.extent)
+    return shapes
 
 
 def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:

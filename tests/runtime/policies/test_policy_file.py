@@ -155,6 +155,14 @@ def network(**fields: Any) -> Change:
     return lambda _, card: card["network"].update(fields)
 
 
+def widen(card: dict[str, Any], extent: int) -> None:
+    """A map of another extent, everywhere alike."""
+    card["sensors"]["map"]["extent"] = extent
+    shapes = dict(card["shapes"])
+    shapes["map"][1:] = [extent, extent]
+    card["shapes"] = list(shapes.items())
+
+
 def tensor(name: str, change: Callable[[torch.Tensor], torch.Tensor]) -> Change:
     return lambda tensors, _: tensors.update({name: change(tensors[name])})
 
@@ -195,11 +203,11 @@ BIAS = "actor.mlp.0.bias"
         (set_card(branches=[10**9]), "TLT0842.*`card.branches`"),
         (set_card(branches=[3, 3, 2, 2, 3]), r"TLT0842.*`actor.mlp.4.bias` is F16 of shape \[12\], not .*\[13\]"),
         (set_card(shapes=[]), "TLT0842.*`card.shapes`"),
-        (set_card(shapes=[["automaton", [6]], ["automaton", [6]]]), "TLT0842.*`card.shapes`"),
-        (set_card(shapes=[["automaton", [6]], ["a.b", [6]]]), "TLT0842.*`card.shapes`"),
-        (set_card(shapes=[["automaton", [6]], ["map", [4, 15]]]), "TLT0842.*`card.shapes`"),
-        (set_card(shapes=[["automaton", [6]], ["map", [10**4, 10**4, 10**4]]]), "TLT0842.*`card.shapes`"),
-        (set_card(shapes=[["automaton", [5]]]), "TLT0842.*not those of its spec"),
+        (set_card(shapes=[["automaton", [6]], ["progress", [1]]]), "TLT0842.*not those of its spec and its sensors"),
+        (lambda _, card: card["shapes"].append(["progress", [1]]), "TLT0842.*`card.shapes`"),
+        (lambda _, card: card["sensors"]["map"].update(extent=10**9), "TLT0842.*`card.shapes`"),
+        (lambda _, card: widen(card, 10**9), "TLT0842.*`card.shapes`"),
+        (lambda _, card: widen(card, -1), "TLT0842"),
         (network(hidden=[]), "TLT0842.*`card.network`: hidden are 1 to 16 layers"),
         (network(hidden=[10**9]), "TLT0842.*`card.network`: hidden"),
         (network(hidden=[1] * 10**5), "TLT0842.*`card.network`: hidden"),

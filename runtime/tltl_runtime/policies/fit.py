@@ -1,0 +1,111 @@
+"""Whether a policy can play somewhere: the spec that it was trained for, and the senses that it was trained with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Final, TypeVar
+
+from tltl_runtime.policies.card import OBSERVATION, Card
+from tltl_runtime.policies.identity import spec_hash
+from tltl_runtime.stealth.level import Level, entity_names
+from tltl_runtime.stealth.signals import readers
+from tltl_runtime.stealth.snapshot import BRANCHES
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+T = TypeVar("T")
+
+_MOST: Final = 3
+"""Differences that a message names."""
+
+
+def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
+    """Refuse a policy that cannot play ``level``, or not by the spec ``fspa`` (by default its own).
+
+    Another variant will do, and so will another level that has what the policy senses; so will a spec that is called
+    otherwise and judges alike.
+
+    Raises:
+        TltlError: TLT0843, the policy does not fit; the message says what differs.
+    """
+    if card.observation != OBSERVATION:
+        made = "a newer" if card.observation > OBSERVATION else "an older"
+        way_out = "use that one, or train a policy with this one"
+        raise _unfit(f"the policy was trained with {made} tltlc, which shows agents other things", way_out)
+    if card.branches != BRANCHES:
+        raise _unfit(f"the policy chooses among {_sizes(card.branches)} actions, and the game has {_sizes(BRANCHES)}")
+    missing = [*_missing(card, level)]
+    if missing:
+        title = f"the policy senses {_listed(missing)}, which the level `{level.name}` does not have"
+        raise _unfit(title, f"let it play `{card.level}`, where it was trained, or train one for `{level.name}`")
+    if fspa is not None and spec_hash(fspa) != spec_hash(card.fspa):
+        title = f"the policy was trained for another spec than `{fspa.name}`: {_listed([*_differences(card, fspa)])}"
+        raise _unfit(title, "let it play its own spec, or train one for this spec")
+
+
+def _missing(card: Card, level: Level) -> Iterator[str]:
+    entities, signals = entity_names(level), readers(level)
+    yield from (f"the entity `{name}`" for name in card.sensors.entities if name not in entities)
+    yield from (f"the signal `{name}`" for name in card.sensors.variables if name not in signals)
+
+
+def _differences(card: Card, fspa: Fspa) -> Iterator[str]:
+    """In what two specs differ that do not judge alike, what the designer wrote first."""
+    own = card.fspa
+    if own.judge != fspa.judge:
+        yield f"it is judged at the {fspa.judge}, and was at the {own.judge}"
+    if own.limit_steps != fspa.limit_steps:
+        yield f"its limit is {_limit(fspa)}, and was {_limit(own)}"
+    if own.clock_s != fspa.clock_s:
+        yield "its clock is another one"
+    yield from _compared(
+        "signal", {each.name: each.name for each in own.signals}, {each.name: each.name for each in fspa.signals}
+    )
+    yield from _compared(
+        "param", {each.name: each.value for each in own.params}, {each.name: each.value for each in fspa.params}
+    )
+    before = {each.name: each.expression for each in own.atoms}
+    after = {each.name: each.expression for each in fspa.atoms}
+    yield from _compared("atom", before, after)
+    if len(own.states) != len(fspa.states):
+        yield f"its automaton has {len(fspa.states)} states, and had {len(own.states)}"
+    elif list(before) != list(after):
+        yield "its atoms stand in another order"
+    elif before == after:
+        yield from _states(own, fspa)
+
+
+def _compared(kind: str, before: Mapping[str, T], after: Mapping[str, T]) -> Iterator[str]:
+    yield from (f"the {kind} `{name}` is new" for name in after if name not in before)
+    yield from (f"the {kind} `{name}` is gone" for name in before if name not in after)
+    yield from (
+        f"the {kind} `{name}` means something else" for name in after if name in before and before[name] != after[name]
+    )
+
+
+def _states(before: Fspa, after: Fspa) -> Iterator[str]:
+    """The states that something else is made of."""
+    for old, new in zip(before.states, after.states, strict=True):
+        judged = (old.accepting, old.verdict, old.distance) == (new.accepting, new.verdict, new.distance)
+        primes = [[(edge.target, edge.guard.primes) for edge in fspa.edges_from(new.id)] for fspa in (before, after)]
+        if not judged or primes[0] != primes[1]:
+            yield f"the state {new.id} (`{new.label.english}`) is another one"
+    if before.exclusive != after.exclusive:
+        yield "other atoms are exclusive"
+
+
+def _limit(fspa: Fspa) -> str:
+    return "none" if fspa.limit_steps is None else f"{fspa.limit_steps} steps"
+
+
+def _sizes(branches: tuple[int, ...]) -> str:
+    return " x ".join(map(str, branches))
+
+
+def _listed(reasons: list[str]) -> str:
+    more = f" and {len(reasons) - _MOST} more" if len(reasons) > _MOST else ""
+    return ", ".join(reasons[:_MOST]) + more
+
+
+def _unfit(title: str, help_: str = "train a policy with this tltlc") -> TltlError:
+    return TltlError([Diagnostic("TLT0843", title, help=help_)])
