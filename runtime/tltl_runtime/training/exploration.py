@@ -30,9 +30,12 @@ class Visits:
         """By ``cell * states + state``; cells that nobody saw yet may be missing at the end."""
 
     def bonus(self, cells: NDArray[np.int64], states: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Count a visit of each environment, in order, and return its bonus [num_envs]."""
-        places = cells * self._states + states
+        """Count a visit of each environment and return its bonus [num_envs]: none where the cell is -1."""
+        bonus = np.zeros(len(cells))
+        there = cells >= 0
+        places = cells[there] * self._states + states[there]
         if places.max(initial=-1) >= len(self.counts):
             self.counts = np.pad(self.counts, (0, int(places.max()) + 1 - len(self.counts)))
         np.add.at(self.counts, places, 1)
-        return self._weight / np.sqrt(self.counts[places])
+        bonus[there] = self._weight / np.sqrt(self.counts[places])
+        return bonus
