@@ -1,0 +1,38 @@
+"""The policies that come with the package play the levels that they are named for, with the specs these are made for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tltl_runtime.policies.file import read_policy, to_bytes
+from tltl_runtime.policies.fit import check_policy
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
+from tltl_runtime.stealth.env import spec_of
+from tltl_runtime.stealth.levels.file import level_names, load_level, variants
+from tltl_runtime.task import load_task
+
+
+def test_they_are_found_by_the_names_of_levels() -> None:
+    assert set(shipped_policies()) <= set(level_names())
+    assert all(shipped_policy(name) == path for name, path in shipped_policies().items())
+    assert shipped_policy("../shipped/navigation") is None
+    assert shipped_policy("my_level.toml") is None
+
+
+@pytest.mark.parametrize("name", sorted(shipped_policies()))
+def test_a_shipped_policy_fits_its_level_as_it_is_now(name: str) -> None:
+    path = shipped_policies()[name]
+    policy = read_policy(path)
+    level = load_level(name)
+    assert policy.card.level == name
+    assert policy.card.variant == "v0"
+    assert policy.card.level_hash == level_hash(level)
+    fspa = load_task(spec_of(level)).fspa
+    for variant in variants(name):
+        check_policy(policy.card, load_level(name, variant), fspa)
+    assert to_bytes(policy) == Path(path).read_bytes()
+    assert path.stat().st_size < 2_000_000
+    assert policy.card.training and policy.card.versions
