@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import gymnasium
@@ -40,8 +40,10 @@ PLACES: Final = {**TLTL_INFO, "cell": np.int64}
 class TrainingEnv(VecEnv):
     """A vector environment of :class:`~tltl_runtime.wrapper.TltlEnv` with ``SAME_STEP`` autoreset, for rsl-rl.
 
-    Observation groups are the keys of the observation, float32 tensors [num_envs, ...].  Episodes that end go to
-    :meth:`finished`.  ``seed`` is that of the first environment's first episode, see the vector environment's reset.
+    Observation groups are the keys of the observation, float32 tensors [num_envs, ...] on ``device``; ``shapes`` are
+    those of one environment.  Episodes that end go to :meth:`finished`.  ``seed`` is for the vector environment's
+    reset: a number, or one for each environment.
+
     With ``visits`` the agent is rewarded, beside what the environment gives, for places that are new, which the
     environment tells in the columns :data:`PLACES` of its ``infos``.
 
@@ -52,23 +54,26 @@ class TrainingEnv(VecEnv):
     def __init__(
         self,
         env: gymnasium.vector.VectorEnv[Any, Any, Any],
-        seed: int,
+        seed: int | Sequence[int],
         device: str = "cpu",
         visits: Visits | None = None,
     ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
             raise TypeError(f"actions of several branches are needed, a MultiDiscrete, not {env.single_action_space}")
+        if not isinstance(env.single_observation_space, spaces.Dict):
+            raise TypeError(f"an observation of several parts is needed, a Dict, not {env.single_observation_space}")
         self.env = env
         self.num_envs = env.num_envs
         self.branches = tuple(int(each) for each in env.single_action_space.nvec)
         self.num_actions = len(self.branches)
+        self.shapes = {key: tuple(each.shape or ()) for key, each in env.single_observation_space.items()}
         self.device = device
         self.visits = visits
         self.cfg: dict[str, Any] = {}
         # Nothing is cut by rsl-rl: the spec's limit ends an episode.
         self.max_episode_length = 2**31
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
-        observation, _ = env.reset(seed=seed)
+        observation, _ = env.reset(seed=seed)  # type: ignore[arg-type]
         self._observation = self._tensors(observation)
         self._finished: list[Finished] = []
 

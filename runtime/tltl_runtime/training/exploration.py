@@ -17,7 +17,7 @@ from tltlc.record import record
 class Exploration:
     """``weight`` of the bonus, in units of reward, for the first visit of a place; 0 is none."""
 
-    weight: float = 0.05
+    weight: float
 
 
 class Visits:

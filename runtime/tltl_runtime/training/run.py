@@ -2,30 +2,43 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
+from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.level import Sensors
+from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.training.settings import Settings
 from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.pipeline import read_artefact
 from tltlc.record import record
+from tltlc.source import SourceFile
+from tltlc.writing import write_files
 
 RUN: Final = "run.json"
 CHECKPOINT: Final = "checkpoint.pt"
 POLICY: Final = "policy.safetensors"
 
+_FORMAT: Final = "tltl-run"
+_VERSION: Final = 1
+
 
 @record
 class Run:
-    """What is trained, and where it is kept.
+    """What is trained, and the folder that keeps it.
 
-    ``spec`` is the name by which ``fspa`` was asked for, for messages; ``params`` are values of its params in SI units,
-    before those that the level offers.  ``level`` is what :func:`~tltl_runtime.stealth.levels.file.load_level` takes.
+    ``params`` are values of the params of ``fspa`` in SI units; ``level`` is what
+    :func:`~tltl_runtime.stealth.levels.file.load_level` takes.
     """
 
     folder: Path
-    spec: str
     fspa: Fspa
     params: Mapping[str, float]
     level: str
@@ -33,3 +46,75 @@ class Run:
     sensors: Sensors
     settings: Settings
     seed: int
+
+
+_PLAIN: Final[Mapping[str, Any]] = {
+    "params": Mapping[str, float],
+    "level": str,
+    "variant": str,
+    "sensors": Sensors,
+    "settings": Settings,
+    "seed": int,
+}
+"""The fields that stand in the file as they are, and their types."""
+
+
+def write_run(run: Run) -> None:
+    """Write ``run.json`` into the folder, which is made where it is missing; raises TltlError, TLT0005."""
+    (artefact,) = emit("json", run.fspa).values()
+    # Whoever resumes it may stand in another folder.
+    level = str(level_path(run.level).absolute()) if run.level.endswith(".toml") else run.level
+    document = {
+        "format": _FORMAT,
+        "version": _VERSION,
+        **{name: to_json(getattr(run, name)) for name in _PLAIN},
+        "level": level,
+        "artefact": json.loads(artefact),
+    }
+    write_files(run.folder, {RUN: json.dumps(document, indent=1, ensure_ascii=False) + "\n"}, "name another --out")
+
+
+def read_run(folder: Path) -> Run:
+    """The training in a folder; raises TltlError: TLT0001 where there is none, TLT0863 where its file is no such."""
+    source = read_source(folder / RUN, max_bytes=MAX_ARTEFACT_BYTES)
+    try:
+        document = json.loads(source.text)
+    except (ValueError, RecursionError):
+        raise _unfit(source, "it is no JSON") from None
+    if not isinstance(document, dict) or document.get("format") != _FORMAT:
+        raise _unfit(source, "it describes no training")
+    if document.get("version") != _VERSION:
+        raise _unfit(source, f"it has version {document.get('version')!r:.20}, and only {_VERSION} can be read")
+    try:
+        values = {name: from_json(kind, document[name], name) for name, kind in _PLAIN.items()}
+        artefact = json.dumps(document["artefact"])
+    except KeyError as error:
+        raise _unfit(source, f"it lacks {error}") from None
+    except (RecordJsonError, RecursionError) as error:
+        raise _unfit(source, str(error)) from None
+    return Run(folder=folder, fspa=read_artefact(SourceFile(f"{source.name}/artefact", artefact)), **values)
+
+
+def identity(run: Run) -> str:
+    """SHA-256, in hexadecimal, of what a checkpoint depends on: all but limits, devices and processes."""
+    settings = run.settings
+    counts = {
+        "spec": spec_hash(run.fspa),
+        "level": level_hash(load_level(run.level, run.variant)),
+        "seed": run.seed,
+        "params": dict(run.params),
+        "sensors": to_json(run.sensors),
+        "ppo": to_json(settings.ppo),
+        "network": to_json(settings.network),
+        "exploration": to_json(settings.exploration),
+        "reward": to_json(settings.reward),
+        "classes": to_json(settings.classes),
+        "rollout": [settings.rollout.envs, settings.rollout.steps],
+        "windows": [settings.stop.windows, settings.stop.episodes],
+    }
+    return hashlib.sha256(json.dumps(counts, sort_keys=True).encode()).hexdigest()
+
+
+def _unfit(source: SourceFile, why: str) -> TltlError:
+    help_ = "name the folder of a training, as `tltlc train --out` did"
+    return TltlError([Diagnostic("TLT0863", f"`{source.name}` cannot be resumed from: {why}", help=help_)])

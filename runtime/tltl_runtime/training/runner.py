@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import time
 from collections.abc import Iterator
+from contextlib import redirect_stdout
+from itertools import islice
 from typing import Any
 
 import torch
 from rsl_rl.runners import OnPolicyRunner
 from rsl_rl.utils import check_nan
 
+from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.environment import Finished, TrainingEnv
 from tltlc.record import record
 
@@ -30,17 +34,24 @@ class Iteration:
 
 
 class Runner(OnPolicyRunner):
-    """rsl-rl's runner whose loop yields after each iteration, so that who drives it sees, keeps and stops."""
+    """rsl-rl's runner whose loop yields after each iteration, so that who drives it sees, keeps and stops.
+
+    It prints nothing.  With several processes, :func:`~tltl_runtime.training.distributed.joined` is around it.
+    """
 
     env: TrainingEnv
 
-    def iterations(self, most: int) -> Iterator[Iteration]:
-        """Run up to ``most`` iterations, each as soon as it is asked for."""
+    def __init__(self, env: TrainingEnv, train_cfg: dict[str, Any], device: str = "cpu") -> None:
+        with redirect_stdout(io.StringIO()):
+            super().__init__(env, train_cfg, None, device)
+
+    def iterations(self) -> Iterator[Iteration]:
+        """Run an iteration each time that one is asked for, without end."""
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
         observation = self.env.get_observations().to(self.device)
-        for _ in range(most):
+        while True:
             began = time.perf_counter()
             with torch.inference_mode():
                 for _ in range(self.cfg["num_steps_per_env"]):
@@ -62,8 +73,16 @@ class Runner(OnPolicyRunner):
         """Run all of the iterations, as rsl-rl's own does; raises ValueError for ``init_at_random_ep_len``."""
         if init_at_random_ep_len:
             raise ValueError("an episode's length is its automaton's business: it begins at its beginning")
-        for _ in self.iterations(num_learning_iterations):
+        for _ in islice(self.iterations(), num_learning_iterations):
             pass
+
+    def _configure_multi_gpu(self) -> None:
+        """What rsl-rl's own does, but for any device, and for a group of processes that is there already."""
+        own = peers()
+        self.gpu_world_size, self.gpu_global_rank, self.gpu_local_rank = own.count, own.rank, own.local_rank
+        self.is_distributed = own.count > 1
+        names = {"global_rank": own.rank, "local_rank": own.local_rank, "world_size": own.count}
+        self.cfg["multi_gpu"] = names if self.is_distributed else None
 
     def _step(self, observation: Any) -> Any:
         actions = self.alg.act(observation)

@@ -1,37 +1,46 @@
-"""How a training is run: the paper's settings unless a file says otherwise."""
+"""How a training is run: the settings of ``settings.toml`` beside this module, unless a file says otherwise."""
 
 from __future__ import annotations
 
-from tltl_runtime.policies.network import Network
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from tltl_runtime.policies.network import Network, Shapes, model_config
 from tltl_runtime.training.exploration import Exploration
+from tltl_runtime.training.settings_file import read_values
+from tltlc.files import read_source
 from tltlc.monitor import RewardOptions
 from tltlc.record import record
+
+DEFAULTS: Final = Path(__file__).with_name("settings.toml")
 
 
 @record
 class Ppo:
-    """rsl-rl's PPO; learning rate, entropy, clip, lambda and gamma are the paper's (section VI)."""
+    """rsl-rl's PPO; learning rate, entropy, clip, lambda and gamma are by default the paper's (section VI)."""
 
-    learning_rate: float = 3e-4
-    entropy: float = 0.01
-    clip: float = 0.2
-    lam: float = 0.95
-    gamma: float = 0.99
-    epochs: int = 3
-    minibatches: int = 4
-    value_loss: float = 1.0
-    max_gradient: float = 1.0
+    learning_rate: float
+    entropy: float
+    clip: float
+    lam: float
+    gamma: float
+    epochs: int
+    minibatches: int
+    value_loss: float
+    max_gradient: float
 
 
 @record
 class Rollout:
     """``envs`` environments take ``steps`` decisions between updates, stepped by ``workers`` processes (0: as many as
-    there are cores).
+    there are cores), of this machine or of a Ray cluster.
     """
 
-    envs: int = 32
-    steps: int = 128
-    workers: int = 0
+    envs: int
+    steps: int
+    workers: int
+    pool: Literal["processes", "ray"]
 
 
 @record
@@ -40,22 +49,93 @@ class Stop:
     ``steps`` decisions of all environments, or after ``minutes`` of training (0: no such limit).
     """
 
-    windows: int = 2
-    episodes: int = 50
-    steps: int = 4_000_000
-    minutes: float = 0.0
+    windows: int
+    episodes: int
+    steps: int
+    minutes: float
+
+
+@record
+class Classes:
+    """Names of classes, as :func:`rsl_rl.utils.resolve_callable` takes them."""
+
+    runner: str
+    algorithm: str
 
 
 @record
 class Settings:
-    """All settings of a training but for its seed; ``checkpoint_s`` are seconds between checkpoints at the most."""
+    """All settings of a training but for its seed.
 
-    ppo: Ppo = Ppo()
-    rollout: Rollout = Rollout()
-    network: Network = Network()
-    exploration: Exploration = Exploration()
-    reward: RewardOptions = RewardOptions(terminal_penalty="discounted", gamma=0.99)
-    stop: Stop = Stop()
-    checkpoint_s: float = 60.0
-    threads: int = 1
-    device: str = "cpu"
+    ``checkpoint_s`` are seconds between checkpoints at the most, ``threads`` those of torch, and ``device`` is where
+    the network is.
+    """
+
+    ppo: Ppo
+    rollout: Rollout
+    network: Network
+    exploration: Exploration
+    reward: RewardOptions
+    stop: Stop
+    classes: Classes
+    checkpoint_s: float
+    threads: int
+    device: str
+
+
+def read_settings(path: Path | None = None) -> Settings:
+    """The defaults, with what a TOML file says in place of them.
+
+    Raises:
+        TltlError: the file cannot be read (TLT0001 to TLT0004), is not TOML (TLT0860), has a key that there is not
+            (TLT0861) or a value that cannot be (TLT0862).
+    """
+    values = read_values(read_source(DEFAULTS))
+    if path is not None:
+        given = read_values(read_source(path))
+        values = {name: {**known, **given.get(name, {})} for name, known in values.items()}
+    ppo = Ppo(**values["ppo"])
+    return Settings(
+        ppo=ppo,
+        rollout=Rollout(**values["rollout"]),
+        network=Network(**values["network"]),
+        exploration=Exploration(**values["exploration"]),
+        reward=RewardOptions(**values["reward"], gamma=ppo.gamma),
+        stop=Stop(**values["stop"]),
+        classes=Classes(**values["classes"]),
+        **values[""],
+    )
+
+
+def default_text() -> str:
+    """The TOML text of the defaults, with comments: a file to begin one's own with."""
+    return DEFAULTS.read_text(encoding="utf-8")
+
+
+def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:
+    """The configuration of rsl-rl's runner for observations of these shapes and actions of these branches."""
+    ppo = settings.ppo
+    groups = list(shapes)
+    return {
+        "num_steps_per_env": settings.rollout.steps,
+        "save_interval": 0,
+        "obs_groups": {"actor": groups, "critic": groups},
+        "actor": model_config(settings.network, shapes, branches),
+        "critic": model_config(settings.network, shapes),
+        "algorithm": {
+            "class_name": settings.classes.algorithm,
+            "num_learning_epochs": ppo.epochs,
+            "num_mini_batches": ppo.minibatches,
+            "clip_param": ppo.clip,
+            "gamma": ppo.gamma,
+            "lam": ppo.lam,
+            "value_loss_coef": ppo.value_loss,
+            "entropy_coef": ppo.entropy,
+            "learning_rate": ppo.learning_rate,
+            "max_grad_norm": ppo.max_gradient,
+            # The paper's learning rate stays as it is: `adaptive` would choose another.
+            "schedule": "fixed",
+            "desired_kl": None,
+            "rnd_cfg": None,
+        },
+    }

@@ -2,21 +2,318 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, closing, contextmanager
+from math import isfinite
+from typing import Any
 
-from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run
+import numpy as np
+import torch
+from rsl_rl.algorithms import PPO
+from rsl_rl.utils import resolve_callable
+from torch import Tensor
 
-__all__ = ["CHECKPOINT", "POLICY", "RUN", "Run", "train"]
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.policy import Policy, actor_of
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, read_checkpoint, write_checkpoint
+from tltl_runtime.training.distributed import Peers, joined
+from tltl_runtime.training.environment import PLACES, TrainingEnv
+from tltl_runtime.training.exploration import Visits
+from tltl_runtime.training.folder import held
+from tltl_runtime.training.metrics import Metrics
+from tltl_runtime.training.report import Report, StopReason
+from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, read_run, write_run
+from tltl_runtime.training.runner import Iteration, Runner
+from tltl_runtime.training.settings import rsl_config
+from tltl_runtime.training.versions import versions
+from tltl_runtime.training.windows import Windows
+from tltl_runtime.vector import make_vec
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.record import replace
+
+__all__ = ["CHECKPOINT", "POLICY", "RUN", "Run", "read_run", "train"]
+
+_OF_TORCH, _OF_ENVIRONMENTS = 0, 1
+"""The streams of random numbers of a process."""
 
 
 def train(run: Run, *, resume: bool = False) -> Iterator[Report]:
     """Train in ``run.folder``, with a report after each iteration; the last one says why it ends.
 
     The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the measurements of
-    :class:`~tltl_runtime.training.metrics.Metrics`, all written here and before the report that tells of them.
-    Closing the iterator, Ctrl-C and any other error leave a checkpoint of the last iteration that was reported.
-    With ``resume``, the training goes on from there.
+    :class:`~tltl_runtime.training.metrics.Metrics`, each before the report that tells of it.  Whatever ends it, Ctrl-C
+    and closing the iterator too, leaves a checkpoint of the last whole iteration; a process that is killed loses what
+    came after the last one.  With ``resume`` the training goes on from there; one that is over gives its last report.
+
+    Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun each process trains with
+    environments of its own, and all give the same reports; the first alone writes.
+
+    Raises:
+        TltlError: TLT0005, a file cannot be written; TLT0862, there is no such device or class; TLT0864, the
+            checkpoint cannot be resumed from; TLT0865, another process trains in the folder; TLT0866, a loss is no
+            number any more; TLT0867, the folder holds a training and ``resume`` is false.
+        WorkerError: a process that plays was lost.
     """
-    raise NotImplementedError
-    yield
+    with ExitStack() as stack:
+        own, device = stack.enter_context(joined(_device(run.settings.device)))
+        begun = None
+        if own.rank == 0:
+            stack.enter_context(held(run.folder))
+            begun = _begun(run, resume)
+        begun = own.broadcast(begun)
+        stack.enter_context(_threads(run.settings.threads))
+        env = stack.enter_context(closing(_environment(run, own, device, begun.iteration if begun else 0)))
+        yield from _Training(run, own, _runner(run, own, env, device), begun).reports()
+
+
+class _Training:
+    """A training of this process as one of ``own``; ``state`` is that after the last whole iteration."""
+
+    def __init__(self, run: Run, own: Peers, runner: Runner, begun: Checkpoint | None) -> None:
+        self._run, self._own, self._runner = run, own, runner
+        self._stop = run.settings.stop
+        self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
+        if begun is not None:
+            runner.alg.load(begun.algorithm, None, strict=True)
+            runner.current_learning_iteration = begun.iteration
+            self._windows.load(begun.window)
+            if own.rank < len(begun.processes):
+                _set_own(begun.processes[own.rank], runner)
+        self._state = begun or Checkpoint(
+            run=identity(run),
+            iteration=0,
+            losses={},
+            steps=0,
+            seconds=0.0,
+            algorithm=copied(runner.alg.save()),
+            processes=(),
+            window=(),
+            best=None,
+        )
+        self._seconds_before, self._began = self._state.seconds, time.perf_counter()
+        self._saved, self._saved_at, self._saved_best = self._state, self._began, self._state.best
+
+    def reports(self) -> Iterator[Report]:
+        """Train to the end."""
+        if self._state.iteration and (reason := self._reason()):
+            iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
+            yield self._report(iteration, reason, checkpointed=False)
+            return
+        metrics = None
+        try:
+            if self._own.rank == 0:
+                metrics = Metrics(
+                    self._run.folder, self._run.fspa, after=self._state.iteration, steps=self._state.steps
+                )
+            for iteration in self._runner.iterations():
+                yield (report := self._after(iteration, metrics))
+                if report.stop:
+                    return
+        finally:
+            self._save()
+            if metrics:
+                metrics.close()
+
+    def _after(self, iteration: Iteration, metrics: Metrics | None) -> Report:
+        """Take up what an iteration gave, and write what is due."""
+        _check_losses(iteration)
+        seconds = self._seconds_before + time.perf_counter() - self._began
+        # What all decide upon must be the same for all: the first process has the clock.
+        told = self._own.gather((iteration.finished, seconds, _own(self._runner)))
+        finished = tuple(each for one, _, _ in told for each in one)
+        iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
+        self._windows.add(finished)
+        after = replace(
+            self._state,
+            iteration=iteration.number,
+            losses=iteration.losses,
+            steps=self._state.steps + iteration.steps,
+            seconds=told[0][1],
+            processes=tuple(each for _, _, each in told),
+            algorithm=copied(self._runner.alg.save()),
+            window=tuple(self._windows.state()),
+            best=self._best(),
+        )
+        before, self._state = self._state, after
+        reason = self._reason()
+        due = bool(reason) or time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
+        report = self._report(iteration, reason, checkpointed=due)
+        if metrics:
+            try:
+                metrics.add(report)
+            except BaseException:
+                # An iteration counts once it is measured: of one that is not, no checkpoint may tell.
+                self._state = before
+                raise
+        if due:
+            self._save()
+        return report
+
+    def _best(self) -> Best | None:
+        """The best policy so far: that which played the last window, where none before it did better."""
+        best, score = self._state.best, self._windows.score
+        if score is None or (best is not None and score < best.score and not self._windows.met):
+            return best
+        # The rollout was played with the weights from before the update that followed it.
+        return Best(score, self._state.algorithm["actor_state_dict"])
+
+    def _reason(self) -> StopReason | None:
+        """Why the training is over, if it is."""
+        if self._windows.met:
+            return "met"
+        if self._state.steps >= self._stop.steps:
+            return "steps"
+        return "minutes" if 0 < self._stop.minutes * 60 <= self._state.seconds else None
+
+    def _report(self, iteration: Iteration, reason: StopReason | None, *, checkpointed: bool) -> Report:
+        best = self._state.best
+        return Report(
+            iteration=iteration,
+            steps=self._state.steps,
+            seconds=self._state.seconds,
+            window=self._windows.window,
+            best_pass_rate=best.score[0] if best else None,
+            stop=reason,
+            checkpointed=checkpointed,
+        )
+
+    def _save(self) -> None:
+        """Write policy and checkpoint, where there is anything new."""
+        state = self._state
+        if self._own.rank != 0 or state is self._saved:
+            return
+        # Whatever comes of it, it is not tried again at once.
+        self._saved, self._saved_at = state, time.perf_counter()
+        if state.best is not self._saved_best or self._reason():
+            weights = state.best.actor if state.best else state.algorithm["actor_state_dict"]
+            write_policy(self._run.folder / POLICY, _policy(self._run, self._runner.env, weights))
+            self._saved_best = state.best
+        write_checkpoint(self._run.folder / CHECKPOINT, state)
+
+
+def _begun(run: Run, resume: bool) -> Checkpoint | None:
+    """The checkpoint to go on from; a new training is written down."""
+    if resume:
+        return read_checkpoint(run.folder / CHECKPOINT, identity(run))
+    if (run.folder / RUN).exists():
+        title, help_ = f"`{run.folder}` holds a training already", "resume it, or train in another folder"
+        raise TltlError([Diagnostic("TLT0867", title, help=help_)])
+    write_run(run)
+    return None
+
+
+def _environment(run: Run, own: Peers, device: str, iteration: int) -> TrainingEnv:
+    """The environments of this process, at the beginning of episodes that no process played before."""
+    settings, rollout = run.settings, run.settings.rollout
+    workers = rollout.workers or max(1, (os.cpu_count() or 1) // own.local_count)
+    env = make_vec(
+        run.level,
+        run.variant,
+        rollout.envs,
+        "ray" if rollout.pool == "ray" else workers,
+        spec=run.fspa,
+        sensors=run.sensors,
+        reward=settings.reward,
+        params=run.params,
+        info=PLACES,
+    )
+    seeds = _stream(run, own, _OF_ENVIRONMENTS, iteration).generate_state(env.num_envs) >> 1
+    weight = settings.exploration.weight
+    visits = Visits(weight, len(run.fspa.states)) if weight else None
+    return TrainingEnv(env, [int(each) for each in seeds], device, visits)
+
+
+def _runner(run: Run, own: Peers, env: TrainingEnv, device: str) -> Runner:
+    classes = run.settings.classes
+    runner = _class("runner", classes.runner, Runner)
+    _class("algorithm", classes.algorithm, PPO)
+    torch.manual_seed(int(_stream(run, own, _OF_TORCH, 0).generate_state(1)[0]))
+    made: Runner = runner(env, rsl_config(run.settings, env.shapes, env.branches), device)
+    return made
+
+
+def _class(setting: str, name: str, base: type) -> Any:
+    """The class of a name, a subclass of ``base``; TLT0862 where it is none."""
+    try:
+        found = resolve_callable(name)
+        why = "" if isinstance(found, type) and issubclass(found, base) else f"it is no subclass of {base.__name__}"
+    except (ImportError, AttributeError, ValueError) as error:
+        why = str(error)
+    if why:
+        title = f"wrong class for `classes.{setting}`, `{name}`: {why}"
+        help_ = f'expected "package.module:Class", a subclass of {base.__module__}:{base.__qualname__}'
+        raise TltlError([Diagnostic("TLT0862", title, help=help_)])
+    return found
+
+
+def _policy(run: Run, env: TrainingEnv, weights: Mapping[str, Tensor]) -> Policy:
+    level = load_level(run.level, run.variant)
+    card = Card(
+        level=level.name,
+        variant=level.variant,
+        level_hash=level_hash(level),
+        fspa=run.fspa,
+        params=run.params,
+        reward=run.settings.reward,
+        sensors=run.sensors,
+        shapes=tuple(env.shapes.items()),
+        branches=env.branches,
+        network=run.settings.network,
+        versions=versions(),
+        training={},
+    )
+    return Policy(card, actor_of(card, {name: each.cpu() for name, each in weights.items()}))
+
+
+def _stream(run: Run, own: Peers, purpose: int, iteration: int) -> np.random.SeedSequence:
+    return np.random.SeedSequence(run.seed, spawn_key=(own.rank, purpose, iteration))
+
+
+def _own(runner: Runner) -> dict[str, Tensor]:
+    """What this process has for itself: see :class:`Checkpoint`."""
+    own = {"cpu": torch.get_rng_state()}
+    if runner.device.startswith("cuda"):
+        own["cuda"] = torch.cuda.get_rng_state(runner.device)
+    if runner.env.visits is not None:
+        own["visits"] = torch.from_numpy(runner.env.visits.counts.copy())
+    return own
+
+
+def _set_own(own: Mapping[str, Tensor], runner: Runner) -> None:
+    torch.set_rng_state(own["cpu"])
+    if runner.device.startswith("cuda") and "cuda" in own:
+        torch.cuda.set_rng_state(own["cuda"], runner.device)
+    if runner.env.visits is not None:
+        runner.env.visits.counts = own["visits"].numpy()
+
+
+def _check_losses(iteration: Iteration) -> None:
+    wrong = [name for name, loss in iteration.losses.items() if not isfinite(loss)]
+    if wrong:
+        title = f"the training has diverged: in iteration {iteration.number} the loss `{wrong[0]}` is no number"
+        help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
+        raise TltlError([Diagnostic("TLT0866", title, help=help_)])
+
+
+def _device(device: str) -> str:
+    """The device; TLT0862 where torch has none of that name."""
+    count = torch.cuda.device_count() if torch.cuda.is_available() else 0
+    if device.startswith("cuda") and int(device.partition(":")[2] or 0) >= count:
+        title = f"there is no device `{device}`: torch finds {count} GPUs"
+        raise TltlError([Diagnostic("TLT0862", title, help='train on the "cpu"')])
+    return device
+
+
+@contextmanager
+def _threads(count: int) -> Iterator[None]:
+    before = torch.get_num_threads()
+    torch.set_num_threads(count)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)

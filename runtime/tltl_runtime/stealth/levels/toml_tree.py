@@ -32,12 +32,12 @@ Tree = dict[str, Entry]
 """A table: what its keys stand for."""
 
 
-def read_tree(source: SourceFile) -> Tree:
-    """The tables of a TOML text; raises TltlError (TLT0801) where it is none.
+def read_tree(source: SourceFile, code: str = "TLT0801", help_: str = _HELP) -> Tree:
+    """The tables of a TOML text; raises TltlError with ``code`` and ``help_`` where it is none.
 
     What stands in an inline table has the place of the key before it.
     """
-    data = parse(source, "TLT0801", _HELP)
+    data = parse(source, code, help_)
     return _tree(data, (), _places(source.text), Label(source, Span(0, 0)))
 
 

@@ -1,0 +1,143 @@
+"""Checkpoints: all that a training needs to go on, in a file that is there as a whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from collections.abc import Mapping
+from contextlib import suppress
+from io import BytesIO
+from pathlib import Path
+from typing import Any, Final
+
+import torch
+from torch import Tensor
+
+from tltl_runtime.training.windows import Score
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reading_error, reason
+from tltlc.record import record
+
+FORMAT: Final = "tltl-checkpoint"
+VERSION: Final = 1
+
+
+@record
+class Best:
+    """The policy that is kept: its score, and the actor's weights by name."""
+
+    score: Score
+    actor: Mapping[str, Tensor]
+
+
+@record
+class Checkpoint:
+    """A training after iteration number ``iteration``: ``steps`` and ``seconds`` are those of all iterations.
+
+    ``run`` is :func:`~tltl_runtime.training.run.identity` of what is trained.  ``algorithm`` is what rsl-rl's
+    algorithm saves; ``processes`` holds what each process has for itself: the states of torch's generators of random
+    numbers by device, and its ``visits``; ``window`` is the state of :class:`~tltl_runtime.training.windows.Windows`.
+    """
+
+    run: str
+    iteration: int
+    losses: Mapping[str, float]
+    steps: int
+    seconds: float
+    algorithm: Mapping[str, Any]
+    processes: tuple[Mapping[str, Tensor], ...]
+    window: tuple[tuple[Any, ...], ...]
+    best: Best | None
+
+
+_FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
+
+
+def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+    """Write a checkpoint; a failure, of the power too, leaves the older one.  Raises TltlError, TLT0005."""
+    content: dict[str, Any] = {name: getattr(checkpoint, name) for name in _FIELDS}
+    if best := checkpoint.best:
+        content["best"] = {"score": best.score, "actor": best.actor}
+    data = BytesIO()
+    torch.save({"format": FORMAT, "version": VERSION, **content}, data)
+    temporary = path.with_name(f".{path.name}-{os.getpid()}.tmp")
+    try:
+        with temporary.open("wb") as file:
+            file.write(data.getbuffer())
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+        _sync_folder(path.parent)
+    except OSError as error:
+        help_ = "make room there, and go on with --resume"
+        title = f"cannot write `{path}`: {reason(error)}"
+        raise TltlError([Diagnostic("TLT0005", title, help=help_)]) from None
+    finally:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def read_checkpoint(path: Path, run: str) -> Checkpoint | None:
+    """The checkpoint in a file, None where there is no such file; nothing in it is executed.
+
+    Raises:
+        TltlError: TLT0001 it cannot be read; TLT0864 it is none, is damaged, is of another version, or of another
+            training than ``run``.
+    """
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise reading_error(str(path), error) from None
+    content = _content(data, path)
+    if content.get("version") != VERSION:
+        raise _refused(path, f"it has version {content.get('version')!r:.20}, and only version {VERSION} can be read")
+    if content.get("run") != run:
+        raise _refused(path, "it is of another training: another spec, level, seed, network, or other settings")
+    try:
+        fields = {name: content[name] for name in _FIELDS}
+        return Checkpoint(**{**fields, "best": fields["best"] and Best(**fields["best"])})
+    except (KeyError, TypeError) as error:
+        raise _refused(path, f"it lacks a part: {error}") from None
+
+
+def copied(value: Any) -> Any:
+    """The same numbers in memory of their own, so that what goes on learning changes them no more."""
+    if isinstance(value, Tensor):
+        return value.detach().clone()
+    if isinstance(value, Mapping):
+        return {name: copied(each) for name, each in value.items()}
+    return [copied(each) for each in value] if isinstance(value, list) else value
+
+
+def _content(data: bytes, path: Path) -> Mapping[str, Any]:
+    """What torch wrote, its sums checked: torch itself would take changed bytes for numbers."""
+    try:
+        with zipfile.ZipFile(BytesIO(data)) as archive:
+            broken = archive.testzip()
+        content = None if broken else torch.load(BytesIO(data), map_location="cpu", weights_only=True)
+    except Exception as error:
+        # torch tells what it finds in strange files by exceptions of many classes.
+        raise _refused(path, f"it is damaged, or no checkpoint ({type(error).__name__})") from None
+    if broken:
+        raise _refused(path, "it is damaged")
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise _refused(path, "it is no checkpoint of a training")
+    return content
+
+
+def _refused(path: Path, why: str) -> TltlError:
+    help_ = "put back a copy of it, or move it away: the training then begins anew"
+    return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {why}", help=help_)])
+
+
+def _sync_folder(folder: Path) -> None:
+    """Have the system write down that a file was renamed, where it knows how to."""
+    if os.name == "nt":
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,70 @@
+"""The last episodes of a training: whether they meet the spec, and how well the policy is that played them."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from tltl_runtime.training.environment import Finished
+from tltl_runtime.training.report import Window
+
+Score = tuple[float, float, float]
+"""How good a policy is, the greater the better: pass rate, mean progress, mean reward."""
+
+
+class Windows:
+    """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's, None where it has none."""
+
+    def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:
+        self._episodes = episodes
+        self._limit_steps = limit_steps
+        self._last: deque[Finished] = deque(maxlen=windows * episodes)
+
+    def add(self, finished: Iterable[Finished]) -> None:
+        """Take episodes in the order of their ends."""
+        self._last.extend(finished)
+
+    @property
+    def met(self) -> bool:
+        """Whether the spec was met throughout all of the windows."""
+        return len(self._last) == self._last.maxlen and all(each.success for each in self._last)
+
+    @property
+    def window(self) -> Window:
+        """All of the last episodes together."""
+        return self._window(tuple(self._last))
+
+    @property
+    def score(self) -> Score | None:
+        """That of the last window; None before there was a whole one."""
+        if len(self._last) < self._episodes:
+            return None
+        window = self._window(tuple(self._last)[-self._episodes :])
+        return window.pass_rate, window.progress, window.reward
+
+    def state(self) -> list[tuple[Any, ...]]:
+        """The episodes as plain values, for :meth:`load`."""
+        return [(each.success, each.progress, each.reward, each.steps, each.state) for each in self._last]
+
+    def load(self, state: Iterable[Sequence[Any]]) -> None:
+        """Take up what :meth:`state` gave."""
+        self._last.extend(Finished(*each) for each in state)
+
+    def _window(self, episodes: tuple[Finished, ...]) -> Window:
+        count = len(episodes)
+        ends = Counter(each.state for each in episodes)
+        return Window(
+            count=count,
+            successes=sum(each.success for each in episodes),
+            progress=sum(each.progress for each in episodes) / max(count, 1),
+            reward=sum(self._reward(each) for each in episodes) / max(count, 1),
+            steps=sum(each.steps for each in episodes) / max(count, 1),
+            states={state: ended / count for state, ended in sorted(ends.items())},
+        )
+
+    def _reward(self, episode: Finished) -> float:
+        """The sum of rewards of mode ``progress`` with the undiscounted terminal penalty (semantics, section 4)."""
+        if self._limit_steps is None:
+            return episode.progress
+        return episode.progress - (episode.steps / self._limit_steps if episode.success else 1.0)
