@@ -25,7 +25,7 @@ LEVELS = sorted(path for path in (Path(__file__).parent / "level").iterdir() if 
 EPISODES = sorted((Path(__file__).parent / "episode").iterdir())
 """Messages on recordings, which `tests/runtime/stealth/episodes/test_file.py` compares."""
 CODE = re.compile(r"TLT[0-9]{4}")
-NEEDS_ANOTHER_INSTALLATION = {"TLT0712", "TLT0730", "TLT0830", "TLT0850", "TLT0851", "TLT0852"}
+NEEDS_ANOTHER_INSTALLATION = {"TLT0712", "TLT0730", "TLT0830", "TLT0850", "TLT0851", "TLT0852", "TLT0870", "TLT0871"}
 """Codes that no file causes; tests/backends, tests/cli and tests/runtime show their messages."""
 
 

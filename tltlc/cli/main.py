@@ -31,6 +31,9 @@ OF_THE_RUNTIME: Final = {
     "demonstrate": "Have the scripted expert play a level, and record it.",
     "play": "Play a level with the keyboard, and record it.",
     "replay": "Show recorded episodes: how they went, plans, films, signals.",
+    "train": "Train an agent until it meets a spec.",
+    "evaluate": "Have a trained policy play, and report how often it meets the spec.",
+    "inspect": "Show what a policy was trained for, or export it as ONNX.",
 }
 """Commands that come with tltlc and need an extra; they are entry points like those of others."""
 

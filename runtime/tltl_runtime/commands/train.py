@@ -1,0 +1,169 @@
+"""``tltlc train``: an agent learns to meet a spec in a level."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
+from pathlib import Path
+from shlex import quote
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tltl_runtime.commands.ending import requests_heard
+from tltl_runtime.commands.learning import learning_for
+from tltl_runtime.commands.senses import senses_options
+from tltl_runtime.commands.workers import Workers
+from tltlc.cli import exits
+from tltlc.cli.report import Report
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+if TYPE_CHECKING:
+    from tltl_runtime.training.report import Report as Trained
+    from tltl_runtime.training.run import Run
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc train cover_and_hide.tltl
+  tltlc train plans.tltl:careful --level my_level.toml:v1 --seed 3 --out runs/careful
+  tltlc train --resume runs/careful --steps 8000000
+  tltlc train --print-config > settings.toml
+  tltlc train plans.tltl --config settings.toml
+
+\b
+Watching, from another terminal:
+  tensorboard --logdir training
+"""
+)
+@click.argument("spec", metavar="[SPEC[:NAME]]", required=False)
+@click.option(
+    "--level", metavar="LEVEL[:VARIANT]", help="Where; by default the level that the spec names.  VARIANT: v0."
+)
+@click.option(
+    "--output",
+    "--out",
+    "-o",
+    "folder",
+    metavar="DIR",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED).",
+)
+@click.option("--seed", metavar="N", type=click.IntRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
+@click.option(
+    "--resume",
+    metavar="DIR",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Go on with the training in this folder, from its last checkpoint.",
+)
+@click.option(
+    "--config",
+    metavar="FILE.toml",
+    type=click.Path(path_type=Path),
+    help="Settings in place of the defaults, which --print-config shows.",
+)
+@click.option("--steps", metavar="N", type=click.IntRange(min=1), help="End after so many steps of all environments.")
+@click.option(
+    "--minutes", metavar="M", type=click.FloatRange(min=0), help="End after so many minutes of training (0: no limit)."
+)
+@click.option(
+    "--workers",
+    metavar="N|ray",
+    type=Workers(),
+    help="Processes that play (0: one a core), or those of a Ray cluster.",
+)
+@click.option("--device", type=click.Choice(["cpu", "cuda"]), help="Where the network learns.")
+@senses_options
+@click.option("--print-config", is_flag=True, help="Print the default settings, as a file for --config, and exit.")
+def command(
+    spec: str | None,
+    folder: Path | None,
+    resume: Path | None,
+    sensors: Mapping[str, Any],
+    print_config: bool,
+    **options: Any,
+) -> int:
+    """Train an agent until it meets a spec.
+
+    SPEC is the spec by which it is judged and rewarded; where it is left out, that for which --level is made.
+    The training ends when the spec was met in 100 episodes in a row, or at a limit.  The folder then holds the policy
+    of the agent (policy.safetensors), the record of the training (record.json, curve.png) and what was measured
+    (metrics.jsonl, and event files for TensorBoard).  Ctrl-C keeps what was learned, for --resume.
+
+    The exit status is 0 where the spec was met, and 1 where a limit ended the training before.
+    """
+    if resume is not None and folder is not None:
+        raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())
+    with Report() as report, learning_for("`tltlc train`"), requests_heard():
+        from tltl_runtime.commands.training_run import Asked, new_run, resumed_run
+        from tltl_runtime.stealth.levels.file import load_level
+        from tltl_runtime.stealth.supply.feasible import reach_warnings
+        from tltl_runtime.training.distributed import peers
+        from tltl_runtime.training.record import write_record
+        from tltl_runtime.training.settings import default_text
+
+        if print_config:
+            click.echo(default_text(), nl=False)
+            return exits.CLEAN
+        asked = Asked(spec=spec, sensors=sensors, **options)
+        run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
+        report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
+        last = _train(run, resume=resume is not None)
+        if peers().rank == 0:
+            write_record(run, last)
+            for line in _ended(run, last):
+                click.echo(line)
+        return exits.CLEAN if last.stop == "met" else exits.FINDINGS
+    return report.status
+
+
+def _train(run: Run, *, resume: bool) -> Trained:
+    """Train to the end, showing how it goes; the last report."""
+    from tltl_runtime.commands.training_display import display
+    from tltl_runtime.training.run import RUN
+    from tltl_runtime.training.train import train
+
+    try:
+        with _broken_off(run.folder), display(run) as show, closing(train(run, resume=resume)) as reports:  # type: ignore[type-var]
+            for last in reports:
+                show(last)
+            return last
+    except KeyboardInterrupt:
+        if (run.folder / RUN).exists():
+            click.echo(f"stopped; to go on: {_resume(run.folder)}", err=True)
+        raise
+
+
+@contextmanager
+def _broken_off(folder: Path) -> Iterator[None]:
+    """TLT0871 where a worker is lost."""
+    from tltl_runtime.vector.errors import WorkerError
+
+    try:
+        yield
+    except WorkerError as error:
+        why = [str(error.loss), *error.loss.traceback.splitlines()[-1:]]
+        played = [f"it played {each}" for each in error.playing if each.busy]
+        title = f"the training broke off: {': '.join(why)}"
+        help_ = "; ".join([*played, f"to go on from the last checkpoint: {_resume(folder)}"])
+        raise TltlError([Diagnostic("TLT0871", title, help=help_)]) from error
+
+
+def _ended(run: Run, last: Trained) -> Iterator[str]:
+    """How a training ended, what there is now, and what comes next."""
+    from tltl_runtime.commands.training_display import duration
+
+    window, folder = last.window, quote(str(run.folder))
+    ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
+    met = f"met in {window.successes} of the last {window.count} episodes, progress {window.progress:.2f}"
+    took = f"after {last.steps:,} steps, {duration(last.seconds)}"
+    yield f"{ended} {took}: {met if window.count else 'no episode has ended'}"
+    yield f"{folder}: policy.safetensors, record.json, curve.png"
+    yield f"to evaluate it: tltlc evaluate {folder}"
+    if last.stop != "met":
+        yield f"to go on, with a higher limit: {_resume(run.folder)} --{last.stop} N"
+
+
+def _resume(folder: Path) -> str:
+    return f"tltlc train --resume {quote(str(folder))}"

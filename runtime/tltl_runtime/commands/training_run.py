@@ -1,0 +1,152 @@
+"""What ``tltlc train`` is to train: a new training by its options, or one that is resumed and agrees with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final, Literal, TypeVar
+
+import click
+
+from tltl_runtime.policies.identity import spec_hash
+from tltl_runtime.record_json import to_json
+from tltl_runtime.stealth.env import check_fit, spec_of
+from tltl_runtime.stealth.levels.file import level_path, load_level
+from tltl_runtime.stealth.senses.sensors import chosen
+from tltl_runtime.stealth.supply.offer import params
+from tltl_runtime.task import load_task, read_spec
+from tltl_runtime.training.run import Run, read_run
+from tltl_runtime.training.settings import Settings, read_settings
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.record import record, replace
+from tltlc.spec_file import split
+
+T = TypeVar("T")
+
+_MAY_CHANGE: Final = {
+    "device",
+    "threads",
+    "checkpoint_s",
+    "rollout.workers",
+    "rollout.pool",
+    "stop.steps",
+    "stop.minutes",
+}
+"""Settings that a training may be resumed with other values of."""
+
+
+@record
+class Asked:
+    """What the options of ``tltlc train`` say; None, or nothing sensed, where one says nothing."""
+
+    spec: str | None
+    level: str | None
+    seed: int | None
+    config: Path | None
+    steps: int | None
+    minutes: float | None
+    workers: int | Literal["ray"] | None
+    device: str | None
+    sensors: Mapping[str, Any]
+
+
+def new_run(asked: Asked, folder: Path | None) -> Run:
+    """A new training, by default in a folder that is called like it; raises TltlError for all that is wrong with its
+    spec, level, senses and settings.
+    """
+    if asked.spec is None and asked.level is None:
+        message = "say what to train for: a spec, a level, or both"
+        raise click.UsageError(message, click.get_current_context())
+    settings = _with_limits(read_settings(asked.config), asked)
+    if asked.level is not None:
+        path, variant = split(asked.level)
+    else:
+        path, variant = _own_level(str(asked.spec)), None
+    level = load_level(path, variant or "v0")
+    spec = asked.spec if asked.spec is not None else spec_of(level)
+    task = load_task(spec, offered=params(level))
+    check_fit(level, task.fspa, spec)
+    seed = asked.seed or 0
+    folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}"
+    return Run(
+        folder=folder,
+        fspa=task.fspa,
+        params=task.params,
+        level=path,
+        variant=level.variant,
+        sensors=chosen(level, asked.sensors or None),
+        settings=settings,
+        seed=seed,
+    )
+
+
+def resumed_run(asked: Asked, folder: Path) -> Run:
+    """The training in ``folder``, with those settings that are asked for and may change.
+
+    Raises TltlError for a folder that cannot be read, TLT0870 where anything else is asked for than it was begun with.
+    """
+    run = read_run(folder)
+    settings = run.settings if asked.config is None else read_settings(asked.config)
+    different = list(_differences(run, asked, settings))
+    if different:
+        help_ = f"leave it out to go on with `{folder}`, or begin another training with --out"
+        raise TltlError([Diagnostic("TLT0870", title, help=help_) for title in different])
+    return replace(run, settings=_with_limits(settings, asked))
+
+
+def _own_level(spec: str) -> str:
+    """The level that a spec is about by its own word: a file beside it, or one that comes with the package."""
+    fspa = load_task(spec).fspa
+    if fspa.level is None:
+        message = f"`{fspa.name}` does not say which level it is about: name one with --level"
+        raise click.UsageError(message, click.get_current_context())
+    beside = Path(split(spec)[0]).parent / f"{fspa.level}.toml"
+    return str(beside) if beside.is_file() else fspa.level
+
+
+def _with_limits(settings: Settings, asked: Asked) -> Settings:
+    """The settings with what the options say of when to stop and of the machine."""
+    stop, rollout = settings.stop, settings.rollout
+    if asked.workers == "ray":
+        rollout = replace(rollout, pool="ray")
+    elif asked.workers is not None:
+        rollout = replace(rollout, pool="processes", workers=asked.workers)
+    return replace(
+        settings,
+        stop=replace(stop, steps=_or(asked.steps, stop.steps), minutes=_or(asked.minutes, stop.minutes)),
+        rollout=rollout,
+        device=_or(asked.device, settings.device),
+    )
+
+
+def _or(asked: T | None, known: T) -> T:
+    return known if asked is None else asked
+
+
+def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
+    """In what a training differs from what is asked for, a sentence each."""
+    where = f"the training in `{run.folder}`"
+    if asked.level is not None:
+        path, variant = split(asked.level)
+        if (level_path(path).resolve(), variant or "v0") != (level_path(run.level).resolve(), run.variant):
+            yield f"{where} is on the level `{run.level}:{run.variant}`, not on `{path}:{variant or 'v0'}`"
+    if asked.spec is not None:
+        fspa, _ = read_spec(asked.spec)
+        if spec_hash(fspa) != spec_hash(run.fspa):
+            yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{asked.spec}`"
+    if asked.seed is not None and asked.seed != run.seed:
+        yield f"{where} has the seed {run.seed}, not {asked.seed}"
+    if asked.sensors and chosen(load_level(run.level, run.variant), asked.sensors) != run.sensors:
+        yield f"{where} senses something else than these options say"
+    for path in _changed(to_json(run.settings), to_json(settings)):
+        if path not in _MAY_CHANGE:
+            yield f"{where} has another `{path}` than `{asked.config}`"
+
+
+def _changed(one: Any, other: Any, path: str = "") -> Iterator[str]:
+    """The keys, with dots between them, under which two JSON values of one shape differ."""
+    if isinstance(one, dict):
+        for key in one:
+            yield from _changed(one[key], other[key], f"{path}.{key}".lstrip("."))
+    elif one != other:
+        yield path

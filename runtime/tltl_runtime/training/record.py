@@ -1,0 +1,86 @@
+"""The record of a training that ended: what it depended on and how it went, beside the policy and inside of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from tltl_runtime.policies.file import read_policy, write_policy
+from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.record_json import to_json
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.training.curve import draw_curve
+from tltl_runtime.training.metrics import METRICS, read_metrics
+from tltl_runtime.training.report import Report
+from tltl_runtime.training.run import POLICY, Run
+from tltl_runtime.training.versions import versions
+from tltlc.record import replace
+from tltlc.writing import write_files
+
+RECORD: Final = "record.json"
+CURVE: Final = "curve.png"
+
+_VERSION: Final = 1
+_MOST_POINTS: Final = 200
+_POINT: Final = ("iteration", "steps", "seconds", "pass_rate", "progress", "reward")
+
+
+def write_record(run: Run, last: Report) -> dict[str, Any]:
+    """Write ``record.json`` and ``curve.png`` for a training whose ``last`` report this is, and the record into its
+    policy; the record.
+
+    Raises:
+        TltlError: TLT0005, a file cannot be written; and what is wrong with the policy's.
+    """
+    made = training_record(run, last, read_metrics(run.folder / METRICS))
+    policy = read_policy(run.folder / POLICY)
+    write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.actor))
+    text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
+    title = f"{run.fspa.name} on {run.level} {run.variant}, seed {run.seed}"
+    write_files(run.folder, {CURVE: draw_curve(title, made["curve"]), RECORD: text}, "make room there")
+    return made
+
+
+def training_record(run: Run, last: Report, measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The record, JSON data as ``docs/training.md`` describes it; ``measured`` are the lines of ``metrics.jsonl``."""
+    window = last.window
+    return {
+        "format": "tltl-training",
+        "version": _VERSION,
+        "spec": run.fspa.name,
+        "spec_hash": spec_hash(run.fspa),
+        "level": run.level,
+        "variant": run.variant,
+        "level_hash": level_hash(load_level(run.level, run.variant)),
+        "seed": run.seed,
+        "end": last.stop,
+        "iterations": last.iteration.number,
+        "steps": last.steps,
+        "seconds": round(last.seconds, 3),
+        "window": {
+            "episodes": window.count,
+            "pass_rate": window.pass_rate,
+            "progress": window.progress,
+            "reward": window.reward,
+            "episode_steps": window.steps,
+        },
+        "versions": versions(),
+        "machine": {
+            "system": platform.platform(),
+            "processor": platform.machine(),
+            "cores": os.cpu_count(),
+            "device": run.settings.device,
+        },
+        "settings": to_json(run.settings),
+        "curve": [{name: line[name] for name in _POINT} for line in _thinned(measured)],
+    }
+
+
+def _thinned(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """At most ``_MOST_POINTS`` of the lines at equal distances, the last among them."""
+    stride = -(-len(lines) // _MOST_POINTS) or 1
+    return list(lines[::-1][::stride])[::-1]

@@ -1,0 +1,241 @@
+"""``tltlc train``: trainings that are much too short, from their beginning to their end."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
+from tests.docs.blocks import DOCS
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.training.metrics import METRICS, read_metrics
+from tltl_runtime.training.settings import default_text
+
+TltlcFunction = Callable[..., Outcome]
+
+SMALL = """
+[rollout]
+envs = 4
+steps = 16
+workers = 1
+
+[ppo]
+epochs = 1
+minibatches = 1
+
+[network]
+hidden = [8]
+
+[stop]
+windows = 1
+episodes = 2
+steps = 128
+"""
+
+SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+"""A spec that who does anything at all meets, after eight steps."""
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder but for small settings, made the current one."""
+    (tmp_path / "small.toml").write_text(SMALL)
+    (tmp_path / "soon.tltl").write_text(SOON)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_to_its_limit_and_on(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    found = tltlc("train", EXAMPLE, "--config", "small.toml", "--seed", "3")
+    folder = Path("training/cover_and_hide-v0-cover_and_hide-3")
+    assert found.status == 1, found.err
+    first, files, evaluate, on = found.out.splitlines()
+    assert re.fullmatch(r"ended by the limit of steps after 128 steps, \d+ s: no episode has ended", first)
+    assert files == f"{folder}: policy.safetensors, record.json, curve.png"
+    assert evaluate == f"to evaluate it: tltlc evaluate {folder}"
+    assert on == f"to go on, with a higher limit: tltlc train --resume {folder} --steps N"
+    assert found.err.splitlines()[-1].startswith("iteration 2: 128 steps in ")
+
+    assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128]
+    assert (folder / "curve.png").read_bytes().startswith(b"\x89PNG")
+    record = json.loads((folder / "record.json").read_text())
+    assert (record["end"], record["steps"], record["iterations"], record["seed"]) == ("steps", 128, 2, 3)
+    assert [point["steps"] for point in record["curve"]] == [64, 128]
+    card = read_policy(folder / "policy.safetensors").card
+    assert card.training == record
+    assert (card.level, card.variant, card.level_hash) == ("cover_and_hide", "v0", record["level_hash"])
+
+    on = tltlc("train", "--resume", str(folder), "--steps", "192")
+    assert on.status == 1, on.err
+    assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128, 192]
+    assert json.loads((folder / "record.json").read_text())["iterations"] == 3
+
+
+def test_until_the_spec_is_met(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    found = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "runs/soon", "--no-map")
+    assert (found.status, found.err.count("\n")) == (0, 1), found.err
+    first, _, last = found.out.splitlines()
+    assert re.fullmatch(r"the spec is met after 64 steps, \d+ s: met in 2 of the last 2 episodes, .*", first)
+    assert last == "to evaluate it: tltlc evaluate runs/soon"
+    card = read_policy("runs/soon/policy.safetensors").card
+    assert (card.fspa.name, card.sensors.map, card.network.hidden) == ("soon", None, (8,))
+
+
+def test_a_folder_holds_one_training(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    assert tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it").status == 0
+    again = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it")
+    assert again == Outcome(
+        1,
+        "",
+        "error[TLT0867]: `it` holds a training already\n"
+        "  help: go on with it by `tltlc train --resume it`, or name another place with --out\n",
+    )
+    Path("big.toml").write_text(SMALL.replace("[8]", "[9]").replace("steps = 128", "steps = 999"))
+    asked = ["--level", "navigation:v1", "--seed", "9", "--no-entities", "--config", "big.toml"]
+    other = tltlc("train", EXAMPLE, *asked, "--resume", "it")
+    assert other.status == 1
+    titles = re.findall(r"^error\[TLT0870\]: the training in `it` (.*)$", other.err, re.MULTILINE)
+    assert titles == [
+        "is on the level `cover_and_hide:v0`, not on `navigation:v1`",
+        f"is for the spec `soon`, not for `cover_and_hide` of `{EXAMPLE}`",
+        "has the seed 0, not 9",
+        "senses something else than these options say",
+        "has another `network.hidden` than `big.toml`",
+    ]
+    assert other.err.count("help: leave it out to go on with `it`, or begin another training with --out") == 5
+    same = ["--level", "cover_and_hide:v0", "--seed", "0", "--config", "small.toml", "--steps", "999"]
+    assert tltlc("train", "soon.tltl", *same, "--resume", "it").status == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "said"),
+    [
+        ([], 2, "say what to train for: a spec, a level, or both"),
+        (["hide.tltl"], 2, "`hide` does not say which level it is about: name one with --level"),
+        (["hide.tltl", "--level", "nowhere"], 2, "there is no level `nowhere`"),
+        (["hide.tltl", "--level", "navigation"], 1, "`navigation` has no "),
+        (["soon.tltl", "--workers", "many"], 2, "`many` is neither a number of processes nor `ray`"),
+        (["soon.tltl", "--entities", "s9"], 2, "the level `cover_and_hide` has no entity `s9`"),
+        (["soon.tltl", "--config", "gone.toml"], 3, "cannot read `gone.toml`"),
+        (["--resume", "gone"], 3, "cannot read `gone/run.json`"),
+        (["--resume", "gone", "--out", "there"], 2, "--resume goes on in its own folder"),
+        (["soon.tltl", "--out", "small.toml/run"], 3, "cannot write into `small.toml/run`"),
+    ],
+)
+def test_what_cannot_be_trained(
+    tltlc: TltlcFunction,  # noqa: F811
+    here: Path,
+    arguments: list[str],
+    status: int,
+    said: str,
+) -> None:
+    (here / "hide.tltl").write_text("signal mood: bool\nspec hide { limit 9 steps\n keep mood }\n")
+    found = tltlc("train", *arguments)
+    assert (found.status, found.out) == (status, ""), found.err
+    assert said in found.err
+    assert not (here / "training").exists()
+
+
+def test_what_nobody_can_do_is_said_before_it_is_tried(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    Path("far.tltl").write_text("import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }")
+    found = tltlc("train", "far.tltl", "--level", "navigation:v2", "--config", "small.toml", "--steps", "64")
+    assert found.err.startswith("warning[TLT0814]: nobody reaches `exit` in `navigation:v2`")
+
+
+def test_the_level_beside_the_spec_comes_first(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    assert tltlc("new", "mine", "--level", "vault").status == 0
+    found = tltlc("train", "mine/vault.tltl", "--config", "small.toml", "--steps", "64")
+    assert found.status == 1, found.err
+    assert Path("training/vault-v0-unseen-0/policy.safetensors").is_file()
+
+
+def test_the_defaults_can_be_had(tltlc: TltlcFunction) -> None:  # noqa: F811
+    assert tltlc("train", "--print-config") == Outcome(0, default_text(), "")
+
+
+@pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
+def test_asked_to_end_it_can_go_on(tltlc: TltlcFunction, here: Path, name: str, status: int) -> None:  # noqa: F811
+    with _training(here, "--steps", "100000000") as process:
+        assert process.stderr is not None
+        first = process.stderr.readline()
+        assert first.startswith("iteration 1: 64 steps in "), first + process.stderr.read()
+        process.send_signal(getattr(signal, name))
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == status
+    assert err.splitlines()[-1] == "stopped; to go on: tltlc train --resume run"
+    done = len(read_metrics(here / "run" / METRICS))
+    on = tltlc("train", "--resume", "run", "--steps", str(64 * (done + 1)))
+    assert on.status == 1, on.err
+    assert [line["iteration"] for line in read_metrics(here / "run" / METRICS)] == list(range(1, done + 2))
+
+
+def test_a_worker_that_is_killed(here: Path) -> None:
+    with _training(here, "--steps", "100000000") as process:
+        assert process.stderr is not None
+        assert process.stderr.readline().startswith("iteration 1: ")
+        (worker,) = _workers(process.pid)
+        os.kill(worker, signal.SIGKILL)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert "error[TLT0871]: the training broke off: worker 0 was killed by SIGKILL\n" in err
+    assert "to go on from the last checkpoint: tltlc train --resume run" in err
+    assert (here / "run" / "checkpoint.pt").is_file()
+
+
+def test_a_terminal_shows_a_picture(here: Path) -> None:
+    ours, theirs = pty.openpty()
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "110", "LINES": "40"}
+    with subprocess.Popen(_command("--steps", "128"), cwd=here, stderr=theirs, env=environment) as process:
+        os.close(theirs)
+        shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", b"".join(_output(ours)).decode())
+    assert process.returncode == 1
+    assert "starting the game" in shown
+    last = shown[shown.rindex("cover_and_hide on cover_and_hide v0, seed 0") :]
+    for said in ("spec met", "met in a row", "of 2, with which training ends", "state 2", "The spec is violated."):
+        assert said in last
+    assert "128 of at most 128 steps" in last
+
+
+def test_the_page_names_the_keys_of_the_record(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    assert tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it").status == 0
+    page = (DOCS / "training.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (`.*?) \|", page[page.index("## The record") :], re.MULTILINE)
+    said = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
+    assert said == list(json.loads(Path("it/record.json").read_text()))
+
+
+def _command(*options: str) -> list[str]:
+    arguments = ["train", str(EXAMPLE), "--config", "small.toml", "--out", "run", *options]
+    return [sys.executable, "-m", "tltlc", *arguments]
+
+
+def _training(folder: Path, *options: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(_command(*options), cwd=folder, stderr=subprocess.PIPE, text=True)
+
+
+def _workers(pid: int) -> list[int]:
+    """The processes that play for a training: its children, but for that which watches over shared memory."""
+    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    return [int(child) for child in children if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
+
+
+def _output(terminal: int) -> Iterator[bytes]:
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        try:
+            data = os.read(terminal, 65536)
+        except OSError:
+            return
+        if not data:
+            return
+        yield data
