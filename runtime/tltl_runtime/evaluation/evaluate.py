@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Literal
@@ -12,15 +12,18 @@ from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.player import Recorded, Result, Setup, Task
 from tltl_runtime.evaluation.spread import Worker, spread
 from tltl_runtime.policies.file import read_policy
+from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.env import check_fit
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.supply.offer import params as level_params
 from tltl_runtime.task import load_task
+from tltl_runtime.vector.env import cores
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Workers = int | Literal["ray"]
+"""This process (1), so many others (0: one for each core), or those of a Ray cluster."""
 
 
 def evaluate(
@@ -36,8 +39,8 @@ def evaluate(
 ) -> Iterator[Played]:
     """Have a policy play ``episodes``, and tell how each went, in their order and as soon as they are over.
 
-    ``level``, ``variant`` and ``spec`` are by default those that the policy was trained for.  ``workers`` are this
-    process (1), so many others, or those of a Ray cluster (``ray``): the episodes are the same.  A process starts by
+    ``level``, ``variant`` and ``spec`` are by default those that the policy was trained for.  ``workers`` play,
+    whichever they are the same episodes.  A process starts by
     importing the main module, so a script's own work stands under ``if __name__ == "__main__"``.
 
     Raises:
@@ -65,10 +68,11 @@ def set_up(
     """
     card = policy.card
     name = level or card.level
-    place = load_level(name, variant or (card.variant if name == card.level else "v0"))
+    place = load_level(name, variant or (card.variant if level is None else "v0"))
     offered = level_params(place)
     own = {key: value for key, value in card.params.items() if key not in offered} if spec is None else {}
     task = load_task(card.fspa if spec is None else spec, own, offered=offered)
+    check_policy(card, place, task.fspa)
     check_fit(place, task.fspa, card.fspa if spec is None else spec)
     if task.fspa.limit_steps is None:
         title = f"`{task.fspa.name}` has no limit, so an episode may go on for ever"
@@ -76,30 +80,28 @@ def set_up(
     return Setup(policy, name, place.variant, task.fspa, seed, task.params, recorded)
 
 
-def results(setup: Setup, tasks: Sequence[Task], workers: Workers = 1) -> Iterator[Result]:
+def results(setup: Setup, tasks: Sequence[Task], workers: Workers = 1) -> Generator[Result]:
     """Play the tasks and give their results in order; closing the iterator ends the workers.
 
     Raises:
         TltlError: TLT0850, a worker was lost; TLT0730, where Ray is asked for and is not installed.
-        ValueError: there are less than one workers.
+        ValueError: a number of workers below 0.
     """
     with ExitStack() as stack:
-        team: list[Worker] = []
-        for make in _makers(setup, workers, len(tasks), stack):
-            team.append(make)
-            stack.callback(make.close)
-        yield from spread(team, tasks, setup.seed)
+        yield from spread(_team(setup, workers, len(tasks), stack), tasks, setup.seed)
 
 
-def _makers(setup: Setup, workers: Workers, most: int, stack: ExitStack) -> Iterator[Worker]:
+def _team(setup: Setup, workers: Workers, most: int, stack: ExitStack) -> list[Worker]:
+    """Up to ``most`` workers, which ``stack`` closes."""
     if workers == "ray":
         from tltl_runtime.evaluation.ray_pool import ray_workers
 
-        yield from stack.enter_context(ray_workers(setup, most))
-    elif workers < 1:
-        raise ValueError(f"at least one worker is needed, not {workers}")
-    elif workers == 1:
-        yield Here(setup)
-    else:
-        for _ in range(min(workers, most)):
-            yield Process(setup)
+        return list(stack.enter_context(ray_workers(setup, most)))
+    if workers < 0:
+        raise ValueError(f"there are no {workers} workers")
+    count = min(workers or cores(), most)
+    team: list[Worker] = []
+    for _ in range(count):
+        team.append(Here(setup) if count == 1 else Process(setup))
+        stack.callback(team[-1].close)
+    return team

@@ -17,7 +17,12 @@ def ray_workers(setup: Setup, most: int) -> Iterator[list[RayWorker]]:
     """A worker on each free core of the cluster, up to ``most``; errors as of :func:`cluster`."""
     with cluster() as ray:
         shared = ray.put(setup)
-        yield [RayWorker(ray, shared) for _ in range(min(most, free_cores(ray)))]
+        workers = [RayWorker(ray, shared) for _ in range(min(most, free_cores(ray)))]
+        try:
+            yield workers
+        finally:
+            for worker in workers:
+                worker.close()
 
 
 class RayWorker:

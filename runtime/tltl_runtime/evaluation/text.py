@@ -15,7 +15,7 @@ _WIDTH: Final = 24
 _MOST_LISTED: Final = 12
 """Of the episodes that ended alike, as many are named."""
 
-_ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of time", "stopped": "stopped"}
+_ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of time"}
 
 
 def report_text(summaries: Mapping[str, Summary]) -> str:
@@ -52,5 +52,5 @@ def _spread(spread: Spread, places: int) -> str:
 
 def _failures(ended: Ended) -> tuple[str, str]:
     listed = ", ".join(map(str, ended.episodes[:_MOST_LISTED])) + (", …" if ended.count > _MOST_LISTED else "")
-    what = f"  {ended.count} {_ENDS.get(ended.end, ended.end)} in state {ended.state}: {ended.label}"
+    what = f"  {ended.count} {_ENDS[ended.end]} in state {ended.state}, remaining: {ended.label}"
     return what, f"    episode{'s' if ended.count > 1 else ''} {listed}"

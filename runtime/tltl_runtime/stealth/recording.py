@@ -42,7 +42,7 @@ class RecordEpisode(gymnasium.Wrapper[Any, Any, Any, Any], RecordConstructorArgs
         self._game = self._played.game
         self._judge = _judge(env)
         self._player = player
-        self._folder = None if folder is None else _writable(Path(folder))
+        self._folder = None if folder is None else writable_folder(Path(folder))
         self._names = tuple(signal.name for signal in self._judge.task.fspa.signals)
         self._rows: _Rows | None = None
         self._over = False
@@ -169,8 +169,8 @@ def _write(folder: Path, episode: Episode) -> None:
     write_episode(new_path(folder, file_stem(episode)), episode)
 
 
-def _writable(folder: Path) -> Path:
-    """The folder, made where it is missing; refused before an hour is played."""
+def writable_folder(folder: Path) -> Path:
+    """The folder, made where it is missing; refused, TLT0005, before an hour is played."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=folder):

@@ -110,7 +110,7 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
 
             self._workers = RayWorkers(functions, self._rows, info, autoreset, timeout)
         else:
-            shares = list(shared_out(self.num_envs, min(workers or _cores(), self.num_envs)))
+            shares = list(shared_out(self.num_envs, min(workers or cores(), self.num_envs)))
             self._workers = Workers(context, functions, shares, self._rows, autoreset, timeout)
         self._finalizer = weakref.finalize(self, self._workers.close)
         for loss in self._workers.start(range(len(self._workers.shares))):
@@ -298,8 +298,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         )
 
 
-def _cores() -> int:
-    """Those that this process may use."""
+def cores() -> int:
+    """How many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 

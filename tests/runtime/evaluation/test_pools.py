@@ -115,8 +115,8 @@ def test_errors_can_be_sent() -> None:
 
 
 def test_no_workers(policy: Policy) -> None:
-    with pytest.raises(ValueError, match="at least one worker"):
-        list(evaluate(policy, episodes=1, seed=0, workers=0))
+    with pytest.raises(ValueError, match="no -1 workers"):
+        list(evaluate(policy, episodes=1, seed=0, workers=-1))
 
 
 def test_a_spec_without_a_limit_is_refused() -> None:

@@ -35,7 +35,7 @@ def draw_ways(level: Level, fspa: Fspa, ways: Sequence[Way], title: str) -> byte
 
     The legend says what remained to be satisfied in each state, and how many episodes ended how.
     """
-    visited = sorted({int(state) for each in ways for state in each.states})[:MOST_LISTED]
+    visited = sorted({int(state) for each in ways for state in each.states[:-1]})[:MOST_LISTED]
     ends = Counter(each.end for each in ways)
     width, height = natural_size(level)
     inches = (width, height + (len(visited) + len(ends) + 1) * LINE)

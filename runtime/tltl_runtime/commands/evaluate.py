@@ -1,0 +1,182 @@
+"""``tltlc evaluate``: a trained policy plays episodes, and its figures are reported."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import closing, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from tltl_runtime.commands.ending import requests_heard
+from tltl_runtime.commands.level_faults import level_faults
+from tltl_runtime.commands.workers import Workers
+from tltlc.cli.report import Report
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.spec_file import split
+
+if TYPE_CHECKING:
+    from tltl_runtime.commands.evaluation_files import EvaluationFiles
+    from tltl_runtime.evaluation.player import Recorded, Result
+
+POLICY_FILE: Final = "policy.safetensors"
+"""The policy in the folder of a training."""
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc evaluate --level cover_and_hide
+  tltlc evaluate training/my_level-v0-careful-0 --episodes 500 --seed 7 --workers 0
+  tltlc evaluate --level branching:v1 --json - > branching.json
+  tltlc evaluate --level branching:v1 --out evaluation --record all
+"""
+)
+@click.argument("policy", metavar="[POLICY]", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--level", metavar="LEVEL[:VARIANT]", help="Where; by default where the policy was trained.  VARIANT: v0."
+)
+@click.option("--episodes", metavar="N", type=click.IntRange(1, 10**6), default=100, show_default=True)
+@click.option(
+    "--seed",
+    metavar="N",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Of the evaluation: episode i of seed N always plays the same.",
+)
+@click.option(
+    "--first", metavar="I", type=click.IntRange(min=0), default=0, show_default=True, help="Begin with episode I."
+)
+@click.option("--spec", metavar="SPEC[:NAME]", help="What is to be done; by default what the policy was trained for.")
+@click.option(
+    "--workers",
+    metavar="N|ray",
+    type=Workers(),
+    default=1,
+    show_default=True,
+    help="Processes that play (0: one a core), or those of a Ray cluster.",
+)
+@click.option(
+    "--json", "json_file", metavar="FILE", type=click.Path(path_type=Path, allow_dash=True, dir_okay=False),
+    help="Write the report as JSON, too; `-` prints it in place of the text.",
+)  # fmt: skip
+@click.option(
+    "--output",
+    "--out",
+    "-o",
+    "folder",
+    metavar="DIR",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Write recordings, their plans, a picture of all ways and the report to this folder.",
+)
+@click.option(
+    "--record",
+    "recorded",
+    type=click.Choice(("failures", "all", "none")),
+    default="failures",
+    show_default=True,
+    help="Of which episodes --out has the recordings.",
+)
+@level_faults()
+def command(
+    policy: Path | None,
+    level: str | None,
+    episodes: int,
+    seed: int,
+    first: int,
+    spec: str | None,
+    workers: Any,
+    json_file: Path | None,
+    folder: Path | None,
+    recorded: Recorded,
+) -> int:
+    """Have a trained policy play, and report how often it meets the spec.
+
+    POLICY is a .safetensors file or the folder of a training; without it the policy that comes with the level plays.
+    Every episode is played twice, with actions sampled as in training and with the likeliest ones.  The exit status
+    is 0 whatever the pass rate; after Ctrl-C the report is on what was played.
+    """
+    if policy is None and level is None:
+        raise click.UsageError("name a POLICY or a --level, or both")
+    from tltl_runtime.commands.evaluation_files import EvaluationFiles
+    from tltl_runtime.evaluation.evaluate import results, set_up
+    from tltl_runtime.evaluation.player import Task
+    from tltl_runtime.policies.file import read_policy
+
+    with Report() as report, requests_heard():
+        name, variant = (None, None) if level is None else split(level)
+        path = _policy_path(policy, name)
+        kept = recorded if folder else None
+        setup = set_up(read_policy(path), name, variant, spec, seed, kept)
+        files = EvaluationFiles(setup, path, first, folder, json_file)
+        tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
+        try:
+            with closing(results(setup, tasks, workers)) as playing:
+                for result in _counted(playing, len(tasks)):
+                    files.add(result)
+        except (KeyboardInterrupt, TltlError):
+            _tell(files, json_file, len(tasks))
+            raise
+        _tell(files, json_file, len(tasks))
+    return report.status
+
+
+def _policy_path(policy: Path | None, level: str | None) -> Path:
+    """The file of the policy: that which was named, or the one that comes with the level."""
+    if policy is not None:
+        return policy / POLICY_FILE if policy.is_dir() else policy
+    from tltl_runtime.policies.shipped import shipped_policy
+    from tltl_runtime.stealth.levels.file import load_level
+
+    assert level is not None
+    found = shipped_policy(level)
+    if found is None:
+        load_level(level)
+        help_ = f"name one that was trained, e.g. after `tltlc train --level {level}`"
+        raise TltlError([Diagnostic("TLT0853", f"no policy comes with the level `{level}`", help=help_)])
+    return found
+
+
+def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
+    """The results; standard error says how far they are, with a bar on a terminal, else with a line each tenth."""
+    passed = 0
+    with _bar(count) as bar:
+        for number, result in enumerate(playing, 1):
+            yield result
+            passed += result.played.success
+            said = f"{number} of {count} episodes played, {passed} passed"
+            if bar is not None:
+                bar.update(bar.task_ids[0], completed=number, description=said)
+            elif number * 10 // count > (number - 1) * 10 // count:
+                click.echo(said, err=True)
+
+
+def _bar(count: int) -> Any:
+    if not sys.stderr.isatty():
+        return nullcontext()
+    from rich.console import Console
+    from rich.progress import Progress
+
+    bar = Progress(console=Console(stderr=True), transient=True)
+    bar.add_task("starting", total=count)
+    return bar
+
+
+def _tell(files: EvaluationFiles, json_file: Path | None, wanted: int) -> None:
+    """Report on what was played, which is not all of it where the evaluation was broken off."""
+    played = files.played
+    if played < wanted:
+        click.echo(f"stopped: {played} of {wanted} episodes were played", err=True)
+    if not played:
+        return
+    document = files.document(complete=played == wanted)
+    text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    if json_file is None or str(json_file) != "-":
+        click.echo(files.text(), nl=False)
+    else:
+        click.echo(text, nl=False)
+    files.write(text)

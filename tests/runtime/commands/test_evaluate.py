@@ -1,0 +1,140 @@
+"""``tltlc evaluate``: the report, the files, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.evaluation.untrained import SOON, untrained
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.shipped import shipped_policy
+from tltl_runtime.stealth.episodes.file import read_episode
+
+Run = Callable[..., Outcome]
+FIGURES = ["pass_rate", "pass_interval", "progress", "reward", "steps", "ended", "episodes"]
+
+
+@pytest.fixture(scope="module")
+def policy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("trained") / "policy.safetensors"
+    write_policy(path, untrained())
+    return path
+
+
+def test_the_report_for_people(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    found = tltlc("evaluate", policy, "--episodes", "3", "--seed", "5")
+    assert found.status == 0
+    lines = found.out.splitlines()
+    assert lines[0] == f"cover_and_hide v0, spec soon, seed 5: {policy}"
+    assert lines[4] == "pass rate (95 %)  0.00 (0.00 to 0.56)     0.00 (0.00 to 0.56)"
+    assert "sampled: 3 of 3 failed" in lines
+    assert "  3 out of time in state 0, remaining: Reach near(exit), and keep alive throughout." in lines
+    assert lines[-1] == "`--seed 5 --first 0 --episodes 1 --out DIR` records one of them, for `tltlc replay`."
+    assert found.err.splitlines()[-1] == "6 of 6 episodes played, 0 passed"
+
+
+def test_the_report_for_programs(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    found = tltlc("evaluate", policy.parent, "--episodes", "4", "--seed", "5", "--json", "-")
+    assert found.status == 0
+    said = json.loads(found.out)
+    head = ["level", "variant", "spec", "seed", "first", "complete", "policy", "versions"]
+    assert list(said) == [*head, *FIGURES, "argmax"]
+    assert list(said["argmax"]) == FIGURES
+    assert (said["level"], said["variant"], said["spec"], said["seed"]) == ("cover_and_hide", "v0", "soon", 5)
+    assert [each["index"] for each in said["episodes"]] == [0, 1, 2, 3]
+    assert {each["seed"] for each in said["episodes"]} == {each["seed"] for each in said["argmax"]["episodes"]}
+    assert said["progress"].keys() == said["reward"].keys() == {"mean", "std"}
+    for each in (*said["episodes"], *said["argmax"]["episodes"]):
+        assert each["reward"] == pytest.approx(each["progress"] - 1.0)
+    assert re.fullmatch("[0-9a-f]{64}", said["policy"]["sha256"])
+    assert {"tltlc", "pybullet", "numpy", "torch"} < said["versions"].keys()
+
+    again = json.loads(tltlc("evaluate", policy, "--episodes", "2", "--first", "2", "--seed", "5", "--json", "-").out)
+    assert again["episodes"] == said["episodes"][2:]
+
+
+def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> None:  # noqa: F811
+    folder, report = tmp_path / "new" / "runs", tmp_path / "new" / "report.json"
+    command = ("evaluate", policy, "--episodes", "2", "--seed", "5", "--out", folder, "--json", report)
+    found = tltlc(*command)
+    assert found.status == 0
+    stems = [f"cover_and_hide-v0-5-{index}-{chosen}" for index in (0, 1) for chosen in ("arg-max", "sampled")]
+    names = [f"{stem}{ending}" for stem in stems for ending in (".episode.npz", ".png")]
+    names += ["evaluation.json", "ways-arg-max.png", "ways-sampled.png"]
+    assert sorted(path.name for path in folder.iterdir()) == sorted(names)
+    assert report.read_text() == (folder / "evaluation.json").read_text()
+    said = json.loads(report.read_text())
+    for each in said["episodes"]:
+        episode = read_episode(folder / f"cover_and_hide-v0-5-{each['index']}-sampled.episode.npz")
+        assert (episode.seed, episode.end) == (each["seed"], each["end"])
+        assert float(episode.rewards.sum()) == pytest.approx(each["reward"])
+    with Image.open(folder / "ways-sampled.png") as picture:
+        red = sum(count for count, colour in picture.convert("RGB").getcolors(1 << 20) if colour == (100, 116, 139))
+    assert red > 50, "there are marks where time was up"
+    assert "records one of them" not in found.out
+
+    tltlc(*command, "--record", "none")
+    assert sorted(path.name for path in folder.iterdir()) == sorted(names)
+
+
+@pytest.mark.parametrize(("name", "status", "workers"), [("SIGINT", 130, "2"), ("SIGTERM", 143, "1")])
+def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status: int, workers: str) -> None:
+    command = [sys.executable, "-m", "tltlc", "evaluate", str(policy), "--episodes", "300", "--workers", workers]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as evaluating:
+        assert evaluating.stderr is not None
+        assert evaluating.stderr.readline() == "60 of 600 episodes played, 0 passed\n"
+        evaluating.send_signal(getattr(signal, name))
+        out, err = evaluating.communicate(timeout=60)
+    assert evaluating.returncode == status
+    (stopped,) = re.findall(r"^stopped: (\d+) of 600 episodes were played$", err, re.MULTILINE)
+    (played,) = re.findall(r"^episodes +(\d+)", out, re.MULTILINE)
+    assert 60 <= int(played) <= int(stopped) < 600
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "said"),
+    [
+        ((), 2, "error[TLT0700]: name a POLICY or a --level, or both"),
+        (("nowhere.safetensors",), 3, "error[TLT0001]"),
+        (("--level", "nowhere"), 2, "error[TLT0800]: there is no level `nowhere`"),
+        (("POLICY", "--level", "cover_and_hide:v9"), 2, "error[TLT0800]"),
+        (("POLICY", "--level", "navigation"), 1, "error[TLT0843]"),
+        (("POLICY", "--spec", "cover_and_hide.tltl"), 1, "error[TLT0843]"),
+        (("POLICY", "--workers", "many"), 2, "error[TLT0700]: invalid value for '--workers': `many` is neither"),
+        (("POLICY", "--episodes", "0"), 2, "error[TLT0700]"),
+        (("POLICY", "--json", "file/report.json"), 3, "error[TLT0005]"),
+        (("POLICY", "--out", "file/runs"), 3, "error[TLT0005]"),
+    ],
+)
+def test_refused(
+    tltlc: Run,  # noqa: F811
+    policy: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...],
+    status: int,
+    said: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    (tmp_path / "cover_and_hide.tltl").write_text(SOON.replace("20 steps", "25 steps"))
+    found = tltlc("evaluate", *(str(policy) if each == "POLICY" else each for each in arguments))
+    assert (found.status, found.out) == (status, "")
+    assert found.err.lower().startswith(said.lower())
+
+
+@pytest.mark.parametrize("level", ["navigation", "cover_and_hide", "branching"])
+def test_the_policy_that_comes_with_a_level(tltlc: Run, level: str) -> None:  # noqa: F811
+    if shipped_policy(level) is None:
+        pytest.skip(f"no policy comes with {level} yet")
+    found = tltlc("evaluate", "--level", level, "--episodes", "2", "--json", "-")
+    assert json.loads(found.out)["level"] == level

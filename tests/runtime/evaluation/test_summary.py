@@ -1,0 +1,78 @@
+"""The figures over episodes and the report for people, worked by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltl_runtime.evaluation.play import Played
+from tltl_runtime.evaluation.summary import Ended, summary
+from tltl_runtime.evaluation.text import report_text
+from tltl_runtime.stealth.episodes.episode import End
+from tltlc.record import replace
+
+PASSED = Played(0, 7, True, "satisfied", "success", 1.0, 0.75, 100, 15.0, 4, 4, "Keep alive throughout.")
+
+
+def failed(index: int, state: int, end: End, progress: float) -> Played:
+    verdict = "violated" if end == "violation" else "pending"
+    trap = 2 if end == "violation" else state
+    return Played(index, 7, False, verdict, end, progress, progress - 1.0, 40, 6.0, trap, state, f"Reach {state}.")
+
+
+EPISODES = [
+    PASSED,
+    failed(1, 1, "limit", 0.5),
+    failed(2, 0, "violation", 0.2),
+    failed(3, 0, "limit", 0.25),
+    failed(4, 0, "violation", 0.3),
+    *(replace(PASSED, index=index) for index in range(5, 10)),
+]
+
+
+def test_figures() -> None:
+    found = summary(EPISODES)
+    assert found.pass_rate == pytest.approx(0.6)
+    assert found.pass_interval == pytest.approx((0.3127, 0.8318), abs=1e-4)
+    assert found.progress.mean == pytest.approx(0.725)
+    assert found.reward.mean == pytest.approx((6 * 0.75 + 1.25 - 4) / 10)
+    assert found.steps.mean == pytest.approx(76.0)
+    assert found.steps.std == pytest.approx((960 * 9) ** 0.5 / 3)
+    assert found.ended == (
+        Ended(0, "Reach 0.", "violation", 2, 0.2, (2, 4)),
+        Ended(0, "Reach 0.", "limit", 1, 0.1, (3,)),
+        Ended(1, "Reach 1.", "limit", 1, 0.1, (1,)),
+    )
+    assert found.episodes == tuple(EPISODES)
+
+
+def test_of_nothing() -> None:
+    with pytest.raises(ValueError, match="0 of 0 is no share"):
+        summary([])
+
+
+def test_text() -> None:
+    found = report_text({"sampled": summary(EPISODES), "arg-max": summary([PASSED])})
+    assert (
+        found
+        == """\
+                  sampled                 arg-max
+episodes          10                      1
+pass rate (95 %)  0.60 (0.31 to 0.83)     1.00 (0.21 to 1.00)
+progress          0.72 ± 0.36             1.00 ± 0.00
+reward            0.17 ± 0.75             0.75 ± 0.00
+steps             76 ± 31                 100 ± 0
+
+sampled: 4 of 10 failed
+  2 violated in state 0, remaining: Reach 0.
+    episodes 2, 4
+  1 out of time in state 0, remaining: Reach 0.
+    episode 3
+  1 out of time in state 1, remaining: Reach 1.
+    episode 1
+"""
+    )
+
+
+def test_many_that_ended_alike_are_cut() -> None:
+    found = report_text({"sampled": summary([failed(index, 0, "limit", 0.1) for index in range(20)])})
+    assert "    episodes 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, …\n" in found
