@@ -66,15 +66,17 @@ def read_policy(path: str | os.PathLike[str]) -> Policy:
 
 def to_bytes(policy: Policy) -> bytes:
     """What :func:`write_policy` writes."""
-    card = policy.card
-    (artefact,) = emit("json", card.fspa).values()
-    names: tuple[str, ...] = Card.__match_args__
-    document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
-    document |= {name: to_json(getattr(card, name)) for name in names if name != "fspa"}
-    document["artefact"] = json.loads(artefact)
-    text = json.dumps(document, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(card_json(policy.card), ensure_ascii=False, allow_nan=False)
     weights = {f"{_PREFIX}{name}": each.contiguous() for name, each in policy.weights().items()}
     return save(weights, {_KEY: text})
+
+
+def card_json(card: Card) -> dict[str, Any]:
+    """What a file says beside the weights: the fields of the card, with the artefact of the spec."""
+    (artefact,) = emit("json", card.fspa).values()
+    document: dict[str, Any] = {"format": FORMAT, "version": VERSION}
+    document |= {name: to_json(getattr(card, name)) for name in Card.__match_args__ if name != "fspa"}
+    return document | {"artefact": json.loads(artefact)}
 
 
 def from_bytes(data: bytes, name: str) -> Policy:

@@ -1,4 +1,4 @@
-"""The policies that come with the package play the levels that they are named for, with the specs these are made for."""
+"""The policies that come with the package play the levels that they are named for, with the specs made for these."""
 
 from __future__ import annotations
 

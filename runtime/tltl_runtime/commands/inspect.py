@@ -1,0 +1,89 @@
+"""``tltlc inspect``: what a policy was trained for, and the policy for other engines."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tltlc.cli.report import Report
+from tltlc.diagnostics.diagnostic import TltlError
+
+if TYPE_CHECKING:
+    from tltl_runtime.policies.policy import Policy
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc inspect training/cover_and_hide-v0-0
+  tltlc inspect bots/*.safetensors --format json
+  tltlc inspect bot.safetensors -o bot.onnx      the policy for another engine
+"""
+)
+@click.argument("files", metavar="POLICY...", nargs=-1, required=True)
+@click.option(
+    "--output",
+    "--out",
+    "-o",
+    "path",
+    metavar="OUT.onnx",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Write the policy as an ONNX model, and no summary.",
+)
+@click.option(
+    "--format",
+    type=click.Choice(("text", "json")),
+    default="text",
+    show_default=True,
+    help="Of the summary, and of messages.",
+)
+def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # noqa: A002
+    """Show what policies were trained for, what they sense and choose, and how their training went.
+
+    A POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it.
+    """
+    if path is not None and path.suffix.lower() != ".onnx":
+        raise click.UsageError(f"-o writes a .onnx, not `{path}`")
+    if path is not None and len(files) > 1:
+        raise click.UsageError("-o takes one POLICY")
+    from tltl_runtime.policies.file import read_policy
+    from tltl_runtime.policies.summary import summary, summary_text
+
+    summaries: list[dict[str, Any]] = []
+    with Report(format, results=True) as report:
+        for name in files:
+            try:
+                policy = read_policy(_file(name))
+            except TltlError as error:
+                report.add(error.diagnostics)
+                continue
+            said = {"file": name, **summary(policy)}
+            if path is not None:
+                _export(policy, path)
+                report.say(f"wrote {path}")
+            elif format == "text":
+                print(f"{name}\n{summary_text(said)}")
+            summaries.append(said)
+        if format == "json" and path is None:
+            print(json.dumps(summaries, indent=2, ensure_ascii=False))
+    return report.status
+
+
+def _file(name: str) -> Path:
+    from tltl_runtime.policies.shipped import shipped_policy
+    from tltl_runtime.training.run import POLICY
+
+    path = Path(name)
+    if path.is_dir():
+        return path / POLICY
+    return path if path.exists() else shipped_policy(name) or path
+
+
+def _export(policy: Policy, path: Path) -> None:
+    from tltl_runtime.policies.onnx import to_onnx
+    from tltlc.writing import write_file
+
+    write_file(path, to_onnx(policy))

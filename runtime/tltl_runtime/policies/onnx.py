@@ -1,0 +1,124 @@
+"""Policies for other engines: an ONNX model that says itself what its numbers are."""
+
+from __future__ import annotations
+
+import json
+import logging
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, Final, cast
+
+import torch
+from onnx import ModelProto
+from onnx.helper import set_model_props
+from torch import Tensor, nn
+
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.file import card_json
+from tltl_runtime.policies.identity import spec_hash
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.stealth.snapshot import BRANCHES
+from tltlc.record import replace
+
+SUFFIX: Final = ".onnx"
+
+_OPSET: Final = 18
+_ACTIONS: Final = {
+    "x": ("stay", "greater", "smaller"),
+    "y": ("stay", "greater", "smaller"),
+    "jump": ("no", "yes"),
+    "crouch": ("no", "yes"),
+    "sprint": ("no", "yes"),
+}
+"""The branches of the game's actions, and what their choices are called."""
+
+
+def to_onnx(policy: Policy) -> bytes:
+    """The policy as an ONNX model; equal policies give equal bytes.
+
+    Inputs are the parts of an observation by their keys, float32 [batch, ...]; outputs are the ``logits``
+    float32 [batch, sum(branches)], those of the first branch first, and the ``action`` int64 [batch, branches], the
+    likeliest choice of each branch, of equal ones the first.  ``docs/policy-file.md`` describes the texts in it.
+    """
+    keys = [key for key, _ in policy.card.shapes]
+    batch = torch.export.Dim("batch", min=1)
+    with _quiet():
+        program = torch.onnx.export(
+            _Player(policy).eval(),
+            tuple(torch.zeros(2, *shape) for _, shape in policy.card.shapes),
+            dynamo=True,
+            verbose=False,
+            opset_version=_OPSET,
+            input_names=keys,
+            output_names=["logits", "action"],
+            dynamic_shapes=(tuple({0: batch} for _ in keys),),
+        )
+    model = cast(Any, program).model_proto
+    _forget_source(model)
+    set_model_props(model, _texts(policy.card))
+    return bytes(model.SerializeToString(deterministic=True))
+
+
+class _Player(nn.Module):
+    """From the parts of observations to logits and actions."""
+
+    def __init__(self, policy: Policy) -> None:
+        super().__init__()
+        self.keys = [key for key, _ in policy.card.shapes]
+        self.actor = policy.actor
+
+    def forward(self, *parts: Tensor) -> tuple[Tensor, Tensor]:
+        logits = self.actor.mlp(self.actor.get_latent(dict(zip(self.keys, parts, strict=True))))
+        return logits, self.actor.distribution.deterministic_output(logits).long()
+
+
+def _texts(card: Card) -> dict[str, str]:
+    """What the model says of itself; all but ``spec_hash`` is JSON."""
+    names = list(_ACTIONS.items()) if card.branches == BRANCHES else []
+    texts = {
+        "inputs": _inputs(card),
+        "actions": [{"name": name, "choices": choices} for name, choices in names],
+        "states": [state.label.ascii for state in card.fspa.states],
+        # How it was trained is for those who train, and they have the policy's file.
+        "card": card_json(replace(card, training={})),
+    }
+    return {"spec_hash": spec_hash(card.fspa)} | {
+        key: json.dumps(text, ensure_ascii=False, allow_nan=False) for key, text in texts.items()
+    }
+
+
+def _inputs(card: Card) -> dict[str, list[str]]:
+    """What the numbers of each input are, along its first axis."""
+    sensors = card.sensors
+    names: Mapping[str, list[str]] = {
+        "automaton": [f"state {state.id}" for state in card.fspa.states],
+        "progress": ["progress"],
+        "entities": [f"{name}.{axis}" for name in sensors.entities for axis in "xyz"],
+        "variables": list(sensors.variables),
+        "map": list(sensors.map.types) if sensors.map else [],
+    }
+    return {key: names[key] for key, _ in card.shapes}
+
+
+def _forget_source(model: ModelProto) -> None:
+    """Take away where in whose files each node of the graph comes from."""
+    for each in (*model.graph.node, *model.graph.value_info, *model.graph.input, *model.graph.output):
+        each.ClearField("metadata_props")
+        each.ClearField("doc_string")
+    model.graph.ClearField("metadata_props")
+    model.graph.ClearField("doc_string")
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Within, torch does not tell of its own workings: a model that comes out is checked by tests, not by readers."""
+    log = logging.getLogger("torch.onnx")
+    before = log.level
+    log.setLevel(logging.ERROR)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        log.setLevel(before)

@@ -1,0 +1,69 @@
+"""What there is to say of a policy: what it was trained for, what it senses and chooses, how its training went."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tltl_runtime.policies.identity import spec_hash
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.record_json import to_json
+
+
+def summary(policy: Policy) -> dict[str, Any]:
+    """What there is to say of a policy, as JSON can say it."""
+    card = policy.card
+    return {
+        "level": card.level,
+        "variant": card.variant,
+        "level_hash": card.level_hash,
+        "spec": card.fspa.name,
+        "spec_hash": spec_hash(card.fspa),
+        "formula": card.fspa.formula.english,
+        "params": dict(card.params),
+        "states": [state.label.english for state in card.fspa.states],
+        "observation": dict(card.shapes),
+        "sensors": to_json(card.sensors),
+        "branches": card.branches,
+        "network": to_json(card.network),
+        "weights": sum(each.numel() for each in policy.actor.parameters()),
+        "reward": to_json(card.reward),
+        "versions": dict(card.versions),
+        "training": to_json(card.training),
+    }
+
+
+def summary_text(said: Mapping[str, Any]) -> str:
+    """A summary for people."""
+    sensors, network = said["sensors"], said["network"]
+    map_ = sensors["map"]
+    layers = " + ".join(map(str, network["hidden"]))
+    if map_ is not None:
+        layers = f"convolution {' + '.join(map(str, network['channels']))}, then {layers}"
+    rows = {
+        "level": f"{said['level']} {said['variant']} (hash {said['level_hash'][:12]})",
+        "spec": f"{said['spec']} (hash {said['spec_hash'][:12]}): {said['formula']}",
+        "senses": ", ".join((*sensors["entities"], *sensors["variables"])) or "neither entities nor variables",
+        "map": _map(map_) if map_ else "",
+        "network": f"{layers} ({network['activation']}), {said['weights']:,} weights",
+        "training": _training(said["training"]),
+        "versions": ", ".join(f"{name} {version}" for name, version in said["versions"].items()),
+    }
+    return "".join(f"  {name:9}{text}\n" for name, text in rows.items() if text)
+
+
+def _map(sensor: Mapping[str, Any]) -> str:
+    return f"{sensor['extent']} x {sensor['extent']} cells of {sensor['cell']:g} m: {', '.join(sensor['types'])}"
+
+
+def _training(record: Mapping[str, Any]) -> str:
+    """How the training went, as far as its record tells in numbers."""
+    window = record.get("window")
+    values = {**(window if isinstance(window, dict) else {}), **record}
+    wordings = (
+        ("seed", "seed {seed}"),
+        ("steps", "{steps:,} steps"),
+        ("seconds", "{seconds:,.0f} s"),
+        ("pass_rate", "pass rate {pass_rate:.2f} at the end"),
+    )
+    return ", ".join(text.format(**values) for key, text in wordings if isinstance(values.get(key), (int, float)))

@@ -1,0 +1,97 @@
+"""``tltlc inspect``: what policies are, and policies for other engines."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import onnxruntime
+import pytest
+
+from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.policies.examples import card_of, observation_of, policy_of
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.identity import spec_hash
+from tltl_runtime.policies.policy import Policy
+from tltlc.record import replace
+
+TRAINING = {"seed": 3, "steps": 412_000, "seconds": 512.25, "window": {"episodes": 100, "pass_rate": 0.98}}
+
+
+@pytest.fixture(name="policy", scope="module")
+def _policy() -> Policy:
+    return policy_of(replace(card_of("cover_and_hide"), training=TRAINING))
+
+
+@pytest.fixture(name="file")
+def _file(policy: Policy, tmp_path: Path) -> Path:
+    write_policy(tmp_path / "policy.safetensors", policy)
+    return tmp_path / "policy.safetensors"
+
+
+def test_a_summary(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("inspect", str(file))
+    assert (found.status, found.err) == (0, "")
+    lines = found.out.splitlines()
+    assert lines[0] == str(file)
+    assert lines[1] == f"  level    cover_and_hide v0 (hash {policy.card.level_hash[:12]})"
+    assert lines[2].startswith(f"  spec     cover_and_hide (hash {spec_hash(policy.card.fspa)[:12]}): ")
+    assert lines[3].startswith("  senses   s1, s2, exit, ")
+    assert lines[4].startswith("  map      15 x 15 cells of ")
+    assert "  training seed 3, 412,000 steps, 512 s, pass rate 0.98 at the end" in lines
+    assert tltlc("inspect", str(file.parent)).out.splitlines()[1:] == lines[1:]
+
+
+def test_a_summary_as_json_with_a_file_that_is_no_policy(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    other = file.with_name("torn.safetensors")
+    other.write_bytes(file.read_bytes()[:1000])
+    found: Outcome = tltlc("inspect", str(other), str(file), "--format", "json")
+    assert found.status == 1
+    assert [each["code"] for each in json.loads(found.err)["diagnostics"]] == ["TLT0840"]
+    (said,) = json.loads(found.out)
+    assert (said["file"], said["level"], said["training"]) == (str(file), "cover_and_hide", TRAINING)
+    assert said["branches"] == [3, 3, 2, 2, 2]
+    assert said["observation"]["automaton"] == [len(said["states"])]
+
+
+@pytest.mark.parametrize("training", [{}, {"seed": "x", "seconds": [], "window": 3}, {"window": {"pass_rate": None}}])
+def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_path: Path, training: object) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    path = tmp_path / "bot.safetensors"
+    write_policy(path, Policy(replace(policy.card, training=training), policy.actor))
+    found: Outcome = tltlc("inspect", str(path))
+    assert (found.status, found.err) == (0, "")
+    assert "  training" not in found.out
+
+
+def test_an_export_says_what_it_wrote_and_nothing_else(file: Path, policy: Policy) -> None:
+    out = file.with_name("bot.onnx")
+    command = [sys.executable, "-m", "tltlc", "inspect", str(file), "-o", str(out)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("", f"wrote {out}\n")
+    seen = observation_of(policy.card, np.random.default_rng(0), (1,))
+    feed = {key: each.astype(np.float32) for key, each in seen.items()}
+    _, action = onnxruntime.InferenceSession(out).run(None, feed)
+    assert action[0].tolist() == policy.choose({key: each[0] for key, each in seen.items()}).tolist()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("a.safetensors", "-o", "a.pt"), "-o writes a .onnx, not `a.pt`"),
+        (("a.safetensors", "b.safetensors", "-o", "a.onnx"), "-o takes one POLICY"),
+        ((), "POLICY"),
+    ],
+)
+def test_usage(tltlc, arguments: tuple[str, ...], said: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("inspect", *arguments)
+    assert found.status == 2
+    assert said in found.err
+
+
+def test_a_policy_that_is_not_there(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc("inspect", str(tmp_path / "none.safetensors"))
+    assert found.status == 3
+    assert "TLT0001" in found.err

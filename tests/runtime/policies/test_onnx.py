@@ -1,0 +1,77 @@
+"""An exported policy, run by onnxruntime, is the policy, and says what its numbers are."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import onnx
+import onnxruntime
+import pytest
+
+from tests.runtime.policies.examples import card_of, observation_of, policy_of
+from tltl_runtime.policies.identity import spec_hash
+from tltl_runtime.policies.network import Network
+from tltl_runtime.policies.onnx import to_onnx
+from tltl_runtime.policies.policy import Policy
+from tltlc.pipeline import read_artefact
+from tltlc.source import SourceFile
+
+
+@pytest.fixture(name="policy", scope="module")
+def _policy() -> Policy:
+    return policy_of(card_of("cover_and_hide", network=Network()))
+
+
+@pytest.fixture(name="model", scope="module")
+def _model(policy: Policy) -> bytes:
+    return to_onnx(policy)
+
+
+def check_alike(policy: Policy, model: bytes, seeds: int) -> None:
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = 1
+    session = onnxruntime.InferenceSession(model, options)
+    assert [each.name for each in session.get_inputs()] == [key for key, _ in policy.card.shapes]
+    for seed in range(seeds):
+        for size in (1, 7):
+            seen = observation_of(policy.card, np.random.default_rng(seed), (size,))
+            logits, action = session.run(None, {key: each.astype(np.float32) for key, each in seen.items()})
+            assert (logits.dtype, action.dtype, action.shape) == (np.float32, np.int64, (size, 5))
+            for row in range(size):
+                one = {key: each[row] for key, each in seen.items()}
+                np.testing.assert_allclose(logits[row], policy.logits(one), rtol=0, atol=1e-5)
+                assert action[row].tolist() == policy.choose(one).tolist()
+
+
+def test_it_plays_as_the_policy_does(policy: Policy, model: bytes) -> None:
+    check_alike(policy, model, 100)
+
+
+@pytest.mark.parametrize("network", [Network(hidden=(16,), activation="mish"), Network((8, 8, 8), "selu", (3,), 5, 1)])
+@pytest.mark.parametrize("map_", [{}, {"map": None}])
+def test_networks_of_all_kinds_go_through(network: Network, map_: dict[str, None]) -> None:
+    policy = policy_of(card_of("navigation", sensors=map_, network=network))
+    check_alike(policy, to_onnx(policy), 5)
+
+
+def test_it_says_what_its_numbers_are(policy: Policy, model: bytes) -> None:
+    read = onnx.load_from_string(model)
+    onnx.checker.check_model(read, full_check=True)
+    texts = {each.key: each.value for each in read.metadata_props}
+    inputs, actions = json.loads(texts["inputs"]), json.loads(texts["actions"])
+    shapes = dict(policy.card.shapes)
+    for key, names in inputs.items():
+        assert len(names) == shapes[key][0]
+    assert list(inputs) == list(shapes)
+    assert inputs["entities"][:4] == ["s1.x", "s1.y", "s1.z", "s2.x"]
+    assert [len(each["choices"]) for each in actions] == list(policy.card.branches)
+    assert json.loads(texts["states"])[-1] == policy.card.fspa.states[-1].label.ascii
+    fspa = read_artefact(SourceFile("card", json.dumps(json.loads(texts["card"])["artefact"])))
+    assert fspa == policy.card.fspa
+    assert texts["spec_hash"] == spec_hash(fspa)
+
+
+def test_equal_policies_give_equal_models_that_do_not_say_where_they_were_made(policy: Policy, model: bytes) -> None:
+    assert to_onnx(policy) == model
+    assert b".py" not in model and b"/lib/" not in model
