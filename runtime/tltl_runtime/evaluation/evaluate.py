@@ -99,9 +99,8 @@ def _team(setup: Setup, workers: Workers, most: int, stack: ExitStack) -> list[W
         return list(stack.enter_context(ray_workers(setup, most)))
     if workers < 0:
         raise ValueError(f"there are no {workers} workers")
-    count = min(workers or cores(), most)
     team: list[Worker] = []
-    for _ in range(count):
-        team.append(Here(setup) if count == 1 else Process(setup))
+    for _ in range(min(workers or cores(), most)):
+        team.append(Here(setup) if workers == 1 else Process(setup))
         stack.callback(team[-1].close)
     return team
