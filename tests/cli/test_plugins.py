@@ -45,11 +45,11 @@ def test_help_loads_no_plugin(process, installed: str) -> None:  # type: ignore[
     assert "(needs the extra rl)" in shown.out
 
 
-def test_what_comes_with_tltlc_is_told_and_needs_the_extra_game() -> None:
+def test_what_comes_with_tltlc_is_told_and_needs_an_extra() -> None:
     project = tomli.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     groups = project["entry-points"]
     assert groups["tltlc.commands"].keys() == OF_THE_RUNTIME.keys()
-    assert all(entry.endswith(" [game]") for group in groups.values() for entry in group.values())
+    assert all(entry.endswith((" [game]", " [rl]")) for group in groups.values() for entry in group.values())
 
 
 def test_a_missing_component_is_4(process, installed: str) -> None:  # type: ignore[no-untyped-def]

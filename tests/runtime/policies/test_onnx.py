@@ -6,7 +6,6 @@ import json
 
 import numpy as np
 import onnx
-import onnxruntime
 import pytest
 
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
@@ -16,6 +15,8 @@ from tltl_runtime.policies.onnx import to_onnx
 from tltl_runtime.policies.policy import Policy
 from tltlc.pipeline import read_artefact
 from tltlc.source import SourceFile
+
+onnxruntime = pytest.importorskip("onnxruntime")
 
 
 @pytest.fixture(name="policy", scope="module")
