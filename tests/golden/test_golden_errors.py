@@ -24,6 +24,9 @@ LEVELS = sorted(path for path in (Path(__file__).parent / "level").iterdir() if 
 """Messages of the runtime, which `tests/runtime/stealth/levels/test_file.py` compares."""
 EPISODES = sorted((Path(__file__).parent / "episode").iterdir())
 """Messages on recordings, which `tests/runtime/stealth/episodes/test_file.py` compares."""
+POLICIES = sorted((Path(__file__).parent / "policy").iterdir())
+TRAININGS = sorted((Path(__file__).parent / "training").iterdir())
+"""Messages on policies and trainings, which tests in `tests/runtime/policies` and `tests/runtime/training` compare."""
 CODE = re.compile(r"TLT[0-9]{4}")
 NEEDS_ANOTHER_INSTALLATION = {"TLT0712", "TLT0730", "TLT0830", "TLT0850", "TLT0851", "TLT0852", "TLT0870", "TLT0871"}
 """Codes that no file causes; tests/backends, tests/cli and tests/runtime show their messages."""
@@ -66,7 +69,8 @@ def test_message(
 
 
 def test_every_code_has_a_golden_message() -> None:
-    assert {case.name[:7] for case in (*CASES, *LEVELS, *EPISODES)} == set(codes()) - NEEDS_ANOTHER_INSTALLATION
+    cases = (*CASES, *LEVELS, *EPISODES, *POLICIES, *TRAININGS)
+    assert {case.name[:7] for case in cases} == set(codes()) - NEEDS_ANOTHER_INSTALLATION
 
 
 def test_every_code_in_the_source_has_a_page_and_every_page_is_used() -> None:

@@ -6,7 +6,7 @@ import io
 import time
 from collections.abc import Iterator
 from contextlib import redirect_stdout
-from itertools import islice
+from itertools import count
 from typing import Any
 
 import torch
@@ -41,17 +41,19 @@ class Runner(OnPolicyRunner):
 
     env: TrainingEnv
 
-    def __init__(self, env: TrainingEnv, train_cfg: dict[str, Any], device: str = "cpu") -> None:
+    def __init__(
+        self, env: TrainingEnv, train_cfg: dict[str, Any], log_dir: str | None = None, device: str = "cpu"
+    ) -> None:
         with redirect_stdout(io.StringIO()):
-            super().__init__(env, train_cfg, None, device)
+            super().__init__(env, train_cfg, log_dir, device)
 
-    def iterations(self) -> Iterator[Iteration]:
-        """Run an iteration each time that one is asked for, without end."""
+    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
+        """Run an iteration each time that one is asked for, up to ``most`` of them, or without end."""
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
         observation = self.env.get_observations().to(self.device)
-        while True:
+        for _ in count() if most is None else range(most):
             began = time.perf_counter()
             with torch.inference_mode():
                 for _ in range(self.cfg["num_steps_per_env"]):
@@ -73,7 +75,7 @@ class Runner(OnPolicyRunner):
         """Run all of the iterations, as rsl-rl's own does; raises ValueError for ``init_at_random_ep_len``."""
         if init_at_random_ep_len:
             raise ValueError("an episode's length is its automaton's business: it begins at its beginning")
-        for _ in islice(self.iterations(), num_learning_iterations):
+        for _ in self.iterations(num_learning_iterations):
             pass
 
     def _configure_multi_gpu(self) -> None:

@@ -9,6 +9,7 @@ from typing import Any, Final, Literal
 from tltl_runtime.policies.network import Network, Shapes, model_config
 from tltl_runtime.training.exploration import Exploration
 from tltl_runtime.training.settings_file import read_values
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source
 from tltlc.monitor import RewardOptions
 from tltlc.record import record
@@ -94,10 +95,13 @@ def read_settings(path: Path | None = None) -> Settings:
     if path is not None:
         given = read_values(read_source(path))
         values = {name: {**known, **given.get(name, {})} for name, known in values.items()}
-    ppo = Ppo(**values["ppo"])
+    ppo, rollout = Ppo(**values["ppo"]), Rollout(**values["rollout"])
+    if ppo.minibatches > rollout.envs * rollout.steps:
+        title = f"{ppo.minibatches} minibatches are more than there are decisions in a rollout"
+        raise TltlError([Diagnostic("TLT0862", title, help=f"give {rollout.envs * rollout.steps} at the most")])
     return Settings(
         ppo=ppo,
-        rollout=Rollout(**values["rollout"]),
+        rollout=rollout,
         network=Network(**values["network"]),
         exploration=Exploration(**values["exploration"]),
         reward=RewardOptions(**values["reward"], gamma=ppo.gamma),

@@ -31,7 +31,8 @@ class Number:
         return float(value) if self.low <= value <= self.high and not (self.open and value == self.low) else None
 
     def __str__(self) -> str:
-        return f"a number {'above' if self.open else 'from'} {self.low:g}{',' if self.open else ''} to {self.high:g}"
+        low, high = f"{self.low:g}", f"{self.high:,.0f}"
+        return f"a number above {low}, and {high} at most" if self.open else f"a number from {low} to {high}"
 
 
 @record

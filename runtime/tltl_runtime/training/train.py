@@ -59,6 +59,8 @@ def train(run: Run, *, resume: bool = False) -> Iterator[Report]:
             number any more; TLT0867, the folder holds a training and ``resume`` is false.
         WorkerError: a process that plays was lost.
     """
+    runner = _class("runner", run.settings.classes.runner, Runner)
+    _class("algorithm", run.settings.classes.algorithm, PPO)
     with ExitStack() as stack:
         own, device = stack.enter_context(joined(_device(run.settings.device)))
         begun = None
@@ -68,7 +70,9 @@ def train(run: Run, *, resume: bool = False) -> Iterator[Report]:
         begun = own.broadcast(begun)
         stack.enter_context(_threads(run.settings.threads))
         env = stack.enter_context(closing(_environment(run, own, device, begun.iteration if begun else 0)))
-        yield from _Training(run, own, _runner(run, own, env, device), begun).reports()
+        torch.manual_seed(int(_stream(run, own, _OF_TORCH, 0).generate_state(1)[0]))
+        config = rsl_config(run.settings, env.shapes, env.branches)
+        yield from _Training(run, own, runner(env, config, None, device), begun).reports()
 
 
 class _Training:
@@ -197,11 +201,15 @@ class _Training:
 
 
 def _begun(run: Run, resume: bool) -> Checkpoint | None:
-    """The checkpoint to go on from; a new training is written down."""
+    """The checkpoint to go on from; what is trained is written down."""
     if resume:
-        return read_checkpoint(run.folder / CHECKPOINT, identity(run))
+        begun = read_checkpoint(run.folder / CHECKPOINT, identity(run))
+        # Its limits may be others now, and hold when it is resumed the next time.
+        write_run(run)
+        return begun
     if (run.folder / RUN).exists():
-        title, help_ = f"`{run.folder}` holds a training already", "resume it, or train in another folder"
+        title = f"`{run.folder}` holds a training already"
+        help_ = f"go on with it by `tltlc train --resume {run.folder}`, or name another place with --out"
         raise TltlError([Diagnostic("TLT0867", title, help=help_)])
     write_run(run)
     return None
@@ -226,15 +234,6 @@ def _environment(run: Run, own: Peers, device: str, iteration: int) -> TrainingE
     weight = settings.exploration.weight
     visits = Visits(weight, len(run.fspa.states)) if weight else None
     return TrainingEnv(env, [int(each) for each in seeds], device, visits)
-
-
-def _runner(run: Run, own: Peers, env: TrainingEnv, device: str) -> Runner:
-    classes = run.settings.classes
-    runner = _class("runner", classes.runner, Runner)
-    _class("algorithm", classes.algorithm, PPO)
-    torch.manual_seed(int(_stream(run, own, _OF_TORCH, 0).generate_state(1)[0]))
-    made: Runner = runner(env, rsl_config(run.settings, env.shapes, env.branches), device)
-    return made
 
 
 def _class(setting: str, name: str, base: type) -> Any:
@@ -304,7 +303,7 @@ def _device(device: str) -> str:
     """The device; TLT0862 where torch has none of that name."""
     count = torch.cuda.device_count() if torch.cuda.is_available() else 0
     if device.startswith("cuda") and int(device.partition(":")[2] or 0) >= count:
-        title = f"there is no device `{device}`: torch finds {count} GPUs"
+        title = f"there is no device `{device}` here, or torch was built without it"
         raise TltlError([Diagnostic("TLT0862", title, help='train on the "cpu"')])
     return device
 

@@ -1,0 +1,84 @@
+"""Trainings that take seconds; as a program, one of them: ``python runs.py FOLDER [--resume] [SETTING=VALUE ...]``.
+
+The program prints a line of JSON for each report; in several processes of torchrun each does.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from tltl_runtime.stealth.env import spec_of
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.supply.offer import params
+from tltl_runtime.task import load_task
+from tltl_runtime.training.runner import Iteration, Runner
+from tltl_runtime.training.settings import read_settings
+from tltl_runtime.training.train import Run, train
+from tltlc.record import replace
+
+SMALL: dict[str, Any] = {
+    "rollout.envs": 4,
+    "rollout.steps": 16,
+    "rollout.workers": 1,
+    "network.hidden": (16,),
+    "network.channels": (4,),
+    "stop.steps": 192,
+    "checkpoint_s": 0.0,
+}
+
+
+def run_in(folder: Path, **changes: Any) -> Run:
+    """A training on cover_and_hide of three iterations of 64 steps, with ``changes`` of :data:`SMALL`; dots in the
+    names of settings are written as two underscores.
+    """
+    level = load_level("cover_and_hide")
+    task = load_task(spec_of(level), offered=params(level))
+    settings = read_settings()
+    for name, value in {**SMALL, **{name.replace("__", "."): value for name, value in changes.items()}}.items():
+        table, _, key = name.rpartition(".")
+        if table:
+            settings = replace(settings, **{table: replace(getattr(settings, table), **{key: value})})
+        else:
+            settings = replace(settings, **{key: value})
+    return Run(folder, task.fspa, task.params, "cover_and_hide", "v0", level.sensors, settings, 3)
+
+
+class Telling(Runner):
+    """A runner that tells the weights after each iteration, as their hash."""
+
+    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
+        for iteration in super().iterations(most):
+            weights = b"".join(each.numpy().tobytes() for each in self.alg.actor.state_dict().values())
+            _say(weights=hashlib.sha256(weights).hexdigest(), iteration=iteration.number)
+            yield iteration
+
+
+class Diverging(Runner):
+    """A runner whose second iteration gives a loss that is no number."""
+
+    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
+        for iteration in super().iterations(most):
+            yield iteration if iteration.number < 2 else replace(iteration, losses={"value": math.nan})
+
+
+def _say(**values: Any) -> None:
+    # In one piece: several processes may write at once.
+    os.write(1, (json.dumps({"rank": os.environ.get("RANK", "0"), **values}) + "\n").encode())
+
+
+def main(folder: str, *given: str) -> None:
+    changes = dict(each.split("=") for each in given if "=" in each)
+    run = run_in(Path(folder), **{name: json.loads(value) for name, value in changes.items()})
+    for report in train(run, resume="--resume" in given):
+        _say(number=report.iteration.number, steps=report.steps, stop=report.stop, finished=report.window.count)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

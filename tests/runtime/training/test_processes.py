@@ -1,0 +1,126 @@
+"""Trainings in processes of their own: killed ones, and several that train together."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+
+from tests.runtime.training import runs
+from tests.runtime.training.runs import run_in
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.training.checkpoint import read_checkpoint
+from tltl_runtime.training.metrics import METRICS, read_metrics
+from tltl_runtime.training.run import CHECKPOINT, POLICY, identity
+
+pytestmark = pytest.mark.slow
+
+ROOT = Path(__file__).parents[3]
+PROGRAM = str(Path(runs.__file__))
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
+
+
+@contextmanager
+def _started(*arguments: str) -> Iterator[subprocess.Popen[str]]:
+    command = [sys.executable, *arguments]
+    with subprocess.Popen(
+        command, env=ENVIRONMENT, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def _lines(process: subprocess.Popen[str]) -> list[dict[str, Any]]:
+    """What the processes say, to their ends."""
+    output, errors = process.communicate(timeout=120)
+    assert process.returncode == 0, errors
+    return [json.loads(line) for line in output.splitlines()]
+
+
+def _children(pid: int) -> list[int]:
+    """The processes that a process started, by what Linux tells."""
+    return [int(each) for each in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def _is_running(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks at processes as Linux shows them")
+def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoint(tmp_path: Path) -> None:
+    random, steps = Random(0), 64 * 400
+    run = run_in(tmp_path / "run", stop__steps=steps)
+    told = 0
+    for kill in range(3):
+        resume = ["--resume"] if kill else []
+        with _started(PROGRAM, str(run.folder), *resume, f"stop__steps={steps}") as process:
+            assert process.stdout is not None
+            first = json.loads(process.stdout.readline())
+            assert first["number"] >= told
+            time.sleep(random.uniform(0.0, 1.0))
+            workers = _children(process.pid)
+            process.send_signal(signal.SIGKILL)
+            said = process.stdout.read().splitlines()
+        # Each iteration wrote a checkpoint before it was told of, and a line may have been cut short.
+        told = max((json.loads(line)["number"] for line in said if line.endswith("}")), default=first["number"])
+        checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
+        assert checkpoint is not None
+        assert told <= checkpoint.iteration <= told + 1
+        assert checkpoint.steps == 64 * checkpoint.iteration
+        measured = [line["iteration"] for line in read_metrics(run.folder / METRICS)]
+        assert measured in (
+            list(range(1, checkpoint.iteration + 1)),
+            list(range(1, checkpoint.iteration + 2)),
+        )
+        deadline = time.monotonic() + 10
+        while any(map(_is_running, workers)) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert workers
+        assert not any(map(_is_running, workers))
+        told = checkpoint.iteration
+    last = told + 3
+    with _started(PROGRAM, str(run.folder), "--resume", f"stop__steps={64 * last}") as process:
+        lines = _lines(process)
+    assert [line["number"] for line in lines] == [told + 1, told + 2, told + 3]
+    assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == list(range(1, last + 1))
+    assert read_policy(run.folder / POLICY).card.level == "cover_and_hide"
+
+
+def test_processes_of_torchrun_learn_the_same_and_end_together(tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    together = ["-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2", PROGRAM, str(folder)]
+    changes = ['classes__runner="tests.runtime.training.runs:Telling"', "rollout__steps=64"]
+    by_rank: dict[str, list[list[dict[str, Any]]]] = defaultdict(list)
+    for resume, steps in (([], 1536), (["--resume"], 2048)):
+        with _started(*together, *resume, *changes, f"stop__steps={steps}") as process:
+            lines = _lines(process)
+        for rank in "01":
+            by_rank[rank].append([{**line, "rank": None} for line in lines if line["rank"] == rank])
+    assert by_rank["0"] == by_rank["1"]
+    begun, resumed = by_rank["0"]
+    reports = [line for line in begun + resumed if "number" in line]
+    # Steps are those of both: 2 processes, 4 environments, 64 decisions.
+    assert [(line["number"], line["steps"], line["stop"]) for line in reports] == [
+        (1, 512, None),
+        (2, 1024, None),
+        (3, 1536, "steps"),
+        (4, 2048, "steps"),
+    ]
+    assert len({line["weights"] for line in begun + resumed if "weights" in line}) == 4
+    assert [line["iteration"] for line in read_metrics(folder / METRICS)] == [1, 2, 3, 4]

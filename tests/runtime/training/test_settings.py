@@ -1,0 +1,105 @@
+"""Settings of trainings: the defaults, and files in which some of them differ."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import get_type_hints
+
+import pytest
+
+from tltl_runtime.policies.network import Network
+from tltl_runtime.training import settings as module
+from tltl_runtime.training.settings import Settings, default_text, read_settings, rsl_config
+from tltl_runtime.training.settings_file import KINDS, read_values
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.render import render
+from tltlc.monitor import RewardOptions
+from tltlc.record import replace
+from tltlc.source import SourceFile
+
+GOLDEN = Path(__file__).parents[2] / "golden" / "training"
+
+WRONG = {
+    "TLT0860": "[ppo]\ngamma = \n",
+    "TLT0861": "[ppo]\nlearning_rat = 1e-4\n[roll]\n",
+    "TLT0861_elsewhere": 'gamma = 0.9\n[ppo]\ndevice = "cpu"\n',
+    "TLT0862": '[ppo]\ngamma = 1.5\nepochs = true\nlearning_rate = 0\n[network]\nhidden = []\nactivation = "rely"\n',
+    "TLT0862_table": 'ppo = 3\ndevice = "gpu"\n[classes]\nrunner = "my runner"\n[stop]\nminutes = nan\n',
+    "TLT0862_minibatches": "[rollout]\nenvs = 1\nsteps = 2\n",
+}
+
+
+def _read(tmp_path: Path, text: str) -> Settings:
+    file = tmp_path / "settings.toml"
+    file.write_text(text, encoding="utf-8")
+    return read_settings(file)
+
+
+def test_the_defaults_are_those_of_the_paper() -> None:
+    settings = read_settings()
+    ppo = settings.ppo
+    assert (ppo.learning_rate, ppo.entropy, ppo.clip, ppo.lam, ppo.gamma) == (3e-4, 0.01, 0.2, 0.95, 0.99)
+    assert settings.network.hidden == (512, 512)
+    assert settings.reward == RewardOptions(terminal_penalty="discounted", gamma=0.99)
+    assert (settings.stop.windows, settings.stop.episodes) == (2, 50)
+
+
+def test_the_file_of_defaults_has_every_setting_and_no_other() -> None:
+    values = read_values(SourceFile("settings.toml", default_text()))
+    assert {table: set(keys) for table, keys in values.items()} == {table: set(keys) for table, keys in KINDS.items()}
+    for name, kind in get_type_hints(Settings).items():
+        # The discount of rewards is that of the algorithm.
+        fields = set(getattr(kind, "__match_args__", ())) - ({"gamma"} if name == "reward" else set())
+        assert fields == set(KINDS.get(name, {})), name
+    assert {name for name in get_type_hints(Settings) if name not in KINDS} == set(KINDS[""])
+
+
+def test_the_default_network_is_that_of_policies() -> None:
+    assert read_settings().network == Network()
+
+
+def test_a_file_has_what_differs(tmp_path: Path) -> None:
+    settings = _read(tmp_path, 'threads = 2\n[ppo]\ngamma = 0.9\n[network]\nhidden = [64]\n[reward]\nmode = "sparse"\n')
+    default = read_settings()
+    assert settings == replace(
+        default,
+        threads=2,
+        ppo=replace(default.ppo, gamma=0.9),
+        network=replace(default.network, hidden=(64,)),
+        reward=RewardOptions(mode="sparse", terminal_penalty="discounted", gamma=0.9),
+    )
+    assert isinstance(_read(tmp_path, "checkpoint_s = 5\n").checkpoint_s, float)
+
+
+def test_nothing_but_the_printed_defaults_changes_nothing(tmp_path: Path) -> None:
+    assert _read(tmp_path, default_text()) == _read(tmp_path, "") == read_settings()
+
+
+def test_rsl_rl_is_told_all(tmp_path: Path) -> None:
+    config = rsl_config(_read(tmp_path, "[ppo]\nclip = 0.3\n"), {"automaton": (6,), "map": (3, 11, 11)}, (3, 2))
+    assert config["actor"]["class_name"] == config["critic"]["class_name"] == "CNNModel"
+    assert config["actor"]["distribution_cfg"]["branches"] == (3, 2)
+    assert config["algorithm"]["clip_param"] == 0.3
+    assert rsl_config(read_settings(), {"automaton": (6,)}, (3, 2))["actor"]["class_name"] == "MLPModel"
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_message(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("settings.toml").write_text(WRONG[name], encoding="utf-8")
+    with pytest.raises(TltlError) as caught:
+        read_settings(Path("settings.toml"))
+    compare(name, caught.value)
+
+
+def compare(name: str, error: TltlError) -> None:
+    found, expected = render(error.diagnostics), GOLDEN / f"{name}.txt"
+    if os.environ.get("UPDATE_GOLDEN") == "1":
+        expected.write_text(found, encoding="utf-8")
+    assert found == expected.read_text(encoding="utf-8")
+    assert name[:7] in found
+
+
+def test_the_defaults_lie_beside_the_module() -> None:
+    assert module.DEFAULTS.parent == Path(module.__file__).parent

@@ -1,0 +1,273 @@
+"""Trainings that are run, interrupted and resumed."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch
+
+from tests.runtime.training.runs import run_in
+from tests.runtime.training.test_settings import compare
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.folder import held
+from tltl_runtime.training.metrics import METRICS, read_metrics
+from tltl_runtime.training.report import Report
+from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, read_run, write_run
+from tltl_runtime.training.train import train
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
+
+
+@pytest.fixture(name="folder", scope="module")
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("trainings")
+
+
+@pytest.fixture(name="whole", scope="module")
+def _whole(folder: Path) -> tuple[Run, list[Report]]:
+    """A training of three iterations."""
+    run = run_in(folder / "whole")
+    return run, list(train(run))
+
+
+def _numbers(reports: list[Report]) -> list[Any]:
+    return [(each.iteration.number, each.iteration.losses, each.steps, each.window) for each in reports]
+
+
+def _checkpoint(run: Run) -> Checkpoint:
+    checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
+    assert checkpoint is not None
+    return checkpoint
+
+
+def _assert_equal_weights(one: Run, other: Run) -> None:
+    first, second = _checkpoint(one).algorithm, _checkpoint(other).algorithm
+    for part in ("actor_state_dict", "critic_state_dict"):
+        assert first[part].keys() == second[part].keys()
+        assert all(torch.equal(first[part][name], second[part][name]) for name in first[part])
+
+
+def test_it_ends_at_its_limit_and_leaves_its_files(whole: tuple[Run, list[Report]]) -> None:
+    run, reports = whole
+    assert [(each.iteration.number, each.steps, each.stop) for each in reports] == [
+        (1, 64, None),
+        (2, 128, None),
+        (3, 192, "steps"),
+    ]
+    assert all(each.checkpointed for each in reports)
+    assert {path.name for path in run.folder.iterdir() if not path.name.startswith((".", "events"))} == {
+        RUN,
+        CHECKPOINT,
+        POLICY,
+        METRICS,
+    }
+    policy = read_policy(run.folder / POLICY)
+    assert (policy.card.level, policy.card.sensors, policy.card.fspa.name) == (
+        "cover_and_hide",
+        run.sensors,
+        run.fspa.name,
+    )
+
+
+def test_the_library_below_prints_nothing(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    run = run_in(folder / "quiet", stop__steps=64)
+    assert len(list(train(run))) == 1
+    assert capfd.readouterr() == ("", "")
+
+
+def test_equal_runs_give_equal_numbers_and_so_do_equal_checkpoints(
+    folder: Path, whole: tuple[Run, list[Report]]
+) -> None:
+    run, reports = whole
+    again = replace(run, folder=folder / "again")
+    assert _numbers(list(train(again))) == _numbers(reports)
+    _assert_equal_weights(run, again)
+    longer = [replace(each, settings=run_in(folder, stop__steps=320).settings) for each in (run, again)]
+    resumed = [list(train(each, resume=True)) for each in longer]
+    assert [each.iteration.number for each in resumed[0]] == [4, 5]
+    assert _numbers(resumed[0]) == _numbers(resumed[1])
+    _assert_equal_weights(*longer)
+    assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == [1, 2, 3, 4, 5]
+
+
+def test_a_training_that_is_left_goes_on_after_its_last_iteration(folder: Path) -> None:
+    run = run_in(folder / "left", checkpoint_s=3600.0, threads=1)
+    reports = train(run)
+    assert not next(reports).checkpointed
+    next(reports)
+    reports.close()  # type: ignore[attr-defined]
+    assert (_checkpoint(run).iteration, _checkpoint(run).steps) == (2, 128)
+    # What a process that was killed had measured beyond its checkpoint is measured again.
+    with (run.folder / METRICS).open("a") as file:
+        file.write(json.dumps({"iteration": 3}) + "\n" + '{"iterat')
+    assert [each.iteration.number for each in train(run, resume=True)] == [3]
+    assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == [1, 2, 3]
+    # It is over: its end is told once more.
+    (last,) = train(run, resume=True)
+    assert (last.iteration.number, last.steps, last.stop) == (3, 192, "steps")
+
+
+def test_the_best_policy_is_the_one_that_played_its_window(folder: Path) -> None:
+    # Every episode on this level that lasts no longer than a rollout fails; a window is one episode.
+    run = run_in(folder / "best", rollout__steps=512, stop__steps=2048, stop__episodes=1)
+    reports = train(run)
+    report = next(report for report in reports if report.best_pass_rate is not None)
+    reports.close()  # type: ignore[attr-defined]
+    assert report.window.count
+    checkpoint = _checkpoint(run)
+    assert checkpoint.best is not None
+    assert checkpoint.best.score[0] == report.best_pass_rate
+    weights = read_policy(run.folder / POLICY).weights()
+    best, now = checkpoint.best.actor, checkpoint.algorithm["actor_state_dict"]
+    assert all(torch.equal(weights[name], best[name].to(torch.float16)) for name in weights)
+    assert not all(torch.equal(best[name], now[name]) for name in weights)
+
+
+def test_a_run_is_read_as_it_was_written(tmp_path: Path) -> None:
+    run = run_in(tmp_path / "run")
+    write_run(run)
+    assert read_run(run.folder) == run
+    assert identity(read_run(run.folder)) == identity(run)
+
+
+# --- what is refused --------------------------------------------------------------------------------
+
+
+@pytest.fixture(name="copy")
+def _copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, whole: tuple[Run, list[Report]]) -> Iterator[Run]:
+    """A copy of the whole training, in the folder `run`."""
+    shutil.copytree(whole[0].folder, tmp_path / "run")
+    monkeypatch.chdir(tmp_path)
+    return replace(whole[0], folder=Path("run"))
+
+
+def _torn(run: Run) -> Run:
+    data = (run.folder / CHECKPOINT).read_bytes()
+    (run.folder / CHECKPOINT).write_bytes(data[: len(data) // 2])
+    return run
+
+
+def _flipped(run: Run) -> Run:
+    data = bytearray((run.folder / CHECKPOINT).read_bytes())
+    data[len(data) // 2] ^= 1
+    (run.folder / CHECKPOINT).write_bytes(data)
+    return run
+
+
+class _Harmful:
+    def __reduce__(self) -> tuple[Callable[[str], object], tuple[str]]:
+        return Path, ("harm",)
+
+
+def _harmful(run: Run) -> Run:
+    torch.save({"format": "tltl-checkpoint", "version": 1, "run": _Harmful()}, run.folder / CHECKPOINT)
+    return run
+
+
+def _other_seed(run: Run) -> Run:
+    return replace(run, seed=4)
+
+
+def _newer(run: Run) -> Run:
+    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
+    torch.save({**content, "version": 2}, run.folder / CHECKPOINT)
+    return run
+
+
+def _partial(run: Run) -> Run:
+    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
+    del content["window"]
+    torch.save(content, run.folder / CHECKPOINT)
+    return run
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("TLT0864", _torn),
+        ("TLT0864_flipped", _flipped),
+        ("TLT0864_harmful", _harmful),
+        ("TLT0864_seed", _other_seed),
+        ("TLT0864_newer", _newer),
+        ("TLT0864_partial", _partial),
+    ],
+)
+def test_a_checkpoint_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Run], Run]) -> None:
+    with pytest.raises(TltlError) as caught:
+        next(train(change(copy), resume=True))
+    compare(name, caught.value)
+
+
+def test_without_a_checkpoint_a_training_begins_anew(copy: Run) -> None:
+    (copy.folder / CHECKPOINT).unlink()
+    assert next(train(copy, resume=True)).iteration.number == 1
+
+
+def test_a_new_training_writes_over_no_other(copy: Run) -> None:
+    with pytest.raises(TltlError) as caught:
+        next(train(copy))
+    compare("TLT0867", caught.value)
+
+
+def test_two_trainings_in_one_folder_are_refused(copy: Run) -> None:
+    with held(copy.folder), pytest.raises(TltlError) as caught:
+        next(train(copy, resume=True))
+    compare("TLT0865", caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("TLT0863", "{"), ("TLT0863_other", "[]"), ("TLT0863_key", None), ("TLT0863_value", None)]
+)
+def test_a_description_that_does_not_fit_is_refused(copy: Run, name: str, text: str | None) -> None:
+    path = copy.folder / RUN
+    document = json.loads(path.read_text())
+    if name == "TLT0863_key":
+        del document["seed"]
+    else:
+        document["settings"]["ppo"]["epochs"] = "three"
+    path.write_text(json.dumps(document) if text is None else text)
+    with pytest.raises(TltlError) as caught:
+        read_run(copy.folder)
+    compare(name, caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("TLT0862_module", {"classes__runner": "nowhere:Runner"}),
+        ("TLT0862_class", {"classes__algorithm": "MLPModel"}),
+        ("TLT0862_device", {"device": "cuda:31"}),
+    ],
+)
+def test_what_there_is_not_is_said_before_anything_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, changes: dict[str, Any]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(TltlError) as caught:
+        next(train(run_in(Path("run"), **changes)))
+    compare(name, caught.value)
+    assert not Path("run", RUN).exists()
+
+
+def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) -> None:
+    run = run_in(folder / "diverged", classes__runner="tests.runtime.training.runs:Diverging")
+    with pytest.raises(TltlError) as caught:
+        list(train(run))
+    compare("TLT0866", caught.value)
+    assert _checkpoint(run).iteration == 1
+
+
+def test_a_failure_to_write_leaves_the_older_checkpoint(copy: Run) -> None:
+    path = copy.folder / CHECKPOINT
+    before = path.read_bytes()
+    checkpoint = _checkpoint(copy)
+    with pytest.raises(TltlError, match="TLT0005"):
+        write_checkpoint(copy.folder / "missing" / CHECKPOINT, checkpoint)
+    assert path.read_bytes() == before
+    assert not list(copy.folder.glob("*.tmp"))

@@ -1,0 +1,55 @@
+"""When the spec counts as met, and which policy counts as the best."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltl_runtime.training.environment import Finished
+from tltl_runtime.training.windows import Windows
+
+SUCCESS = Finished(True, 1.0, 0.9, 40, 4)
+FAILURE = Finished(False, 0.6, -0.7, 25, 2)
+
+
+def _windows(episodes: list[bool]) -> Windows:
+    windows = Windows(2, 3, 100)
+    windows.add(SUCCESS if each else FAILURE for each in episodes)
+    return windows
+
+
+@given(st.lists(st.booleans(), max_size=20))
+def test_the_spec_is_met_after_a_run_of_two_windows(episodes: list[bool]) -> None:
+    assert _windows(episodes).met == (len(episodes) >= 6 and all(episodes[-6:]))
+
+
+@given(st.lists(st.booleans(), max_size=20))
+def test_a_policy_is_scored_by_its_last_window(episodes: list[bool]) -> None:
+    score = _windows(episodes).score
+    if len(episodes) < 3:
+        assert score is None
+    else:
+        assert score is not None
+        assert score[0] == pytest.approx(sum(episodes[-3:]) / 3)
+
+
+def test_rewards_are_told_with_the_undiscounted_penalty() -> None:
+    window = _windows([True, False]).window
+    # 1 - 40/100, and 0.6 - 1.
+    assert window.reward == pytest.approx((0.6 - 0.4) / 2)
+    assert (window.count, window.successes, window.pass_rate) == (2, 1, 0.5)
+    assert (window.progress, window.steps, window.states) == (0.8, 32.5, {2: 0.5, 4: 0.5})
+
+
+def test_a_window_without_episodes_says_nothing() -> None:
+    window = _windows([]).window
+    assert (window.count, window.pass_rate, window.reward, window.states) == (0, 0.0, 0.0, {})
+
+
+@given(st.lists(st.booleans(), max_size=12), st.lists(st.booleans(), max_size=12))
+def test_the_state_goes_on_where_it_was(before: list[bool], after: list[bool]) -> None:
+    windows = Windows(2, 3, 100)
+    windows.load(_windows(before).state())
+    windows.add(SUCCESS if each else FAILURE for each in after)
+    assert windows.state() == _windows(before + after).state()
