@@ -72,7 +72,8 @@ class _Picture:
         self._run, self._console = run, console
         self._last: Report | None = None
         self._in_a_row = 0
-        self._at = self._checkpoint = time.monotonic()
+        self._at = time.monotonic()
+        self._checkpoint: float | None = None
 
     def __call__(self, report: Report) -> None:
         self._last, self._at = report, time.monotonic()
@@ -87,7 +88,7 @@ class _Picture:
         title = Text(f"{run.fspa.name} on {run.level} {run.variant}, seed {run.seed}", "bold")
         report = self._last
         if report is None:
-            body: RenderableType = Text("starting the game's workers …")
+            body: RenderableType = Text("playing the first steps …")
         else:
             count, stop = report.window.count, run.settings.stop
             ended = f"where the last {count} episodes ended" if count else "no episode has ended yet"
@@ -96,7 +97,8 @@ class _Picture:
                 Text(f"\n{ended}", "dim"),
                 _states(report.window, run.fspa.states),
                 Text(),
-                _figures(report, stop, 0.0 if report.stop else now - self._at, now - self._checkpoint),
+                _figures(report, stop, 0.0 if report.stop else now - self._at),
+                self._kept(now),
             )
         return Panel(
             body,
@@ -106,6 +108,11 @@ class _Picture:
             title_align="left",
         )
 
+    def _kept(self, now: float) -> str:
+        if self._checkpoint is None:
+            return "no checkpoint yet"
+        return f"last checkpoint {duration(now - self._checkpoint)} ago"
+
 
 def line(report: Report, stop: Stop) -> str:
     """A report in a line."""
@@ -113,7 +120,7 @@ def line(report: Report, stop: Stop) -> str:
     parts = [f"iteration {report.iteration.number}: {report.steps:,} steps in {duration(report.seconds)}"]
     if window.count:
         parts += [
-            f"spec met in {window.successes} of {window.count} episodes",
+            f"met in {window.successes} of the last {window.count} episodes",
             f"progress {window.progress:.2f}",
             f"reward {window.reward:.2f}",
         ]
@@ -171,8 +178,8 @@ def _states(window: Window, states: tuple[State, ...]) -> Table:
     return table
 
 
-def _figures(report: Report, stop: Stop, since: float, checkpoint_s: float) -> Text:
-    """Numbers, ``since`` seconds after the report and so many after the last checkpoint."""
+def _figures(report: Report, stop: Stop, since: float) -> Text:
+    """Numbers, ``since`` seconds after the report."""
     window, iteration = report.window, report.iteration
     learning = iteration.learn_s / ((iteration.learn_s + iteration.collect_s) or 1.0)
     best = "" if report.best_pass_rate is None else f"; best so far: met in {report.best_pass_rate:.0%}"
@@ -182,7 +189,7 @@ def _figures(report: Report, stop: Stop, since: float, checkpoint_s: float) -> T
     return Text(
         f"reward {window.reward:.2f}, {window.steps:.0f} steps an episode{best}\n"
         f"{report.steps:,} of at most {stop.steps:,} steps; {speed}\n"
-        f"{duration(report.seconds + since)} so far, {end}; last checkpoint {duration(checkpoint_s)} ago"
+        f"{duration(report.seconds + since)} so far, {end}"
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from torch.utils.tensorboard import SummaryWriter
 
-from tltl_runtime.training.report import Report
+from tltl_runtime.training.report import Report, Window
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reading_error, reason
@@ -71,16 +71,19 @@ def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
         "learn_s": round(iteration.learn_s, 4),
         "episodes": len(iteration.finished),
         "window": window.count,
-        "pass_rate": window.pass_rate if window.count else None,
-        "progress": window.progress if window.count else None,
-        "reward": window.reward if window.count else None,
-        "episode_steps": window.steps if window.count else None,
+        **(dict.fromkeys(_OF_THE_WINDOW) if not window.count else means(window)),
         "states": [
-            {"state": state, "label": fspa.states[state].label.ascii, "share": share}
+            {"state": state, "label": fspa.states[state].label.ascii, "share": round(share, 6)}
             for state, share in sorted(window.states.items())
         ],
-        "losses": iteration.losses,
+        "losses": {name: round(loss, 6) for name, loss in iteration.losses.items()},
     }
+
+
+def means(window: Window) -> dict[str, float]:
+    """How the episodes of a window went."""
+    values = (window.pass_rate, window.progress, window.reward, window.steps)
+    return {name: round(value, 6) for name, value in zip(_OF_THE_WINDOW, values, strict=True)}
 
 
 def read_metrics(path: Path) -> list[dict[str, Any]]:

@@ -14,7 +14,7 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.curve import draw_curve
-from tltl_runtime.training.metrics import METRICS, read_metrics
+from tltl_runtime.training.metrics import METRICS, means, read_metrics
 from tltl_runtime.training.report import Report
 from tltl_runtime.training.run import POLICY, Run
 from tltl_runtime.training.versions import versions
@@ -47,7 +47,6 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
 
 def training_record(run: Run, last: Report, measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """The record, JSON data as ``docs/training.md`` describes it; ``measured`` are the lines of ``metrics.jsonl``."""
-    window = last.window
     return {
         "format": "tltl-training",
         "version": _VERSION,
@@ -61,13 +60,7 @@ def training_record(run: Run, last: Report, measured: Sequence[Mapping[str, Any]
         "iterations": last.iteration.number,
         "steps": last.steps,
         "seconds": round(last.seconds, 3),
-        "window": {
-            "episodes": window.count,
-            "pass_rate": window.pass_rate,
-            "progress": window.progress,
-            "reward": window.reward,
-            "episode_steps": window.steps,
-        },
+        "window": {"episodes": last.window.count, **means(last.window)},
         "versions": versions(),
         "machine": {
             "system": platform.platform(),

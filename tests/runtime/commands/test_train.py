@@ -199,7 +199,7 @@ def test_a_terminal_shows_a_picture(here: Path) -> None:
         os.close(theirs)
         shown = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", b"".join(_output(ours)).decode())
     assert process.returncode == 1
-    assert "starting the game" in shown
+    assert "playing the first steps" in shown
     last = shown[shown.rindex("cover_and_hide on cover_and_hide v0, seed 0") :]
     for said in ("spec met", "met in a row", "of 2, with which training ends", "state 2", "The spec is violated."):
         assert said in last

@@ -1,0 +1,57 @@
+"""What is said of a training while it goes on."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.runtime.training.reports import a_report, an_episode
+from tltl_runtime.commands.training_display import duration, in_a_row, line, seconds_left
+from tltl_runtime.training.settings import Stop, read_settings
+from tltlc.record import replace
+
+MET, FAILED = an_episode(True), an_episode(False)
+
+
+@pytest.fixture(scope="module")
+def stop() -> Stop:
+    return read_settings().stop
+
+
+def test_a_line(stop: Stop) -> None:
+    early, late = a_report(count=0, successes=0), a_report(100)
+    assert line(early, stop) == "iteration 1: 4,096 steps in 2 s, 2,048 steps/s, at most 32 min 31 s left"
+    assert line(late, stop) == (
+        "iteration 100: 409,600 steps in 3 min 20 s, met in 40 of the last 50 episodes, progress 0.90, "
+        "reward 0.65, 2,048 steps/s, at most 29 min 13 s left"
+    )
+    assert line(replace(late, stop="met"), stop).endswith("2,048 steps/s")
+
+
+def test_the_nearer_limit_counts(stop: Stop) -> None:
+    report = a_report(10)
+    assert seconds_left(report, replace(stop, steps=2 * report.steps)) == pytest.approx(report.seconds)
+    assert seconds_left(report, replace(stop, minutes=1.0)) == pytest.approx(40.0)
+    assert seconds_left(report, replace(stop, steps=1, minutes=9.0)) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("finished", "window", "before", "after"),
+    [
+        ((), (50, 40), 3, 3),
+        ((MET, MET), (50, 40), 3, 5),
+        ((FAILED, MET, MET), (50, 40), 3, 2),
+        ((MET, FAILED), (50, 40), 3, 0),
+        ((), (30, 30), 0, 30),  # after a training was resumed
+    ],
+)
+def test_episodes_in_a_row(finished: tuple[object, ...], window: tuple[int, int], before: int, after: int) -> None:
+    report = a_report(count=window[0], successes=window[1], finished=finished)  # type: ignore[arg-type]
+    assert in_a_row(report, before) == after
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [(0.2, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (754, "12 min 34 s"), (12000, "3 h 20 min")],
+)
+def test_spans_of_time(seconds: float, said: str) -> None:
+    assert duration(seconds) == said
