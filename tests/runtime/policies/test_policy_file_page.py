@@ -1,0 +1,57 @@
+"""docs/policy-file.md describes the files that are written, and its programs run."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from safetensors import safe_open
+
+from tests.docs.blocks import DOCS, Block, blocks
+from tests.runtime.policies.examples import card_of, policy_of
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.onnx import to_onnx
+
+PAGE = DOCS / "policy-file.md"
+TEXT = PAGE.read_text(encoding="utf-8")
+
+
+def keys(head: str) -> set[str]:
+    rows = TEXT[TEXT.index(head) :].split("\n\n")[0].splitlines()[2:]
+    return {key for row in rows for key in re.findall(r"`(\w+)`", row.split("|")[1])}
+
+
+@pytest.fixture(name="folder", scope="module")
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("page")
+    policy = policy_of(card_of())
+    write_policy(folder / "bot.safetensors", policy)
+    (folder / "bot.onnx").write_bytes(to_onnx(policy))
+    return folder
+
+
+def test_every_key_of_a_card_is_there(folder: Path) -> None:
+    with safe_open(folder / "bot.safetensors", framework="np") as file:
+        assert list(file.metadata()) == ["card"]
+        assert set(json.loads(file.metadata()["card"])) == keys("| key of `card` |")
+
+
+def test_every_text_of_a_model_is_there(folder: Path) -> None:
+    onnxruntime = pytest.importorskip("onnxruntime")
+    meta = onnxruntime.InferenceSession(folder / "bot.onnx").get_modelmeta()
+    assert set(meta.custom_metadata_map) == keys("| metadata |")
+
+
+@pytest.mark.parametrize(
+    "program", [block for block in blocks(PAGE) if block.kind == "python"], ids=lambda block: f"line {block.line}"
+)
+def test_its_programs_run(
+    program: Block, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if "onnxruntime" in program.text:
+        pytest.importorskip("onnxruntime")
+    monkeypatch.chdir(folder)
+    exec(compile(program.text, str(PAGE), "exec"), {})
+    assert capsys.readouterr().out
