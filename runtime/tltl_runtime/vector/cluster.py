@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import logging
 import os
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+_TO_ANSWER_S: Final = 10.0
+"""How long a cluster may take to answer."""
 
 
 @contextmanager
@@ -32,8 +36,9 @@ def cluster() -> Iterator[Any]:
     # A cluster of this machine's own tells nobody that there is one.
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     try:
+        _call(os.environ.get("RAY_ADDRESS", ""))
         ray.init(include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
-    except (ConnectionError, ValueError, RuntimeError) as error:
+    except (OSError, ValueError, RuntimeError) as error:
         place = os.environ.get("RAY_ADDRESS", "this machine")
         title, help_ = f"there is no Ray cluster at `{place}`: {_first_line(error)}", "set RAY_ADDRESS, or unset it"
         raise TltlError([Diagnostic("TLT0852", title, help=help_)]) from None
@@ -46,6 +51,13 @@ def cluster() -> Iterator[Any]:
 def free_cores(ray: Any) -> int:
     """How many cores of the cluster nobody uses, at least one."""
     return max(1, int(ray.available_resources().get("CPU", 1)))
+
+
+def _call(address: str) -> None:
+    """Raise OSError where nobody answers at HOST:PORT: Ray would try for minutes."""
+    host, _, port = address.removeprefix("ray://").rpartition(":")
+    if host and port.isdecimal():
+        socket.create_connection((host, int(port)), _TO_ANSWER_S).close()
 
 
 def _first_line(error: Exception) -> str:
