@@ -62,7 +62,7 @@ $(VENV)/.installed-game: pyproject.toml constraints.txt | $(VENV)/bin/python
 	@touch $@ $(VENV)/.installed
 
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(PIP) install -c constraints.txt -e '.[dev,rl]'
+	$(PIP) install -c constraints.txt -e '.[dev,ray]'
 	@touch $@ $(VENV)/.installed $(VENV)/.installed-game
 
 $(VENV)/.installed-bench: benchmarks/requirements.txt | $(VENV)/.installed-dev

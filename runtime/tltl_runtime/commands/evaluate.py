@@ -118,10 +118,8 @@ def command(
             with closing(results(setup, tasks, workers)) as playing:
                 for result in _counted(playing, len(tasks)):
                     files.add(result)
-        except (KeyboardInterrupt, TltlError):
+        finally:
             _tell(files, json_file, len(tasks))
-            raise
-        _tell(files, json_file, len(tasks))
     return report.status
 
 
@@ -169,10 +167,10 @@ def _bar(count: int) -> Any:
 def _tell(files: EvaluationFiles, json_file: Path | None, wanted: int) -> None:
     """Report on what was played, which is not all of it where the evaluation was broken off."""
     played = files.played
-    if played < wanted:
-        click.echo(f"stopped: {played} of {wanted} episodes were played", err=True)
     if not played:
         return
+    if played < wanted:
+        click.echo(f"stopped: {played} of {wanted} episodes were played", err=True)
     document = files.document(complete=played == wanted)
     text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
     if json_file is None or str(json_file) != "-":

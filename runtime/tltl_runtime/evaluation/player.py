@@ -26,7 +26,7 @@ class Setup:
     """What an evaluation plays: ``policy`` on a level with a spec, rewarded as every reported figure is.
 
     ``level`` is what :func:`~tltl_runtime.stealth.levels.file.load_level` takes.  ``params`` are in SI units.
-    ``recorded`` says of which episodes recordings are wanted.
+    ``recorded`` says of which episodes recordings are wanted; unless it is None, the ways of all are kept.
     """
 
     policy: Policy

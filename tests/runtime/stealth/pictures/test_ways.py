@@ -1,0 +1,37 @@
+"""The ways of many episodes over a plan."""
+
+from __future__ import annotations
+
+from io import BytesIO
+
+import numpy as np
+from PIL import Image
+
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.way import Way
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.pictures.ways import draw_ways
+
+RED, GREEN = (220, 38, 38), (22, 163, 74)
+
+
+def test_ways_and_where_they_failed() -> None:
+    level = load_level("cover_and_hide")
+    env = make_env("cover_and_hide")
+    fspa = env.task.fspa
+    env.close()
+    line = np.array([[5.0, 1.0], [5.0, 3.0], [12.0, 3.0]], dtype=np.float32)
+    passed = Way(line, np.array([0, 0, 4], dtype=np.int32), "success")
+    failed = Way(line, np.array([0, 1, 2], dtype=np.int32), "violation")
+
+    def count(ways: list[Way], colour: tuple[int, int, int]) -> int:
+        drawn = draw_ways(level, fspa, ways, "some episodes")
+        assert drawn == draw_ways(level, fspa, ways, "some episodes")
+        with Image.open(BytesIO(drawn)) as picture:
+            colours = picture.convert("RGB").getcolors(1 << 20)
+            assert colours is not None
+            return sum(number for number, found in colours if found == colour)
+
+    without = count([passed] * 3, RED)
+    assert count([passed, failed, passed], RED) > without + 40, "a mark at the end and one in the legend"
+    assert count([failed] * 3, GREEN) < count([passed] * 3, GREEN), "successes are in the legend alone"
