@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
+from math import isfinite
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 if TYPE_CHECKING:
     from tltl_runtime.training.report import Report as Trained
     from tltl_runtime.training.run import Run
+
+
+def _finite(_: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
+    if value is not None and not isfinite(value):
+        raise click.BadParameter("a limit is a finite number", param=parameter)
+    return value
 
 
 @click.command(
@@ -65,7 +72,11 @@ Watching, from another terminal:
 )
 @click.option("--steps", metavar="N", type=click.IntRange(min=1), help="End after so many steps of all environments.")
 @click.option(
-    "--minutes", metavar="M", type=click.FloatRange(min=0), help="End after so many minutes of training (0: no limit)."
+    "--minutes",
+    metavar="M",
+    type=click.FloatRange(min=0),
+    callback=_finite,
+    help="End after so many minutes of training (0: no limit).",
 )
 @click.option(
     "--workers",

@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Final
 
 from rich.console import Console, Group, RenderableType
@@ -85,7 +86,7 @@ class _Picture:
         """The picture now."""
         now = time.monotonic()
         run = self._run
-        title = Text(f"{run.fspa.name} on {run.level} {run.variant}, seed {run.seed}", "bold")
+        title = Text(f"{run.fspa.name} on {Path(run.level).stem} {run.variant}, seed {run.seed}", "bold")
         report = self._last
         if report is None:
             body: RenderableType = Text("playing the first steps …")

@@ -8,6 +8,7 @@ from typing import Any, Final, Literal, TypeVar
 
 import click
 
+from tltl_runtime.evaluation.evaluate import check_limit
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.env import check_fit, spec_of
@@ -66,6 +67,7 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     spec = asked.spec if asked.spec is not None else spec_of(level)
     task = load_task(spec, offered=params(level))
     check_fit(level, task.fspa, spec)
+    check_limit(task.fspa)
     seed = asked.seed or 0
     folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}"
     return Run(

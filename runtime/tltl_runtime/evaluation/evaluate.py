@@ -74,10 +74,15 @@ def set_up(
     task = load_task(card.fspa if spec is None else spec, own, offered=offered)
     check_policy(card, place, task.fspa)
     check_fit(place, task.fspa, card.fspa if spec is None else spec)
-    if task.fspa.limit_steps is None:
-        title = f"`{task.fspa.name}` has no limit, so an episode may go on for ever"
-        raise TltlError([Diagnostic("TLT0851", title, help="write `limit 60 s` or the like in the spec")])
+    check_limit(task.fspa)
     return Setup(policy, name, place.variant, task.fspa, seed, task.params, recorded)
+
+
+def check_limit(fspa: Fspa) -> None:
+    """Raise TltlError, TLT0851, where a spec has no limit."""
+    if fspa.limit_steps is None:
+        title = f"`{fspa.name}` has no limit, so an episode may go on for ever"
+        raise TltlError([Diagnostic("TLT0851", title, help="write `limit 60 s` or the like in the spec")])
 
 
 def results(setup: Setup, tasks: Sequence[Task], workers: Workers = 1) -> Generator[Result]:

@@ -40,21 +40,22 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     policy = read_policy(run.folder / POLICY)
     write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.actor))
     text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
-    title = f"{run.fspa.name} on {run.level} {run.variant}, seed {run.seed}"
+    title = f"{run.fspa.name} on {made['level']} {run.variant}, seed {run.seed}"
     write_files(run.folder, {CURVE: draw_curve(title, made["curve"]), RECORD: text}, "make room there")
     return made
 
 
 def training_record(run: Run, last: Report, measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """The record, JSON data as ``docs/training.md`` describes it; ``measured`` are the lines of ``metrics.jsonl``."""
+    level = load_level(run.level, run.variant)
     return {
         "format": "tltl-training",
         "version": _VERSION,
         "spec": run.fspa.name,
         "spec_hash": spec_hash(run.fspa),
-        "level": run.level,
+        "level": level.name,
         "variant": run.variant,
-        "level_hash": level_hash(load_level(run.level, run.variant)),
+        "level_hash": level_hash(level),
         "seed": run.seed,
         "end": last.stop,
         "iterations": last.iteration.number,

@@ -124,6 +124,8 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction, here: Path) -> None: 
         (["hide.tltl"], 2, "`hide` does not say which level it is about: name one with --level"),
         (["hide.tltl", "--level", "nowhere"], 2, "there is no level `nowhere`"),
         (["hide.tltl", "--level", "navigation"], 1, "`navigation` has no "),
+        (["endless.tltl"], 1, "`endless` has no limit, so an episode may go on for ever"),
+        (["soon.tltl", "--minutes", "nan"], 2, "a limit is a finite number"),
         (["soon.tltl", "--workers", "many"], 2, "`many` is neither a number of processes nor `ray`"),
         (["soon.tltl", "--entities", "s9"], 2, "the level `cover_and_hide` has no entity `s9`"),
         (["soon.tltl", "--config", "gone.toml"], 3, "cannot read `gone.toml`"),
@@ -140,6 +142,7 @@ def test_what_cannot_be_trained(
     said: str,
 ) -> None:
     (here / "hide.tltl").write_text("signal mood: bool\nspec hide { limit 9 steps\n keep mood }\n")
+    (here / "endless.tltl").write_text("import stealth\nspec endless { level navigation\n reach seen }\n")
     found = tltlc("train", *arguments)
     assert (found.status, found.out) == (status, ""), found.err
     assert said in found.err
@@ -209,9 +212,19 @@ def test_a_terminal_shows_a_picture(here: Path) -> None:
 def test_the_page_names_the_keys_of_the_record(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     assert tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it").status == 0
     page = (DOCS / "training.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| (`.*?) \|", page[page.index("## The record") :], re.MULTILINE)
+    section = page.partition("## The record")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
     said = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
     assert said == list(json.loads(Path("it/record.json").read_text()))
+
+
+def test_without_what_learns(here: Path) -> None:
+    program = "import sys; sys.modules['torch'] = None; from tltlc.cli.main import main; main(['train', 'soon.tltl'])"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (4, "")
+    assert done.stderr == (
+        "error[TLT0730]: `tltlc train` needs `torch`, which is not installed\n  help: pip install 'tltlc[rl]'\n"
+    )
 
 
 def _command(*options: str) -> list[str]:
