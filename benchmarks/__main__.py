@@ -8,11 +8,13 @@ from __future__ import annotations
 import argparse
 import sys
 
-from benchmarks import batch, compile_table, expert, game, monitors, process, report, safety
+from benchmarks import batch, compile_table, expert, game, monitors, process, report, safety, training
 from benchmarks.machine import facts
 from benchmarks.store import Store
 
-SECTIONS = {module.SECTION: module for module in (process, monitors, batch, game, safety, expert, compile_table)}
+SECTIONS = {
+    module.SECTION: module for module in (process, monitors, batch, game, safety, expert, training, compile_table)
+}
 
 
 def main() -> None:
@@ -25,14 +27,21 @@ def main() -> None:
     store = Store()
     if options.fresh:
         store.discard(options.only)
+        if options.only in (None, training.SECTION):
+            training.discard()
     if options.only is None or not store.section("machine"):
         # What one section adds later, perhaps without the peers, must not describe how the others were measured.
         store.put("machine", "facts", facts())
         store.put("machine", "options", {"peer_timeout_s": options.timeout})
+
+    def say(text: str) -> None:
+        print(text, file=sys.stderr, flush=True)
+        report.RESULTS.write_text(report.render(store), encoding="utf-8")
+
     for name, section in SECTIONS.items():
         if options.only in (None, name):
-            section.measure(store, options.timeout, lambda text: print(text, file=sys.stderr, flush=True))
-            report.RESULTS.write_text(report.render(store), encoding="utf-8")
+            section.measure(store, options.timeout, say)
+    report.RESULTS.write_text(report.render(store), encoding="utf-8")
 
 
 if __name__ == "__main__":

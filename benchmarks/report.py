@@ -17,6 +17,8 @@ from benchmarks import (
     process,
     safety,
     summary,
+    training,
+    training_report,
 )
 from benchmarks.markdown import MISSED, met_or_missed, spread, table
 from benchmarks.reference import references
@@ -56,6 +58,7 @@ def render(store: Store) -> str:
         game_report.speed(store.section(game.SECTION)),
         game_report.safe(store.section(safety.SECTION)),
         expert_report.section(store.section(expert.SECTION)),
+        training_report.section(store.section(training.SECTION)),
     ]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
@@ -141,6 +144,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
     yield from _batch_goals(store.section(batch.SECTION))
     yield from game_report.goals(store)
     yield from expert_report.goals(store)
+    yield from training_report.goals(store.section(training.SECTION))
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:

@@ -1,0 +1,268 @@
+"""Trainings to their end: how long they take, and what becomes of them; and what they come to with other settings.
+
+A cell is a level and a seed, trained by ``tltlc train`` and evaluated by ``tltlc evaluate`` on fresh episodes, or an
+ablation: a training of a few minutes in which one setting differs.  What a cell has trained so far stays in a folder,
+so that a run that was stopped goes on within it.
+
+``python -m benchmarks.training --quick`` tries all of this with a few updates, and keeps nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from benchmarks import training_report
+from benchmarks.load import Load
+from benchmarks.store import ROOT, Record, Store, measure_missing, source_digest
+from benchmarks.training_report import ABLATION, GPU
+
+SECTION = "training"
+LEVELS = ("navigation", "cover_and_hide", "branching")
+ABLATED = "cover_and_hide"
+NEEDED = ("torch", "rsl_rl", "pybullet")
+
+FOLDER = Path(__file__).with_name(".training")
+PICTURE = Path(__file__).with_name(training_report.PICTURE_NAME)
+CORES = 2
+FRESH_SEED = 1000
+"""Of the episodes of evaluations, far from those of trainings."""
+CURVE_POINTS = 60
+OTHERS = "other_cores.txt"
+"""In the folder of a training: what else the machine did while it ran for the last time."""
+NO_LIMIT = 10**9
+"""Of steps: minutes alone end a training."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ablation:
+    """What differs from the defaults: ``settings`` as TOML, further ``options`` of ``tltlc train``."""
+
+    settings: str = ""
+    options: Sequence[str] = ()
+
+
+ABLATIONS: Mapping[str, Ablation] = {
+    "as it is": Ablation(),
+    "reward sparse": Ablation('[reward]\nmode = "sparse"\n'),
+    "reward edge": Ablation('[reward]\nmode = "edge"\n'),
+    "reward potential": Ablation('[reward]\nmode = "potential"\n'),
+    "terminal penalty undiscounted": Ablation('[reward]\nterminal_penalty = "undiscounted"\n'),
+    "no semantic map": Ablation(options=("--no-map",)),
+    "no bonus for exploration": Ablation("[exploration]\nweight = 0.0\n"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What is measured: ``minutes`` and ``ablation_minutes`` limit a training, ``settings`` are as TOML."""
+
+    levels: Sequence[str] = LEVELS
+    seeds: Sequence[int] = (1, 2, 3)
+    minutes: float = training_report.MINUTES
+    episodes: int = 100
+    ablations: Mapping[str, Ablation] = field(default_factory=lambda: ABLATIONS)
+    ablation_minutes: float = 10.0
+    settings: str = ""
+
+
+FULL = Plan()
+_QUICK_MINUTES = 0.001
+"""The first update is beyond it."""
+QUICK = Plan(
+    levels=(ABLATED,),
+    seeds=(1,),
+    minutes=_QUICK_MINUTES,
+    episodes=1,
+    ablations={"no semantic map": ABLATIONS["no semantic map"]},
+    ablation_minutes=_QUICK_MINUTES,
+    settings="[rollout]\nenvs = 4\nsteps = 32\n",
+)
+
+
+def measure(
+    store: Store,
+    _: float,
+    say: Callable[[str], None],
+    plan: Plan = FULL,
+    folder: Path = FOLDER,
+    picture: Path = PICTURE,
+) -> None:
+    """Train, evaluate and draw what the store does not have yet, or what failed."""
+    missing = [name for name in NEEDED if find_spec(name) is None]
+    if missing:
+        why = f"{', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)"
+        store.put(SECTION, "left out", {"left_out": why})
+        return
+    cells = dict(_cells(plan, folder))
+    try:
+        measure_missing(store, SECTION, cells, lambda name: cells[name](), say, done="end")
+    finally:
+        picture.write_bytes(training_report.picture(store.section(SECTION)))
+
+
+def discard(folder: Path = FOLDER) -> None:
+    """Forget what was trained so far."""
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def _cells(plan: Plan, folder: Path) -> Iterator[tuple[str, Callable[[], Record]]]:
+    """What measures each cell, by its name."""
+    for level in plan.levels:
+        for seed in plan.seeds:
+            yield f"{level} {seed}", lambda cell=Cell(folder / f"{level}-{seed}", level, seed, plan): cell.judged()
+    for name, ablation in plan.ablations.items():
+        cell = Cell(folder / name.replace(" ", "-"), ABLATED, plan.seeds[0], plan, ablation)
+        yield f"{ABLATION}{name}", cell.curve
+    yield GPU, Cell(folder / GPU, ABLATED, plan.seeds[0], plan, Ablation(options=("--device", GPU))).on_gpu
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A training in ``folder``, on two cores of this machine."""
+
+    folder: Path
+    level: str
+    seed: int
+    plan: Plan
+    ablation: Ablation | None = None
+
+    def judged(self) -> Record:
+        """The training's figures, and those of its policy over fresh episodes."""
+        if not self._train(self.plan.minutes):
+            return {"failed": "tltlc train"}
+        report = self.folder / "evaluation.json"
+        episodes = self.plan.episodes
+        workers = min(CORES, episodes)
+        options = ("--episodes", episodes, "--seed", FRESH_SEED, "--workers", workers, "--json", report)
+        if _tltlc("evaluate", self.folder, *options) != 0:
+            return {"failed": "tltlc evaluate"}
+        found = json.loads(report.read_text(encoding="utf-8"))
+        return {**self._figures(), "sampled": _rates(found), "argmax": _rates(found["argmax"])}
+
+    def curve(self) -> Record:
+        """The training's figures, and how it came to them."""
+        if not self._train(self.plan.ablation_minutes):
+            return {"failed": "tltlc train"}
+        points = self._record()["curve"]
+        stride = -(-len(points) // CURVE_POINTS)
+        names = ("steps", "pass_rate", "progress")
+        return {**self._figures(), "curve": [[point[name] for name in names] for point in points[::-stride][::-1]]}
+
+    def on_gpu(self) -> Record:
+        """The training's figures where a GPU is at hand."""
+        import torch
+
+        if not torch.cuda.is_available():
+            return {"left_out": "no GPU is at hand"}
+        if not self._train(self.plan.ablation_minutes):
+            return {"failed": "tltlc train"}
+        return {**self._figures(), "gpu": torch.cuda.get_device_name()}
+
+    def _train(self, minutes: float) -> bool:
+        """Train to the end, from where an earlier run stopped; whether that was reached."""
+        if (self.folder / "record.json").exists():
+            return True
+        load = Load()
+        ended = self._run(minutes) in (0, 1)
+        others = load.other_cores()
+        if ended and others is not None:
+            (self.folder / OTHERS).write_text(f"{others:.2f}", encoding="utf-8")
+        return ended
+
+    def _run(self, minutes: float) -> int:
+        """The exit status of ``tltlc train``."""
+        limit = ("--minutes", minutes, "--steps", NO_LIMIT, "--workers", CORES)
+        if (self.folder / "checkpoint.pt").exists():
+            return _tltlc("train", "--resume", self.folder, *limit)
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.parent.mkdir(parents=True, exist_ok=True)
+        settings = self.folder.with_suffix(".toml")
+        ablation = self.ablation or Ablation()
+        settings.write_text(self.plan.settings + ablation.settings, encoding="utf-8")
+        given = ("--level", self.level, "--seed", self.seed, "--config", settings, "--out", self.folder)
+        return _tltlc("train", *given, *limit, *ablation.options)
+
+    def _record(self) -> Any:
+        return json.loads((self.folder / "record.json").read_text(encoding="utf-8"))
+
+    def _figures(self) -> Record:
+        """Why the training ended, after how much, how fast it was, and the last window."""
+        record, others = self._record(), self.folder / OTHERS
+        lines = (self.folder / "metrics.jsonl").read_text(encoding="utf-8").splitlines()
+        collect_s, learn_s = (sum(json.loads(line)[name] for line in lines) for name in ("collect_s", "learn_s"))
+        return {
+            "end": record["end"],
+            "steps": record["steps"],
+            "minutes": round(record["seconds"] / 60, 2),
+            "steps_per_s": round(record["steps"] / record["seconds"]),
+            "learn_share": round(learn_s / (collect_s + learn_s), 3),
+            "window": record["window"],
+            "other_cores": float(others.read_text(encoding="utf-8")) if others.exists() else None,
+            "versions": record["versions"],
+            "revision": _revision(),
+            "source": source_digest("tltlc", "runtime"),
+        }
+
+
+def _tltlc(*arguments: object) -> int:
+    """Run a command of tltlc, which shows on standard error how it goes; its exit status."""
+    command = [sys.executable, "-m", "tltlc", *map(str, arguments)]
+    with subprocess.Popen(command, cwd=ROOT, stdout=sys.stderr, preexec_fn=_on_two_cores) as child:
+        try:
+            return child.wait()
+        except KeyboardInterrupt:
+            # It has heard Ctrl-C, too, and keeps what it has learned.
+            child.wait()
+            raise
+        except BaseException:
+            child.terminate()
+            child.wait()
+            raise
+
+
+def _on_two_cores() -> None:
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:CORES])
+
+
+def _rates(figures: Mapping[str, Any]) -> Record:
+    """What is told of an evaluation."""
+    return {name: figures[name] for name in ("pass_rate", "pass_interval", "progress", "reward", "steps")}
+
+
+def _revision() -> str:
+    """The version in git, with a `-dirty` behind it where files differ from it."""
+    command = ["git", "describe", "--always", "--dirty", "--exclude", "*"]
+    try:
+        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+def main() -> None:
+    """Try the section: a few updates in each cell."""
+    if sys.argv[1:] != ["--quick"]:
+        sys.exit("usage: python -m benchmarks.training --quick")
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        store = Store(folder / "results.json")
+        measure(store, 0.0, _say, QUICK, folder / "cells", folder / "curves.png")
+        print(training_report.section(store.section(SECTION)))
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,221 @@
+"""The part of RESULTS.md on training: goals, tables, and a picture of the ablations' curves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from io import BytesIO
+from typing import Any, Final
+
+from benchmarks.markdown import met_or_missed, table
+from benchmarks.store import Record
+
+PASS_RATE = 0.98
+MINUTES = 30.0
+STEPS_PER_S = 1500.0
+LEARN_SHARE = 0.5
+PAPER_HOURS = {"navigation": 3.5, "cover_and_hide": 2.7, "branching": 6.8}
+ABLATION: Final = "ablation: "
+GPU: Final = "cuda"
+PICTURE_NAME: Final = "training.png"
+
+_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7")
+"""Told apart by the colour-blind, too: those of M. Okabe and K. Ito, behind our own."""
+
+
+def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
+    """Rows of the table of goals, for what was measured."""
+    judged = _judged(records)
+    if not judged:
+        return
+    reached = {
+        name: record["sampled"]["pass_rate"] >= PASS_RATE and record["minutes"] <= MINUTES
+        for name, record in judged.items()
+    }
+    longest = max(record["minutes"] for record in judged.values())
+    missed = [
+        f"{name} {record['sampled']['pass_rate']:.2f} after {record['minutes']:.0f} minutes"
+        for name, record in judged.items()
+        if not reached[name]
+    ]
+    yield (
+        "each level trained within 30 minutes on two cores, for each seed, to a pass rate of 0.98 on fresh episodes",
+        f"{sum(reached.values())} of {len(reached)}, longest {longest:.0f} minutes"
+        + (f"; not: {', '.join(missed)}" if missed else ""),
+        met_or_missed(not missed),
+    )
+    slowest = min(record["steps_per_s"] for record in judged.values())
+    yield (
+        "training at least 1,500 steps per second, all told",
+        f"slowest {slowest:,}",
+        met_or_missed(slowest >= STEPS_PER_S),
+    )
+    most = max(record["learn_share"] for record in judged.values())
+    yield "learning under half of the time", f"most {most:.2f}", met_or_missed(most < LEARN_SHARE)
+
+
+def section(records: Mapping[str, Record]) -> str:
+    """The section on training."""
+    parts = [_trained(_judged(records)), _ablations(_ablated(records)), _gpu(records.get(GPU, {})), _failed(records)]
+    return "\n\n".join(part.strip() for part in parts if part)
+
+
+def picture(records: Mapping[str, Record]) -> bytes:
+    """A PNG of how progress and pass rate rise in each ablation."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 4.5), dpi=100, layout="constrained")
+    for axes, title, column in zip(figure.subplots(1, 2, sharey=True), ("progress", "pass rate"), (2, 1), strict=True):
+        for (name, record), color in zip(_ablated(records).items(), _COLORS, strict=False):
+            points = [point for point in record["curve"] if point[column] is not None]
+            axes.plot([point[0] for point in points], [point[column] for point in points], color=color, label=name)
+        axes.set_title(title, loc="left", fontsize=11)
+        axes.set_xlabel("steps of all environments")
+        axes.xaxis.set_major_formatter(_thousands)
+        axes.set_xlim(left=0)
+        axes.set_ylim(-0.02, 1.02)
+        axes.grid(color="#e2e8f0")
+        axes.spines[["top", "right"]].set_visible(False)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
+    file = BytesIO()
+    figure.savefig(file, format="png", metadata={"Software": None})
+    return file.getvalue()
+
+
+def _trained(records: Mapping[str, Record]) -> str:
+    if not records:
+        return ""
+    header = (
+        "level",
+        "seed",
+        "ended",
+        "steps",
+        "minutes",
+        "paper, hours",
+        "steps/s",
+        "learning",
+        "others",
+        "pass rate (95 %)",
+        "progress",
+        "reward",
+        "arg-max: pass rate (95 %)",
+        "progress",
+        "reward",
+    )
+    body = [
+        (
+            level,
+            seed,
+            *_course(record),
+            PAPER_HOURS[level],
+            f"{record['steps_per_s']:,}",
+            f"{record['learn_share']:.2f}",
+            _others(record),
+            *_rates(record["sampled"]),
+            *_rates(record["argmax"]),
+        )
+        for name, record in records.items()
+        for level, seed in [name.split()]
+    ]
+    return f"""
+## Training
+
+`tltlc train --level LEVEL --seed SEED --minutes {MINUTES:g} --workers 2` on two cores, then `tltlc evaluate` of its
+policy on fresh episodes, with actions sampled and with the likeliest ones. *Ended*: `met` where the spec was met in two
+successive windows of 50 episodes. *Minutes* are of wall time, *steps/s* all steps over all of it, *learning* the share
+of it that updates took, *others* how many cores of the machine were busy with other work. *Pass rate* with its Wilson
+interval; *progress* and *reward* (with the undiscounted terminal penalty) are means with standard deviations. *Paper*:
+Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, Table I.
+
+{table(header, body)}
+
+{_measured_with(records)}
+"""
+
+
+def _ablations(records: Mapping[str, Record]) -> str:
+    if not records:
+        return ""
+    body = [
+        (
+            name,
+            *_course(record),
+            f"{record['window']['pass_rate']:.2f}",
+            f"{record['window']['progress']:.2f}",
+            f"{record['steps_per_s']:,}",
+            _others(record),
+        )
+        for name, record in records.items()
+    ]
+    header = ("setting", "ended", "steps", "minutes", "pass rate", "progress", "steps/s", "others")
+    return f"""
+### Ablations
+
+One training each on cover_and_hide, of at most ten minutes, in which one setting differs from *as it is*. *Pass rate*
+and *progress* are those of its last episodes, at most 100 of them, as the training played them.
+
+{table(header, body)}
+
+![Progress and pass rate over the steps of each]({PICTURE_NAME})
+
+{_measured_with(records)}
+"""
+
+
+def _gpu(record: Record) -> str:
+    if not record:
+        return ""
+    if "left_out" in record:
+        return f"Learning on a GPU: not measured, {record['left_out']}."
+    if "end" not in record:
+        return ""
+    ended, steps, minutes = _course(record)
+    return (
+        f"Learning on a GPU ({record['gpu']}), the game on two cores, cover_and_hide: "
+        f"{record['steps_per_s']:,} steps/s, learning {record['learn_share']:.2f} of the time; "
+        f"ended ({ended}) after {steps} steps, {minutes} minutes."
+    )
+
+
+def _failed(records: Mapping[str, Record]) -> str:
+    failed = [f"{name} ({record['failed']})" for name, record in records.items() if "failed" in record]
+    return f"Failed: {', '.join(failed)}." if failed else ""
+
+
+def _judged(records: Mapping[str, Record]) -> dict[str, Record]:
+    return {name: record for name, record in records.items() if "sampled" in record}
+
+
+def _ablated(records: Mapping[str, Record]) -> dict[str, Record]:
+    return {name.removeprefix(ABLATION): record for name, record in records.items() if "curve" in record}
+
+
+def _course(record: Record) -> tuple[str, str, str]:
+    """Why a training ended, and after how many steps and minutes."""
+    return record["end"], f"{record['steps']:,}", f"{record['minutes']:.1f}"
+
+
+def _others(record: Record) -> str:
+    return "–" if record["other_cores"] is None else f"{record['other_cores']:.1f}"
+
+
+def _rates(figures: Mapping[str, Any]) -> tuple[str, ...]:
+    low, high = figures["pass_interval"]
+    spreads = (f"{figures[name]['mean']:.2f} ± {figures[name]['std']:.2f}" for name in ("progress", "reward"))
+    return (f"{figures['pass_rate']:.2f} ({low:.2f}–{high:.2f})", *spreads)
+
+
+def _measured_with(records: Mapping[str, Record]) -> str:
+    """The versions with which records were made; several of one package where they differ."""
+    found: dict[str, list[str]] = {}
+    for record in records.values():
+        for name, version in {**record["versions"], "revision": record["revision"]}.items():
+            found.setdefault(name, [])
+            if version not in found[name]:
+                found[name].append(version)
+    return f"With {', '.join(' '.join([name, ' and '.join(each)]) for name, each in found.items())}."
+
+
+def _thousands(value: float, _: object) -> str:
+    return f"{value:,.0f}"

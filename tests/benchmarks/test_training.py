@@ -1,0 +1,85 @@
+"""Trainings as they are measured: what is done stays done, and what was stopped goes on."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from benchmarks import training, training_report
+from benchmarks.store import Record, Store
+
+
+def trained(pass_rate: float, minutes: float, end: str = "met") -> Record:
+    spread = {"mean": 0.5, "std": 0.1}
+    figures = {"pass_rate": pass_rate, "pass_interval": [0.9, 1.0], "progress": spread, "reward": spread}
+    return {
+        "end": end,
+        "steps": 900_000,
+        "minutes": minutes,
+        "steps_per_s": 1600,
+        "learn_share": 0.4,
+        "other_cores": 0.1,
+        "window": {"pass_rate": pass_rate, "progress": 0.75},
+        "versions": {"torch": "2.13.0"},
+        "revision": "abc",
+        "sampled": figures,
+        "argmax": figures,
+    }
+
+
+def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for package in training.NEEDED:
+        pytest.importorskip(package)
+    store, folder, picture = Store(tmp_path / "results.json"), tmp_path / "cells", tmp_path / "curves.png"
+    ran: list[str] = []
+    run, failing = training._tltlc, iter([2])
+
+    def counted(*arguments: object) -> int:
+        """The first evaluation fails."""
+        paths = [each for each in arguments if isinstance(each, Path)]
+        (of,) = (path.name for path in paths if path.parent == folder and not path.suffix)
+        ran.append(f"{arguments[0]} {of}")
+        status = next(failing, None) if arguments[0] == "evaluate" else None
+        return run(*arguments) if status is None else status
+
+    monkeypatch.setattr(training, "_tltlc", counted)
+    said: list[str] = []
+    for _ in range(3):
+        training.measure(store, 0.0, said.append, training.QUICK, folder, picture)
+    cell, ablation = "cover_and_hide 1", "ablation: no semantic map"
+    # The second run goes on with the evaluation, without training anew, and the third has all.
+    judged, ablated = "cover_and_hide-1", "no-semantic-map"
+    expected = [f"train {judged}", f"evaluate {judged}", f"train {ablated}", f"evaluate {judged}"]
+    assert [each for each in ran if each != "train cuda"] == expected
+    assert said[0] == f'{cell}: {{"failed": "tltlc evaluate"}}'
+    records = store.section(training.SECTION)
+    assert records[cell]["end"] == records[ablation]["end"] == "minutes"
+    assert records[cell]["steps"] == 4 * 32
+    assert 0 < records[cell]["learn_share"] < 1
+    settings = json.loads((folder / "no-semantic-map" / "run.json").read_text(encoding="utf-8"))
+    assert settings["sensors"]["map"] is None
+    text = training_report.section(records)
+    assert "| cover_and_hide | 1 | minutes | 128 |" in text
+    assert "| no semantic map | minutes | 128 |" in text
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_what_is_missed_is_named() -> None:
+    records = {"navigation 1": trained(1.0, 12.0), "branching 2": trained(0.95, 30.1, "minutes")}
+    first, speed, share = training_report.goals(records)
+    assert first[1:] == ("1 of 2, longest 30 minutes; not: branching 2 0.95 after 30 minutes", "**missed**")
+    assert speed[1:] == ("slowest 1,600", "met")
+    assert share[1:] == ("most 0.40", "met")
+    assert list(training_report.goals({"cuda": {"left_out": "no GPU is at hand"}})) == []
+
+
+def test_failures_and_a_gpu_are_told() -> None:
+    records = {"navigation 1": {"failed": "tltlc train"}, "cuda": {**trained(1.0, 3.0), "gpu": "a GPU"}}
+    del records["cuda"]["sampled"]
+    text = training_report.section(records)
+    assert text.startswith("Learning on a GPU (a GPU), the game on two cores, cover_and_hide: 1,600 steps/s")
+    assert text.endswith("Failed: navigation 1 (tltlc train).")
