@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Final, TypeVar
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Final
 
 from tltl_runtime.policies.card import OBSERVATION, Card
 from tltl_runtime.policies.identity import spec_hash
@@ -12,8 +12,6 @@ from tltl_runtime.stealth.signals import readers
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-
-T = TypeVar("T")
 
 _MOST: Final = 3
 """Differences that a message names."""
@@ -58,14 +56,9 @@ def _differences(card: Card, fspa: Fspa) -> Iterator[str]:
         yield f"its limit is {_limit(fspa)}, and was {_limit(own)}"
     if own.clock_s != fspa.clock_s:
         yield "its clock is another one"
-    yield from _compared(
-        "signal", {each.name: each.name for each in own.signals}, {each.name: each.name for each in fspa.signals}
-    )
-    yield from _compared(
-        "param", {each.name: each.value for each in own.params}, {each.name: each.value for each in fspa.params}
-    )
-    before = {each.name: each.expression for each in own.atoms}
-    after = {each.name: each.expression for each in fspa.atoms}
+    yield from _compared("signal", _named(own.signals, "name"), _named(fspa.signals, "name"))
+    yield from _compared("param", _named(own.params, "value"), _named(fspa.params, "value"))
+    before, after = _named(own.atoms, "expression"), _named(fspa.atoms, "expression")
     yield from _compared("atom", before, after)
     if len(own.states) != len(fspa.states):
         yield f"its automaton has {len(fspa.states)} states, and had {len(own.states)}"
@@ -75,12 +68,18 @@ def _differences(card: Card, fspa: Fspa) -> Iterator[str]:
         yield from _states(own, fspa)
 
 
-def _compared(kind: str, before: Mapping[str, T], after: Mapping[str, T]) -> Iterator[str]:
+def _named(parts: Iterable[Any], field: str) -> dict[str, Any]:
+    return {part.name: getattr(part, field) for part in parts}
+
+
+def _compared(kind: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:
     yield from (f"the {kind} `{name}` is new" for name in after if name not in before)
     yield from (f"the {kind} `{name}` is gone" for name in before if name not in after)
-    yield from (
-        f"the {kind} `{name}` means something else" for name in after if name in before and before[name] != after[name]
-    )
+    for name in after:
+        if name in before and before[name] != after[name]:
+            is_number = isinstance(after[name], float)
+            change = f"is {after[name]!r}, and was {before[name]!r}" if is_number else "means something else"
+            yield f"the {kind} `{name}` {change}"
 
 
 def _states(before: Fspa, after: Fspa) -> Iterator[str]:

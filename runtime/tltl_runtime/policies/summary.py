@@ -34,7 +34,7 @@ def summary(policy: Policy) -> dict[str, Any]:
 
 
 def summary_text(said: Mapping[str, Any]) -> str:
-    """A summary for people."""
+    """A summary for people; signs that are none, which a stranger's file may have in its names, are replaced."""
     sensors, network = said["sensors"], said["network"]
     map_ = sensors["map"]
     layers = " + ".join(map(str, network["hidden"]))
@@ -49,7 +49,8 @@ def summary_text(said: Mapping[str, Any]) -> str:
         "training": _training(said["training"]),
         "versions": ", ".join(f"{name} {version}" for name, version in said["versions"].items()),
     }
-    return "".join(f"  {name:9}{text}\n" for name, text in rows.items() if text)
+    shown = {name: "".join(sign if sign.isprintable() else "\ufffd" for sign in text) for name, text in rows.items()}
+    return "".join(f"  {name:9}{text}\n" for name, text in shown.items() if text)
 
 
 def _map(sensor: Mapping[str, Any]) -> str:

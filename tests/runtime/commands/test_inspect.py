@@ -65,6 +65,14 @@ def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_p
     assert "  training" not in found.out
 
 
+def test_a_stranger_s_file_does_not_command_the_terminal(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    path = tmp_path / "bot.safetensors"
+    write_policy(path, Policy(replace(policy.card, level="\x1b[2Jgone\n", versions={"\x07": "\x1b"}), policy.actor))
+    found: Outcome = tltlc("inspect", str(path))
+    assert "  level    \ufffd[2Jgone\ufffd v0" in found.out
+    assert "\x1b" not in found.out and "\x07" not in found.out
+
+
 def test_an_export_says_what_it_wrote_and_nothing_else(file: Path, policy: Policy) -> None:
     onnxruntime = pytest.importorskip("onnxruntime")
     out = file.with_name("bot.onnx")

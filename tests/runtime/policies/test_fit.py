@@ -89,7 +89,7 @@ def test_other_values_of_params_are_another_spec() -> None:
     text = "import stealth\nentity s1\nparam far: ratio = {}%\nspec it {{ limit 9 steps\n reach health < far }}"
     one, other = (load_task(text.format(value)).fspa for value in (20, 30))
     card = replace(card_of("cover_and_hide"), fspa=one)
-    assert "the param `far` means something else" in refused(card, fspa=other)
+    assert "the param `far` is 0.3, and was 0.2" in refused(card, fspa=other)
 
 
 def test_level_hashes_tell_what_is_in_a_level_and_nothing_else() -> None:

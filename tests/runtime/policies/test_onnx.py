@@ -49,8 +49,11 @@ def test_it_plays_as_the_policy_does(policy: Policy, model: bytes) -> None:
     check_alike(policy, model, 100)
 
 
-@pytest.mark.parametrize("network", [Network(hidden=(16,), activation="mish"), Network((8, 8, 8), "selu", (3,), 5, 1)])
-@pytest.mark.parametrize("map_", [{}, {"map": None}])
+@pytest.mark.parametrize(
+    ("network", "map_"),
+    [(Network((16,), "mish"), {"map": None}), (Network((8, 8, 8), "selu", (3,), kernel=5, stride=1), {})],
+    ids=["no_map", "map"],
+)
 def test_networks_of_all_kinds_go_through(network: Network, map_: dict[str, None]) -> None:
     policy = policy_of(card_of("navigation", sensors=map_, network=network))
     check_alike(policy, to_onnx(policy), 5)
