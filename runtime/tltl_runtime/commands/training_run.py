@@ -55,16 +55,15 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     """A new training, by default in a folder that is called like it; raises TltlError for all that is wrong with its
     spec, level, senses and settings.
     """
-    if asked.spec is None and asked.level is None:
-        message = "say what to train for: a spec, a level, or both"
-        raise click.UsageError(message, click.get_current_context())
-    settings = _with_limits(read_settings(asked.config), asked)
     if asked.level is not None:
         path, variant = split(asked.level)
+    elif asked.spec is not None:
+        path, variant = _own_level(asked.spec), None
     else:
-        path, variant = _own_level(str(asked.spec)), None
+        raise _usage("say what to train for: a spec, a level, or both")
+    settings = _with_limits(read_settings(asked.config), asked)
     level = load_level(path, variant or "v0")
-    spec = asked.spec if asked.spec is not None else spec_of(level)
+    spec = asked.spec or spec_of(level)
     task = load_task(spec, offered=params(level))
     check_fit(level, task.fspa, spec)
     check_limit(task.fspa)
@@ -98,12 +97,15 @@ def resumed_run(asked: Asked, folder: Path) -> Run:
 
 def _own_level(spec: str) -> str:
     """The level that a spec is about by its own word: a file beside it, or one that comes with the package."""
-    fspa = load_task(spec).fspa
+    fspa, _ = read_spec(spec)
     if fspa.level is None:
-        message = f"`{fspa.name}` does not say which level it is about: name one with --level"
-        raise click.UsageError(message, click.get_current_context())
+        raise _usage(f"`{fspa.name}` does not say which level it is about: name one with --level")
     beside = Path(split(spec)[0]).parent / f"{fspa.level}.toml"
     return str(beside) if beside.is_file() else fspa.level
+
+
+def _usage(message: str) -> click.UsageError:
+    return click.UsageError(message, click.get_current_context())
 
 
 def _with_limits(settings: Settings, asked: Asked) -> Settings:
