@@ -119,10 +119,9 @@ def _cells(plan: Plan, folder: Path) -> Iterator[tuple[str, Callable[[], Record]
     """What measures each cell, by its name."""
     for level in plan.levels:
         for seed in plan.seeds:
-            yield f"{level} {seed}", lambda cell=Cell(folder / f"{level}-{seed}", level, seed, plan): cell.judged()
+            yield f"{level} {seed}", Cell(folder / f"{level}-{seed}", level, seed, plan).judged
     for name, ablation in plan.ablations.items():
-        cell = Cell(folder / name.replace(" ", "-"), ABLATED, plan.seeds[0], plan, ablation)
-        yield f"{ABLATION}{name}", cell.curve
+        yield f"{ABLATION}{name}", Cell(folder / name.replace(" ", "-"), ABLATED, plan.seeds[0], plan, ablation).curve
     yield GPU, Cell(folder / GPU, ABLATED, plan.seeds[0], plan, Ablation(options=("--device", GPU))).on_gpu
 
 

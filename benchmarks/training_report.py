@@ -121,6 +121,7 @@ def _trained(records: Mapping[str, Record]) -> str:
     return f"""
 ## Training
 
+`python -m benchmarks --only training` makes these figures, and goes on where it was stopped. A row is
 `tltlc train --level LEVEL --seed SEED --minutes {MINUTES:g} --workers 2` on two cores, then `tltlc evaluate` of its
 policy on fresh episodes, with actions sampled and with the likeliest ones. *Ended*: `met` where the spec was met in two
 successive windows of 50 episodes. *Minutes* are of wall time, *steps/s* all steps over all of it, *learning* the share
@@ -153,7 +154,8 @@ def _ablations(records: Mapping[str, Record]) -> str:
 ### Ablations
 
 One training each on cover_and_hide, of at most ten minutes, in which one setting differs from *as it is*. *Pass rate*
-and *progress* are those of its last episodes, at most 100 of them, as the training played them.
+and *progress* are those of its last episodes, at most 100 of them, as the training played them; a row that *ended* as
+`met` shows the steps and minutes that it took.
 
 {table(header, body)}
 

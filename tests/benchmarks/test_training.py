@@ -68,6 +68,20 @@ def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize("left, how", [("checkpoint.pt", "--resume"), ("run.json", "--level")])
+def test_a_training_goes_on_from_its_checkpoint_or_begins_anew(
+    left: str, how: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ran: list[object] = []
+    monkeypatch.setattr(training, "_tltlc", lambda *arguments: ran.append(arguments[1]) or 2)
+    cell = training.Cell(tmp_path / "cell", "navigation", 1, training.FULL)
+    cell.folder.mkdir()
+    (cell.folder / left).touch()
+    assert cell.judged() == {"failed": "tltlc train"}
+    assert ran == [how]
+    assert cell.folder.exists() == (how == "--resume")
+
+
 def test_what_is_missed_is_named() -> None:
     records = {"navigation 1": trained(1.0, 12.0), "branching 2": trained(0.95, 30.1, "minutes")}
     first, speed, share = training_report.goals(records)
