@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import closing, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -21,9 +21,6 @@ from tltlc.spec_file import split
 if TYPE_CHECKING:
     from tltl_runtime.commands.evaluation_files import EvaluationFiles
     from tltl_runtime.evaluation.player import Recorded, Result
-
-POLICY_FILE: Final = "policy.safetensors"
-"""The policy in the folder of a training."""
 
 
 @click.command(
@@ -108,10 +105,8 @@ def command(
     from tltl_runtime.policies.file import read_policy
 
     with Report() as report, requests_heard():
-        name, variant = (None, None) if level is None else split(level)
-        path = _policy_path(policy, name)
-        kept = recorded if folder else None
-        setup = set_up(read_policy(path), name, variant, spec, seed, kept)
+        path, name, variant = _chosen(policy, level)
+        setup = set_up(read_policy(path), name, variant, spec, seed, recorded if folder else None)
         files = EvaluationFiles(setup, path, first, folder, json_file)
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:
@@ -123,14 +118,28 @@ def command(
     return report.status
 
 
-def _policy_path(policy: Path | None, level: str | None) -> Path:
-    """The file of the policy: that which was named, or the one that comes with the level."""
-    if policy is not None:
-        return policy / POLICY_FILE if policy.is_dir() else policy
+def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, str | None]:
+    """The file of the policy, and the level and the variant where it plays; None: where it was trained."""
+    from tltl_runtime.training.run import POLICY, RUN, read_run
+
+    name, variant = (None, None) if level is None else split(level)
+    if policy is None:
+        assert name is not None
+        return _shipped(name), name, variant
+    if not policy.is_dir():
+        return policy, name, variant
+    if name is None and (policy / RUN).is_file():
+        # The card has the level's name alone, and here is the path of its file.
+        run = read_run(policy)
+        name, variant = run.level, run.variant
+    return policy / POLICY, name, variant
+
+
+def _shipped(level: str) -> Path:
+    """The policy that comes with a level."""
     from tltl_runtime.policies.shipped import shipped_policy
     from tltl_runtime.stealth.levels.file import load_level
 
-    assert level is not None
     found = shipped_policy(level)
     if found is None:
         load_level(level)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,13 +14,18 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+import tltl_runtime
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.training.run import Run as Training
+from tltl_runtime.training.run import write_run
+from tltl_runtime.training.settings import read_settings
 
 Run = Callable[..., Outcome]
+STARTER = Path(tltl_runtime.__file__).with_name("starter")
 FIGURES = ["pass_rate", "pass_interval", "progress", "reward", "steps", "ended", "episodes"]
 
 
@@ -84,6 +90,25 @@ def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> No
 
     tltlc(*command, "--record", "none")
     assert sorted(path.name for path in folder.iterdir()) == sorted(names)
+
+
+def test_the_folder_of_a_training_knows_the_file_of_its_level(
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    shutil.copytree(STARTER, tmp_path / "mine")
+    level = str(tmp_path / "mine" / "vault.toml")
+    folder, trained = tmp_path / "trained", untrained(None, level)
+    card = trained.card
+    write_run(Training(folder, card.fspa, card.params, level, "v0", card.sensors, read_settings(None), 0))
+    write_policy(folder / "policy.safetensors", trained)
+    monkeypatch.chdir(folder)
+    found = tltlc("evaluate", folder, "--episodes", "1", "--json", "-")
+    assert (json.loads(found.out)["level"], found.status) == ("vault", 0)
+    alone = tltlc("evaluate", "policy.safetensors", "--episodes", "1")
+    assert (alone.status, alone.out) == (2, "")
+    assert alone.err.startswith("error[TLT0800]: there is no level `vault`")
 
 
 @pytest.mark.parametrize(("name", "status", "workers"), [("SIGINT", 130, "2"), ("SIGTERM", 143, "1")])
