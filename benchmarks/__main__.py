@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 
 from benchmarks import batch, compile_table, expert, game, monitors, process, report, safety, training
@@ -24,6 +25,8 @@ def main() -> None:
     parser.add_argument("--only", choices=sorted(SECTIONS), help="measure one section")
     parser.add_argument("--timeout", type=float, default=20.0, metavar="SECONDS", help="for a peer on one formula")
     options = parser.parse_args()
+    # Whoever asks it to end asks the training that it has started, too.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     store = Store()
     if options.fresh:
         store.discard(options.only)
