@@ -47,8 +47,8 @@ class Process:
         return future
 
     def close(self) -> None:
-        """End the process, after the episode that it plays."""
-        self._executor.shutdown(wait=True, cancel_futures=True)
+        """Have the process end after the episode that it plays; others end meanwhile."""
+        self._executor.shutdown(wait=False, cancel_futures=True)
 
 
 _player: Player
