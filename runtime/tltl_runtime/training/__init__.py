@@ -1,1 +1,1 @@
-"""Training of agents by PPO of rsl-rl, and what becomes of them: policies, evaluations, exports."""
+"""Training of agents by PPO of rsl-rl."""

@@ -51,6 +51,12 @@ def peers() -> Peers:
     return Peers(rank, count, local_rank, local_count)
 
 
+def cores() -> int:
+    """How many cores there are for each process of this machine, at least one."""
+    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, usable // peers().local_count)
+
+
 @contextmanager
 def joined(device: str) -> Iterator[tuple[Peers, str]]:
     """Within, the processes can speak to each other; this one, and its own device: each has a GPU where ``device`` is

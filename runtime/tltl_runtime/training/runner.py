@@ -13,6 +13,7 @@ import torch
 from rsl_rl.runners import OnPolicyRunner
 from rsl_rl.utils import check_nan
 
+from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.environment import Finished, TrainingEnv
 from tltlc.record import record
@@ -36,7 +37,8 @@ class Iteration:
 class Runner(OnPolicyRunner):
     """rsl-rl's runner whose loop yields after each iteration, so that who drives it sees, keeps and stops.
 
-    It prints nothing.  With several processes, :func:`~tltl_runtime.training.distributed.joined` is around it.
+    It prints nothing.  Updates are computed in ``cfg["threads"]`` threads, since nobody plays meanwhile.  With several
+    processes, :func:`~tltl_runtime.training.distributed.joined` is around it.
     """
 
     env: TrainingEnv
@@ -46,6 +48,10 @@ class Runner(OnPolicyRunner):
     ) -> None:
         with redirect_stdout(io.StringIO()):
             super().__init__(env, train_cfg, log_dir, device)
+        for group in self.alg.optimizer.param_groups:
+            if "fused" in group:
+                # The same steps in a tenth of the time.
+                group["fused"] = True
 
     def iterations(self, most: int | None = None) -> Iterator[Iteration]:
         """Run an iteration each time that one is asked for, up to ``most`` of them, or without end."""
@@ -60,7 +66,8 @@ class Runner(OnPolicyRunner):
                     observation = self._step(observation)
                 self.alg.compute_returns(observation)
             collected = time.perf_counter()
-            losses = self.alg.update()
+            with threads(self.cfg.get("threads", 1)):
+                losses = self.alg.update()
             self.current_learning_iteration += 1
             yield Iteration(
                 number=self.current_learning_iteration,

@@ -68,8 +68,8 @@ class Classes:
 class Settings:
     """All settings of a training but for its seed.
 
-    ``checkpoint_s`` are seconds between checkpoints at the most, ``threads`` those of torch, and ``device`` is where
-    the network is.
+    ``checkpoint_s`` are seconds between checkpoints at the most, ``threads`` those of torch while it learns, and
+    ``device`` is where the network is.
     """
 
     ppo: Ppo
@@ -123,6 +123,7 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
     return {
         "num_steps_per_env": settings.rollout.steps,
         "save_interval": 0,
+        "threads": settings.threads,
         "obs_groups": {"actor": groups, "critic": groups},
         "actor": model_config(settings.network, shapes, branches),
         "critic": model_config(settings.network, shapes),

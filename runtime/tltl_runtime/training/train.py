@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing
 from math import isfinite
 from typing import Any
 
@@ -19,9 +18,10 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.policy import Policy, actor_of
+from tltl_runtime.policies.threads import threads
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, read_checkpoint, write_checkpoint
-from tltl_runtime.training.distributed import Peers, joined
+from tltl_runtime.training.distributed import Peers, cores, joined
 from tltl_runtime.training.environment import PLACES, TrainingEnv
 from tltl_runtime.training.exploration import Visits
 from tltl_runtime.training.folder import held
@@ -68,7 +68,7 @@ def train(run: Run, *, resume: bool = False) -> Iterator[Report]:
             stack.enter_context(held(run.folder))
             begun = _begun(run, resume)
         begun = own.broadcast(begun)
-        stack.enter_context(_threads(run.settings.threads))
+        stack.enter_context(threads(1))
         env = stack.enter_context(closing(_environment(run, own, device, begun.iteration if begun else 0)))
         torch.manual_seed(int(_stream(run, own, _OF_TORCH, 0).generate_state(1)[0]))
         config = rsl_config(run.settings, env.shapes, env.branches)
@@ -218,12 +218,11 @@ def _begun(run: Run, resume: bool) -> Checkpoint | None:
 def _environment(run: Run, own: Peers, device: str, iteration: int) -> TrainingEnv:
     """The environments of this process, at the beginning of episodes that no process played before."""
     settings, rollout = run.settings, run.settings.rollout
-    workers = rollout.workers or max(1, (os.cpu_count() or 1) // own.local_count)
     env = make_vec(
         run.level,
         run.variant,
         rollout.envs,
-        "ray" if rollout.pool == "ray" else workers,
+        "ray" if rollout.pool == "ray" else rollout.workers or cores(),
         spec=run.fspa,
         sensors=run.sensors,
         reward=settings.reward,
@@ -306,13 +305,3 @@ def _device(device: str) -> str:
         title = f"there is no device `{device}` here, or torch was built without it"
         raise TltlError([Diagnostic("TLT0862", title, help='train on the "cpu"')])
     return device
-
-
-@contextmanager
-def _threads(count: int) -> Iterator[None]:
-    before = torch.get_num_threads()
-    torch.set_num_threads(count)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
