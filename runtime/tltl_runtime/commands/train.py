@@ -121,10 +121,12 @@ def command(
         run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
         report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
         last = _train(run, resume=resume is not None)
-        if peers().rank == 0:
-            write_record(run, last)
-            for line in _ended(run, last):
-                click.echo(line)
+        if peers().rank > 0:
+            # torchrun ends all processes as soon as one fails, and the first has a record to write.
+            return exits.CLEAN
+        write_record(run, last)
+        for line in _ended(run, last):
+            click.echo(line)
         return exits.CLEAN if last.stop == "met" else exits.FINDINGS
     return report.status
 
