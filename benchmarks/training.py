@@ -58,7 +58,7 @@ ABLATIONS: Mapping[str, Ablation] = {
     "reward potential": Ablation('[reward]\nmode = "potential"\n'),
     "terminal penalty undiscounted": Ablation('[reward]\nterminal_penalty = "undiscounted"\n'),
     "no semantic map": Ablation(options=("--no-map",)),
-    "no bonus for exploration": Ablation("[exploration]\nweight = 0.0\n"),
+    "no search for ways": Ablation("[exploration]\nways = 0\n"),
 }
 
 
@@ -85,7 +85,7 @@ QUICK = Plan(
     episodes=1,
     ablations={"no semantic map": ABLATIONS["no semantic map"]},
     ablation_minutes=_QUICK_MINUTES,
-    settings="[rollout]\nenvs = 4\nsteps = 32\n",
+    settings="[rollout]\nenvs = 4\nsteps = 32\n[exploration]\nsteps = 64\n",
 )
 
 

@@ -138,9 +138,10 @@ def _train(run: Run, *, resume: bool) -> Trained:
     from tltl_runtime.training.train import train
 
     try:
-        with _broken_off(run.folder), display(run) as show, closing(train(run, resume=resume)) as reports:  # type: ignore[type-var]
-            for last in reports:
-                show(last)
+        with _broken_off(run.folder), display(run) as shown:
+            with closing(train(run, resume=resume, searching=shown.searched)) as reports:  # type: ignore[type-var]
+                for last in reports:
+                    shown.trained(last)
             return last
     except KeyboardInterrupt:
         if (run.folder / RUN).exists():

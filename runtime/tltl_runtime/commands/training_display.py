@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final
+from typing import Final, Protocol
 
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
@@ -19,10 +19,9 @@ from rich.text import Text
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.report import Report, Window
 from tltl_runtime.training.run import Run
+from tltl_runtime.training.search import Exploration, Searched
 from tltl_runtime.training.settings import Stop
 from tltlc.automaton.fspa import State
-
-Show = Callable[[Report], None]
 
 _SECONDS_BETWEEN_LINES: Final = 10.0
 _WIDTH: Final = 100
@@ -33,14 +32,24 @@ _BAR: Final = 24
 """Width of a bar in characters."""
 
 
+class Display(Protocol):
+    """What shows a training."""
+
+    def searched(self, searched: Searched) -> None:
+        """Show how far the search is that comes first."""
+
+    def trained(self, report: Report) -> None:
+        """Show how far the training is."""
+
+
 @contextmanager
-def display(run: Run) -> Iterator[Show]:
-    """Within, each report that is given to what this yields is shown on standard error.
+def display(run: Run) -> Iterator[Display]:
+    """Within, all that is given to what this yields is shown on standard error.
 
     Of the processes that torchrun started, the first one speaks.
     """
     if peers().rank > 0:
-        yield lambda report: None
+        yield _Nothing()
         return
     console = Console(stderr=True, highlight=False)
     if not console.is_terminal or console.is_dumb_terminal:
@@ -52,6 +61,14 @@ def display(run: Run) -> Iterator[Show]:
         yield picture
 
 
+class _Nothing:
+    def searched(self, searched: Searched) -> None:
+        pass
+
+    def trained(self, report: Report) -> None:
+        pass
+
+
 class _Lines:
     """A line at the first report, then every ten seconds, and at the last."""
 
@@ -59,11 +76,17 @@ class _Lines:
         self._run = run
         self._next = 0.0
 
-    def __call__(self, report: Report) -> None:
+    def searched(self, searched: Searched) -> None:
+        self._print(search_line(searched, self._run.settings.exploration))
+
+    def trained(self, report: Report) -> None:
+        self._print(line(report, self._run.settings.stop), always=report.stop is not None)
+
+    def _print(self, text: str, *, always: bool = False) -> None:
         now = time.monotonic()
-        if now >= self._next or report.stop:
+        if now >= self._next or always:
             self._next = now + _SECONDS_BETWEEN_LINES
-            print(line(report, self._run.settings.stop), file=sys.stderr, flush=True)
+            print(text, file=sys.stderr, flush=True)
 
 
 class _Picture:
@@ -72,11 +95,15 @@ class _Picture:
     def __init__(self, run: Run, console: Console) -> None:
         self._run, self._console = run, console
         self._last: Report | None = None
+        self._searched: Searched | None = None
         self._in_a_row = 0
         self._at = time.monotonic()
         self._checkpoint: float | None = None
 
-    def __call__(self, report: Report) -> None:
+    def searched(self, searched: Searched) -> None:
+        self._searched = searched
+
+    def trained(self, report: Report) -> None:
         self._last, self._at = report, time.monotonic()
         self._in_a_row = in_a_row(report, self._in_a_row)
         if report.checkpointed:
@@ -89,7 +116,7 @@ class _Picture:
         title = Text(f"{run.fspa.name} on {Path(run.level).stem} {run.variant}, seed {run.seed}", "bold")
         report = self._last
         if report is None:
-            body: RenderableType = Text("playing the first steps …")
+            body: RenderableType = self._before()
         else:
             count, stop = report.window.count, run.settings.stop
             ended = f"where the last {count} episodes ended" if count else "no episode has ended yet"
@@ -108,6 +135,18 @@ class _Picture:
             width=min(_WIDTH, self._console.width),
             title_align="left",
         )
+
+    def _before(self) -> RenderableType:
+        """What there is to see before the first iteration."""
+        exploration, searched = self._run.settings.exploration, self._searched
+        if searched is None:
+            return Text("playing the first steps …")
+        found = len(searched.lengths)
+        table = _grid()
+        table.add_row("ways found", _bar(found / exploration.ways, "green"), f"{found:4}", f"of {exploration.ways}")
+        share = min(1.0, searched.steps / exploration.steps)
+        table.add_row("searched", _bar(share, "blue"), f"{share:4.0%}", f"of {exploration.steps:,} steps at the most")
+        return Group(table, Text(f"\n{search_line(searched, exploration)}"))
 
     def _kept(self, now: float) -> str:
         if self._checkpoint is None:
@@ -129,6 +168,16 @@ def line(report: Report, stop: Stop) -> str:
     if not report.stop:
         parts.append(f"at most {duration(seconds_left(report, stop))} left")
     return ", ".join(parts)
+
+
+def search_line(searched: Searched, exploration: Exploration) -> str:
+    """How far the search is, in a line."""
+    if found := len(searched.lengths):
+        ways = f"{found} of {exploration.ways} ways to meet the spec, the shortest of {min(searched.lengths)} steps"
+    else:
+        ways = "no way to meet the spec yet"
+    took = f"{searched.steps:,} steps in {duration(searched.seconds)}"
+    return f"searching by chance: {took}, {searched.places:,} places, {ways}"
 
 
 def in_a_row(report: Report, before: int) -> int:

@@ -33,7 +33,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor import RewardOptions
 
-_CELL: Final = 1.0
+_CELL: Final = 0.5
 """Width of the cells of ``info``, in metres."""
 
 
@@ -45,7 +45,7 @@ class GameEnv(gymnasium.Env[dict[str, Any], Any]):
     the name of a shipped level or a ``.toml`` file, ``sensors`` what
     :func:`~tltl_runtime.stealth.senses.sensors.chosen` takes.  ``reset(seed=...)`` reproduces an episode bit for bit;
     ``game.seed`` is the seed to give for that, drawn where a reset was given none.  ``info["cell"]`` is the number of
-    the cell, a metre wide in each direction, in which the player stands, -1 in the air.
+    the cell, half a metre wide in each direction, in which the player stands, -1 in the air.
 
     ``render_mode`` ``rgb_array`` makes :meth:`render` return pictures of ``render_size`` (width, height), each from 16
     to 4096 pixels, ``human`` shows them in a window as the episode goes on, a decision taking its time;

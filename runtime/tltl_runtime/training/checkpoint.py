@@ -13,6 +13,7 @@ from typing import Any, Final
 import torch
 from torch import Tensor
 
+from tltl_runtime.training.search import Searched
 from tltl_runtime.training.windows import Score
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reading_error, reason
@@ -34,9 +35,11 @@ class Best:
 class Checkpoint:
     """A training after iteration number ``iteration``: ``steps`` and ``seconds`` are those of all iterations.
 
-    ``run`` is :func:`~tltl_runtime.training.run.identity` of what is trained.  ``algorithm`` is what rsl-rl's
-    algorithm saves; ``processes`` holds what each process has for itself: the states of torch's generators of random
-    numbers by device, and its ``visits``; ``window`` is the state of :class:`~tltl_runtime.training.windows.Windows`.
+    ``run`` is :func:`~tltl_runtime.training.run.identity` of what is trained, ``searched`` what the search before it
+    found, ``replayed`` the decisions that were played again.  ``algorithm`` is what rsl-rl's algorithm saves;
+    ``processes`` holds what each process has for itself: the states of torch's generators of random numbers by device,
+    and that of its :class:`~tltl_runtime.training.restarts.Restarts`; ``window`` is the state of
+    :class:`~tltl_runtime.training.windows.Windows`.
     """
 
     run: str
@@ -44,20 +47,25 @@ class Checkpoint:
     losses: Mapping[str, float]
     steps: int
     seconds: float
+    replayed: int
+    searched: Searched | None
     algorithm: Mapping[str, Any]
     processes: tuple[Mapping[str, Tensor], ...]
     window: tuple[tuple[Any, ...], ...]
     best: Best | None
 
 
+_RECORDS: Final[Mapping[str, Any]] = {"best": Best, "searched": Searched}
+"""The fields that are records themselves, which torch would not read again."""
 _FIELDS: Final[tuple[str, ...]] = Checkpoint.__match_args__
 
 
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     """Write a checkpoint; a failure, of the power too, leaves the older one.  Raises TltlError, TLT0005."""
     content: dict[str, Any] = {name: getattr(checkpoint, name) for name in _FIELDS}
-    if best := checkpoint.best:
-        content["best"] = {"score": best.score, "actor": best.actor}
+    for name, kind in _RECORDS.items():
+        if made := content[name]:
+            content[name] = {field: getattr(made, field) for field in kind.__match_args__}
     data = BytesIO()
     torch.save({"format": FORMAT, "version": VERSION, **content}, data)
     temporary = path.with_name(f".{path.name}-{os.getpid()}.tmp")
@@ -97,7 +105,8 @@ def read_checkpoint(path: Path, run: str) -> Checkpoint | None:
         raise _refused(path, "it is of another training: another spec, level, seed, network, or other settings")
     try:
         fields = {name: content[name] for name in _FIELDS}
-        return Checkpoint(**{**fields, "best": fields["best"] and Best(**fields["best"])})
+        made = {name: fields[name] and kind(**fields[name]) for name, kind in _RECORDS.items()}
+        return Checkpoint(**{**fields, **made})
     except (KeyError, TypeError) as error:
         raise _refused(path, f"it lacks a part: {error}") from None
 

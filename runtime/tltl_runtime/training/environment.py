@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
-import gymnasium
 import numpy as np
 import torch
 from gymnasium import spaces
@@ -14,8 +13,9 @@ from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 from torch import Tensor
 
-from tltl_runtime.training.exploration import Visits
-from tltl_runtime.vector.env import TLTL_INFO
+from tltl_runtime.training.restarts import Restarts
+from tltl_runtime.training.starts import Episodes
+from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.record import record
 
 
@@ -33,10 +33,6 @@ class Finished:
     state: int
 
 
-PLACES: Final = {**TLTL_INFO, "cell": np.int64}
-"""What a vector environment tells at each step where visits of places count."""
-
-
 class TrainingEnv(VecEnv):
     """A vector environment of :class:`~tltl_runtime.wrapper.TltlEnv` with ``SAME_STEP`` autoreset, for rsl-rl.
 
@@ -44,8 +40,8 @@ class TrainingEnv(VecEnv):
     those of one environment.  Episodes that end go to :meth:`finished`.  ``seed`` is for the vector environment's
     reset: a number, or one for each environment.
 
-    With ``visits`` the agent is rewarded, beside what the environment gives, for places that are new, which the
-    environment tells in the columns :data:`PLACES` of its ``infos``.
+    With ``restarts`` they say where episodes begin, whose seeds ``seed`` then does not tell; those that do not begin at
+    the level's start are not among the ``finished``.  ``replayed`` counts the decisions that led to their starts.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -53,10 +49,10 @@ class TrainingEnv(VecEnv):
 
     def __init__(
         self,
-        env: gymnasium.vector.VectorEnv[Any, Any, Any],
+        env: WorkerVectorEnv,
         seed: int | Sequence[int],
         device: str = "cpu",
-        visits: Visits | None = None,
+        restarts: Restarts | None = None,
     ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
             raise TypeError(f"actions of several branches are needed, a MultiDiscrete, not {env.single_action_space}")
@@ -68,12 +64,13 @@ class TrainingEnv(VecEnv):
         self.num_actions = len(self.branches)
         self.shapes = {key: tuple(each.shape or ()) for key, each in env.single_observation_space.items()}
         self.device = device
-        self.visits = visits
+        self.restarts = restarts
         self.cfg: dict[str, Any] = {}
         # Nothing is cut by rsl-rl: the spec's limit ends an episode.
         self.max_episode_length = 2**31
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
-        observation, _ = env.reset(seed=seed)  # type: ignore[arg-type]
+        self._episodes = Episodes(env, restarts.draw) if restarts else None
+        observation = self._episodes.observation if self._episodes else env.reset(seed=seed)[0]
         self._observation = self._tensors(observation)
         self._finished: list[Finished] = []
 
@@ -85,19 +82,25 @@ class TrainingEnv(VecEnv):
         """Take a step in each environment with actions [num_envs, branches]."""
         taken = actions.to("cpu", torch.int64).numpy()
         observation, reward, terminated, truncated, infos = self.env.step(taken)
-        self._observation = self._tensors(observation)
         over = terminated | truncated
-        if self.visits is not None:
-            # The place that an ended episode came to is not among the infos: the next one's is.
-            reward = reward + np.where(over, 0.0, self.visits.bonus(infos["cell"], infos["state"]))
-        if over.any():
-            self._finished += _finished(infos["final_info"], np.flatnonzero(over))
+        ended = _finished(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
+        if self._episodes:
+            observation, cut = self._turn(self._episodes, observation, taken, over, ended)
+            over, truncated = over | cut, truncated | cut
+        else:
+            self._finished += ended.values()
+        self._observation = self._tensors(observation)
         return (
             self._observation,
             torch.from_numpy(reward).to(self.device, torch.float32),
             torch.from_numpy(over).to(self.device),
             {"time_outs": torch.from_numpy(truncated).to(self.device)},
         )
+
+    @property
+    def replayed(self) -> int:
+        """How many decisions were played again to begin where others had been."""
+        return self._episodes.replayed if self._episodes else 0
 
     def finished(self) -> tuple[Finished, ...]:
         """The episodes that ended since this was last asked, in the order of their ends."""
@@ -108,15 +111,37 @@ class TrainingEnv(VecEnv):
         """Close the environments."""
         self.env.close()
 
+    def _turn(
+        self,
+        episodes: Episodes,
+        observation: Any,
+        actions: NDArray[np.int64],
+        over: NDArray[np.bool_],
+        ended: Mapping[int, Finished],
+    ) -> tuple[Any, NDArray[np.bool_]]:
+        """Note what ended, and cut off what took too long; the observation of all, and what was cut off."""
+        assert self.restarts is not None
+        episodes.take(actions)
+        for row, finished in ended.items():
+            self.restarts.ended(episodes.starts[row], episodes.actions[row], finished.success)
+            if episodes.starts[row].part is None:
+                self._finished.append(finished)
+        cut = np.array([episodes.is_spent(row) for row in range(self.num_envs)]) & ~over
+        for row in np.flatnonzero(cut).tolist():
+            self.restarts.ended(episodes.starts[row], episodes.actions[row], False)
+        episodes.turn(over)
+        return (episodes.cut(cut) if cut.any() else observation), cut
+
     def _tensors(self, observation: Mapping[str, NDArray[Any]]) -> TensorDict:
         tensors = {key: torch.from_numpy(each).to(self.device, torch.float32) for key, each in observation.items()}
         return TensorDict(tensors, batch_size=[self.num_envs], device=self.device)
 
 
-def _finished(infos: Mapping[str, Any], rows: NDArray[np.int64]) -> list[Finished]:
+def _finished(infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, Finished]:
+    """The episodes that ended, by their environments."""
     episode = infos["episode"]
-    return [
-        Finished(
+    return {
+        int(row): Finished(
             success=bool(infos["success"][row]),
             progress=float(infos["progress"][row]),
             reward=float(episode["r"][row]),
@@ -124,4 +149,4 @@ def _finished(infos: Mapping[str, Any], rows: NDArray[np.int64]) -> list[Finishe
             state=int(infos["state"][row]),
         )
         for row in rows
-    ]
+    }

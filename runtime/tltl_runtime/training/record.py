@@ -60,6 +60,8 @@ def training_record(run: Run, last: Report, measured: Sequence[Mapping[str, Any]
         "end": last.stop,
         "iterations": last.iteration.number,
         "steps": last.steps,
+        "replayed": last.replayed,
+        "search": None if last.searched is None else to_json(last.searched),
         "seconds": round(last.seconds, 3),
         "window": {"episodes": last.window.count, **means(last.window)},
         "versions": versions(),

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Literal
 
 from tltl_runtime.training.runner import Iteration
+from tltl_runtime.training.search import Searched
 from tltlc.record import record
 
 StopReason = Literal["met", "steps", "minutes"]
@@ -40,7 +41,8 @@ class Report:
     ``steps`` are all decisions so far, of all environments and processes; ``seconds`` the training time so far, over
     resumptions.  ``best_pass_rate`` is that of the policy that is kept, None as long as there is none.  ``stop`` says
     why the training ends here, None where it goes on; ``checkpointed`` whether a checkpoint of this iteration was
-    written.
+    written.  ``searched`` is what the search before it found, None where there was none, its decisions not among the
+    ``steps``; nor are those that were ``replayed`` to begin where others had been.
     """
 
     iteration: Iteration
@@ -50,3 +52,5 @@ class Report:
     best_pass_rate: float | None
     stop: StopReason | None
     checkpointed: bool
+    searched: Searched | None = None
+    replayed: int = 0

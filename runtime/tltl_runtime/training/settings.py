@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from tltl_runtime.policies.network import Network, Shapes, model_config
-from tltl_runtime.training.exploration import Exploration
+from tltl_runtime.training.search import Exploration
 from tltl_runtime.training.settings_file import read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source

@@ -129,7 +129,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "kernel": Whole(1, 15),
         "stride": Whole(1, 8),
     },
-    "exploration": {"weight": Number(0.0, 1_000.0)},
+    "exploration": {"ways": Whole(0, 1_000), "steps": Whole(1, 10**9), "parts": Whole(1, 1_000)},
     "reward": {
         "mode": OneOf(get_args(Mode)),
         "termination": OneOf(get_args(Termination)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, closing
 from math import isfinite
 from typing import Any
@@ -22,33 +22,40 @@ from tltl_runtime.policies.threads import threads
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, read_checkpoint, write_checkpoint
 from tltl_runtime.training.distributed import Peers, cores, joined
-from tltl_runtime.training.environment import PLACES, TrainingEnv
-from tltl_runtime.training.exploration import Visits
+from tltl_runtime.training.environment import TrainingEnv
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.metrics import Metrics
 from tltl_runtime.training.report import Report, StopReason
+from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, read_run, write_run
 from tltl_runtime.training.runner import Iteration, Runner
+from tltl_runtime.training.search import Search, Searched, Way
 from tltl_runtime.training.settings import rsl_config
+from tltl_runtime.training.starts import Replayed
 from tltl_runtime.training.versions import versions
 from tltl_runtime.training.windows import Windows
-from tltl_runtime.vector import make_vec
+from tltl_runtime.vector import WorkerVectorEnv, make_vec
+from tltl_runtime.vector.env import TLTL_INFO
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import replace
 
 __all__ = ["CHECKPOINT", "POLICY", "RUN", "Run", "read_run", "train"]
 
-_OF_TORCH, _OF_ENVIRONMENTS = 0, 1
+_OF_TORCH, _OF_ENVIRONMENTS, _OF_SEARCH, _OF_STARTS = range(4)
 """The streams of random numbers of a process."""
 
 
-def train(run: Run, *, resume: bool = False) -> Iterator[Report]:
+def train(
+    run: Run, *, resume: bool = False, searching: Callable[[Searched], None] = lambda searched: None
+) -> Iterator[Report]:
     """Train in ``run.folder``, with a report after each iteration; the last one says why it ends.
 
     The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the measurements of
     :class:`~tltl_runtime.training.metrics.Metrics`, each before the report that tells of it.  Whatever ends it, Ctrl-C
     and closing the iterator too, leaves a checkpoint of the last whole iteration; a process that is killed loses what
     came after the last one.  With ``resume`` the training goes on from there; one that is over gives its last report.
+
+    A search for ways to meet the spec comes first, which tells ``searching`` how far it is.
 
     Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun each process trains with
     environments of its own, and all give the same reports; the first alone writes.
@@ -69,16 +76,19 @@ def train(run: Run, *, resume: bool = False) -> Iterator[Report]:
             begun = _begun(run, resume)
         begun = own.broadcast(begun)
         stack.enter_context(threads(1))
-        env = stack.enter_context(closing(_environment(run, own, device, begun.iteration if begun else 0)))
+        played = stack.enter_context(closing(_environments(run)))
+        env, searched = _prepared(run, own, device, played, begun, searching)
         torch.manual_seed(int(_stream(run, own, _OF_TORCH, 0).generate_state(1)[0]))
         config = rsl_config(run.settings, env.shapes, env.branches)
-        yield from _Training(run, own, runner(env, config, None, device), begun).reports()
+        yield from _Training(run, own, runner(env, config, None, device), begun, searched).reports()
 
 
 class _Training:
     """A training of this process as one of ``own``; ``state`` is that after the last whole iteration."""
 
-    def __init__(self, run: Run, own: Peers, runner: Runner, begun: Checkpoint | None) -> None:
+    def __init__(
+        self, run: Run, own: Peers, runner: Runner, begun: Checkpoint | None, searched: Searched | None
+    ) -> None:
         self._run, self._own, self._runner = run, own, runner
         self._stop = run.settings.stop
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
@@ -93,13 +103,16 @@ class _Training:
             iteration=0,
             losses={},
             steps=0,
-            seconds=0.0,
+            seconds=searched.seconds if searched else 0.0,
+            replayed=0,
+            searched=searched,
             algorithm=copied(runner.alg.save()),
-            processes=(),
+            processes=tuple(own.gather(_own(runner))),
             window=(),
             best=None,
         )
         self._seconds_before, self._began = self._state.seconds, time.perf_counter()
+        self._replayed_before = self._state.replayed
         self._saved, self._saved_at, self._saved_best = self._state, self._began, self._state.best
 
     def reports(self) -> Iterator[Report]:
@@ -108,6 +121,9 @@ class _Training:
             iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
             yield self._report(iteration, reason, checkpointed=False)
             return
+        if self._state.iteration == 0:
+            # Whoever is killed soon need not search again.
+            self._write()
         metrics = None
         try:
             if self._own.rank == 0:
@@ -128,8 +144,8 @@ class _Training:
         _check_losses(iteration)
         seconds = self._seconds_before + time.perf_counter() - self._began
         # What all decide upon must be the same for all: the first process has the clock.
-        told = self._own.gather((iteration.finished, seconds, _own(self._runner)))
-        finished = tuple(each for one, _, _ in told for each in one)
+        told = self._own.gather((iteration.finished, seconds, _own(self._runner), self._runner.env.replayed))
+        finished = tuple(each for one, *_ in told for each in one)
         iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
         self._windows.add(finished)
         after = replace(
@@ -138,7 +154,8 @@ class _Training:
             losses=iteration.losses,
             steps=self._state.steps + iteration.steps,
             seconds=told[0][1],
-            processes=tuple(each for _, _, each in told),
+            replayed=self._replayed_before + sum(each for *_, each in told),
+            processes=tuple(each for _, _, each, _ in told),
             algorithm=copied(self._runner.alg.save()),
             window=tuple(self._windows.state()),
             best=self._best(),
@@ -184,6 +201,8 @@ class _Training:
             best_pass_rate=best.score[0] if best else None,
             stop=reason,
             checkpointed=checkpointed,
+            searched=self._state.searched,
+            replayed=self._state.replayed,
         )
 
     def _save(self) -> None:
@@ -197,7 +216,11 @@ class _Training:
             weights = state.best.actor if state.best else state.algorithm["actor_state_dict"]
             write_policy(self._run.folder / POLICY, _policy(self._run, self._runner.env, weights))
             self._saved_best = state.best
-        write_checkpoint(self._run.folder / CHECKPOINT, state)
+        self._write()
+
+    def _write(self) -> None:
+        if self._own.rank == 0:
+            write_checkpoint(self._run.folder / CHECKPOINT, self._state)
 
 
 def _begun(run: Run, resume: bool) -> Checkpoint | None:
@@ -215,10 +238,10 @@ def _begun(run: Run, resume: bool) -> Checkpoint | None:
     return None
 
 
-def _environment(run: Run, own: Peers, device: str, iteration: int) -> TrainingEnv:
-    """The environments of this process, at the beginning of episodes that no process played before."""
+def _environments(run: Run) -> WorkerVectorEnv:
+    """The environments of this process."""
     settings, rollout = run.settings, run.settings.rollout
-    env = make_vec(
+    return make_vec(
         run.level,
         run.variant,
         rollout.envs,
@@ -227,12 +250,34 @@ def _environment(run: Run, own: Peers, device: str, iteration: int) -> TrainingE
         sensors=run.sensors,
         reward=settings.reward,
         params=run.params,
-        info=PLACES,
+        wrapper=Replayed,
+        info={**TLTL_INFO, "cell": np.int64},
     )
-    seeds = _stream(run, own, _OF_ENVIRONMENTS, iteration).generate_state(env.num_envs) >> 1
-    weight = settings.exploration.weight
-    visits = Visits(weight, len(run.fspa.states)) if weight else None
-    return TrainingEnv(env, [int(each) for each in seeds], device, visits)
+
+
+def _prepared(
+    run: Run,
+    own: Peers,
+    device: str,
+    played: WorkerVectorEnv,
+    begun: Checkpoint | None,
+    searching: Callable[[Searched], None],
+) -> tuple[TrainingEnv, Searched | None]:
+    """What rsl-rl trains with, at the beginning of episodes that no process played before, and what a search found."""
+    exploration, searched, restarts = run.settings.exploration, None, None
+    iteration = begun.iteration if begun else 0
+    if exploration.ways:
+        ways: list[Way] = []
+        if begun is None:
+            search = Search(played, len(run.fspa.states), exploration, _stream(run, own, _OF_SEARCH, 0))
+            for searched in search.run():
+                searching(searched)
+            ways = search.ways
+        restarts = Restarts(ways, exploration.parts, np.random.default_rng(_stream(run, own, _OF_STARTS, iteration)))
+        if begun is not None and own.rank < len(begun.processes):
+            restarts.load({name: each.numpy() for name, each in begun.processes[own.rank].items()})
+    seeds = _stream(run, own, _OF_ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
+    return TrainingEnv(played, [int(each) for each in seeds], device, restarts), searched
 
 
 def _class(setting: str, name: str, base: type) -> Any:
@@ -277,8 +322,8 @@ def _own(runner: Runner) -> dict[str, Tensor]:
     own = {"cpu": torch.get_rng_state()}
     if runner.device.startswith("cuda"):
         own["cuda"] = torch.cuda.get_rng_state(runner.device)
-    if runner.env.visits is not None:
-        own["visits"] = torch.from_numpy(runner.env.visits.counts.copy())
+    if runner.env.restarts:
+        own |= {name: torch.from_numpy(each) for name, each in runner.env.restarts.state().items()}
     return own
 
 
@@ -286,8 +331,6 @@ def _set_own(own: Mapping[str, Tensor], runner: Runner) -> None:
     torch.set_rng_state(own["cpu"])
     if runner.device.startswith("cuda") and "cuda" in own:
         torch.cuda.set_rng_state(own["cuda"], runner.device)
-    if runner.env.visits is not None:
-        runner.env.visits.counts = own["visits"].numpy()
 
 
 def _check_losses(iteration: Iteration) -> None:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
+
+import gymnasium
 
 from tltl_runtime.stealth.env import check_fit, make_env, spec_of
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.senses.sensors import SensorChoice
 from tltl_runtime.task import read_spec
 from tltl_runtime.vector.env import WorkerVectorEnv
+from tltl_runtime.wrapper import TltlEnv
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
 
@@ -27,12 +30,14 @@ def make_vec(
     reward: RewardOptions | None = None,
     params: Mapping[str, float] | None = None,
     render_mode: str | None = None,
+    wrapper: Callable[[TltlEnv], gymnasium.Env[Any, Any]] | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
     """``num_envs`` of what :func:`~tltl_runtime.stealth.env.make_env` makes, stepped by ``workers``.
 
-    ``options`` and errors are those of :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``.  Raises
-    ValueError for the render mode ``human`` of several environments, each of which would open a window.
+    Each is put into a ``wrapper``, where one is given, which must be importable.  ``options`` and errors are those of
+    :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``.  Raises ValueError for the render mode ``human``
+    of several environments, each of which would open a window.
     """
     if render_mode == "human" and num_envs > 1:
         raise ValueError("render_mode 'human' shows one environment: with several, give 'rgb_array' and call render()")
@@ -44,4 +49,9 @@ def make_vec(
     make = partial(
         make_env, level, variant, fspa, sensors=sensors, reward=reward, params=params, render_mode=render_mode
     )
-    return WorkerVectorEnv([make] * num_envs, workers, names=[f"{level} {variant}"] * num_envs, **options)
+    function = make if wrapper is None else partial(_wrapped, wrapper, make)
+    return WorkerVectorEnv([function] * num_envs, workers, names=[f"{level} {variant}"] * num_envs, **options)
+
+
+def _wrapped(wrapper: Callable[[TltlEnv], gymnasium.Env[Any, Any]], make: Callable[[], TltlEnv]) -> Any:
+    return wrapper(make())

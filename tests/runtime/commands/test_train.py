@@ -29,6 +29,9 @@ envs = 4
 steps = 16
 workers = 1
 
+[exploration]
+ways = 0
+
 [ppo]
 epochs = 1
 minibatches = 1

@@ -29,6 +29,7 @@ SMALL: dict[str, Any] = {
     "rollout.workers": 1,
     "network.hidden": (16,),
     "network.channels": (4,),
+    "exploration.ways": 0,
     "stop.steps": 192,
     "checkpoint_s": 0.0,
 }

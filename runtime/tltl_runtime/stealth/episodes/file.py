@@ -12,10 +12,10 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.episodes.arrays import ARRAYS, Array, Arrays, shape_of, sizes, snapshots, to_arrays
 from tltl_runtime.stealth.episodes.episode import End, Episode
 from tltl_runtime.stealth.episodes.numpy_archive import ArchiveError, read_array, read_members
-from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.snapshot import BRANCHES

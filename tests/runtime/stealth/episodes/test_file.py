@@ -18,12 +18,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.arrays import ARRAYS
 from tltl_runtime.stealth.episodes.check import check, check_replay, resimulate
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import SUFFIX, from_bytes, read_episode, to_bytes, write_episode
-from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.recording import RecordEpisode

@@ -1,0 +1,105 @@
+"""Where episodes of a training begin: at the level's start, or in the midst of an episode that was played before.
+
+Same seed and actions give the same episode, so that whatever was reached once is reached again by playing those
+actions again.  The agent's own decisions follow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from tltl_runtime.vector import WorkerVectorEnv
+from tltlc.record import record
+
+Actions = list[list[int]]
+
+
+@record
+class Start:
+    """The seed of an episode and the ``actions`` that are played before the agent's first, [n, branches].
+
+    ``part`` says where on a way this is, see :class:`~tltl_runtime.training.restarts.Restarts`, None: on none.  After
+    ``most`` decisions of the agent the episode is cut off, None: nowhere.
+    """
+
+    seed: int
+    actions: Sequence[Sequence[int]] = ()
+    part: int | None = None
+    most: int | None = None
+
+
+class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """An environment whose episodes begin with ``begin``: a seed, and actions that are played at once.
+
+    None: as the environment's own.  It stays what it is until it is set again.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
+        super().__init__(env)
+        self.begin: tuple[int, NDArray[np.int8]] | None = None
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begin an episode, and play what is to be played again; that does not end it."""
+        if self.begin is None:
+            return self.env.reset(seed=seed, options=options)
+        own, actions = self.begin
+        observation, info = self.env.reset(seed=own, options=options)
+        for action in actions:
+            observation, _, _, _, info = self.env.step(action)
+        return observation, info
+
+
+class Episodes:
+    """What each environment of ``env`` plays, with all actions so far; the next starts are those that ``draw`` gives.
+
+    The environments are :class:`Replayed`.  ``observation`` is that of the first episodes, which begin here;
+    ``replayed`` counts the decisions that were played again.
+    """
+
+    def __init__(self, env: WorkerVectorEnv, draw: Callable[[], Start]) -> None:
+        self._env = env
+        self._draw = draw
+        self._all = np.ones(env.num_envs, dtype=np.bool_)
+        self._next = [draw() for _ in range(env.num_envs)]
+        self.starts = list(self._next)
+        self.actions: list[Actions] = [[] for _ in self._next]
+        self.replayed = 0
+        self._tell()
+        self.observation, _ = env.reset()
+        self.turn(self._all)
+
+    def take(self, actions: NDArray[np.int64]) -> None:
+        """Note the actions [num_envs, branches] that are played now."""
+        for known, action in zip(self.actions, actions.tolist(), strict=True):
+            known.append(action)
+
+    def turn(self, over: NDArray[np.bool_]) -> None:
+        """Take note that in these environments the next episodes have begun."""
+        rows = np.flatnonzero(over)
+        if not len(rows):
+            return
+        for row in rows:
+            start = self.starts[row] = self._next[row]
+            self.actions[row] = [list(action) for action in start.actions]
+            self.replayed += len(start.actions)
+            self._next[row] = self._draw()
+        self._tell()
+
+    def cut(self, over: NDArray[np.bool_]) -> Any:
+        """Break off the episodes of these environments and begin the next ones; the observation of all."""
+        observation, _ = self._env.reset(options={"reset_mask": over})
+        self.turn(over)
+        return observation
+
+    def is_spent(self, row: int) -> bool:
+        """Whether the agent has had as many decisions as the start of the episode in this environment gave it."""
+        start = self.starts[row]
+        return start.most is not None and len(self.actions[row]) - len(start.actions) >= start.most
+
+    def _tell(self) -> None:
+        self._env.set_attr("begin", [(start.seed, np.array(start.actions, dtype=np.int8)) for start in self._next])

@@ -1,0 +1,152 @@
+"""The search for ways, and where episodes begin on them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.training.restarts import Restarts
+from tltl_runtime.training.search import Exploration, Search, Searched, Way
+from tltl_runtime.training.starts import Episodes, Replayed, Start
+from tltl_runtime.vector import WorkerVectorEnv, make_vec
+from tltl_runtime.vector.env import TLTL_INFO
+
+NEAR = "import spatial\nentity s1\nspec near_s1 { level navigation  limit 300 steps  reach near(s1) }"
+FAR = "import spatial\nentity exit\nspec out { level navigation  limit 300 steps  reach near(exit) }"
+
+
+def envs(workers: int, spec: str = NEAR) -> WorkerVectorEnv:
+    info = {**TLTL_INFO, "cell": np.int64}
+    return make_vec("navigation", "v0", 4, workers, spec=spec, wrapper=Replayed, info=info)
+
+
+@pytest.fixture
+def env() -> Iterator[WorkerVectorEnv]:
+    made = envs(1)
+    yield made
+    made.close()
+
+
+def search(env: WorkerVectorEnv, exploration: Exploration) -> tuple[list[Way], list[Searched]]:
+    found = Search(env, 2, exploration, np.random.SeedSequence(7))
+    told = list(found.run())
+    return found.ways, told
+
+
+def test_ways_meet_the_spec_when_they_are_played_again(env: WorkerVectorEnv) -> None:
+    ways, told = search(env, Exploration(ways=3, steps=20_000, parts=4))
+    assert len(ways) >= 3
+    assert told[-1].lengths == tuple(sorted(len(way.actions) for way in ways))
+    assert told[-1].places > 10
+    alone = make_env("navigation", "v0", NEAR)
+    for way in ways:
+        alone.reset(seed=way.seed)
+        infos = [alone.step(action)[4] for action in way.actions]
+        assert [info["success"] for info in infos] == [False] * (len(infos) - 1) + [True]
+    alone.close()
+
+
+def test_any_number_of_workers_finds_the_same_ways(env: WorkerVectorEnv) -> None:
+    exploration = Exploration(ways=2, steps=20_000, parts=4)
+    other = envs(2)
+    assert search(env, exploration)[0] == search(other, exploration)[0]
+    other.close()
+
+
+def test_a_search_ends_at_its_limit() -> None:
+    env = envs(1, FAR)
+    ways, told = search(env, Exploration(ways=1, steps=200, parts=4))
+    env.close()
+    assert not ways
+    assert told[-1].steps == 200
+
+
+def test_episodes_begin_where_others_were(env: WorkerVectorEnv) -> None:
+    rng = np.random.default_rng(3)
+    actions = [[int(each) for each in rng.integers(0, (3, 3, 1, 2, 2))] for _ in range(25)]
+    starts = iter([Start(5, actions[:20])] * 4 + [Start(5, actions, most=2)] * 20)
+    episodes = Episodes(env, lambda: next(starts))
+    alone = make_env("navigation", "v0", NEAR)
+    alone.reset(seed=5)
+    for action in actions[:20]:
+        observation, *_ = alone.step(action)
+    for key, value in observation.items():
+        assert np.array_equal(episodes.observation[key], np.stack([value] * 4))
+    for action in actions[20:]:
+        env.step(np.array([action] * 4))
+        episodes.take(np.array([action] * 4))
+        observation, *_ = alone.step(action)
+    assert not any(episodes.is_spent(row) for row in range(4))
+    # The next ones begin where these are now.
+    cut = episodes.cut(np.array([True, False, False, True]))
+    for key, value in observation.items():
+        assert np.array_equal(cut[key], np.stack([value] * 4))
+    assert episodes.actions[0] == episodes.actions[1] == actions
+    assert episodes.replayed == 4 * 20 + 2 * 25
+    for _ in range(2):
+        env.step(np.zeros((4, 5), dtype=np.int64))
+        episodes.take(np.zeros((4, 5), dtype=np.int64))
+    assert [episodes.is_spent(row) for row in range(4)] == [True, False, False, True]
+    alone.close()
+
+
+def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
+    way = Way(1, [[0, 0, 0, 0, 0]] * 80)
+    restarts = Restarts([way], 8, np.random.default_rng(0))
+    drawn = Counter(restarts.draw().part for _ in range(1000))
+    assert drawn[7] == max(drawn.values())
+    assert drawn[None] < 200
+    longer = [[1, 0, 0, 0, 0]] * 90
+    for part in (7, 6):
+        for _ in range(60):
+            restarts.ended(Start(1, way.actions[: 10 * part], part), longer, True)
+    for _ in range(4):
+        restarts.ended(Start(1, way.actions[:50], 5), longer, True)
+    drawn = Counter(restarts.draw().part for _ in range(1000))
+    assert drawn[5] > 3 * max(drawn[7], drawn[6], drawn[4])
+    for _ in range(500):
+        restarts.ended(Start(2), longer, True)
+    assert Counter(restarts.draw().part for _ in range(1000))[None] > 800
+
+
+def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:
+    way = Way(9, [[0, 0, 0, 0, index % 2] for index in range(160)])
+    restarts = Restarts([way], 16, np.random.default_rng(1))
+    for start in (restarts.draw() for _ in range(300)):
+        if start.part is not None:
+            assert start.part * 10 <= len(start.actions) < (start.part + 1) * 10
+            assert start.actions == way.actions[: len(start.actions)]
+            assert start.most is not None
+            assert start.most >= 160 - len(start.actions)
+
+
+def test_the_shortest_ways_are_kept_and_the_agents_own_join_them() -> None:
+    ways = [Way(index, [[0] * 5] * (100 + index)) for index in range(20)]
+    restarts = Restarts(ways, 4, np.random.default_rng(1))
+    assert [len(way.actions) for way in restarts.ways] == list(range(100, 108))
+    restarts.ended(Start(77), [[1] * 5] * 50, True)
+    restarts.ended(Start(78), [[1] * 5] * 40, False)
+    assert [way.seed for way in restarts.ways][:2] == [77, 0]
+    assert len(restarts.ways) == 8
+
+
+def test_without_ways_episodes_begin_at_their_beginning() -> None:
+    restarts = Restarts([], 4, np.random.default_rng(1))
+    assert all(start.part is None and not start.actions for start in (restarts.draw() for _ in range(50)))
+
+
+@pytest.mark.parametrize("count", [0, 3])
+def test_what_is_kept_of_restarts_is_all_of_them(count: int) -> None:
+    ways = [Way(index, [[index, 0, 1, 0, 1]] * (5 + index)) for index in range(count)]
+    restarts = Restarts(ways, 4, np.random.default_rng(1))
+    restarts.ended(Start(3, (), 2), [], True)
+    restarts.ended(Start(3), [[0] * 5] * 200, False)
+    again = Restarts([], 4, np.random.default_rng(1))
+    again.load(restarts.state())
+    assert again.ways == restarts.ways
+    assert again.rates.tolist() == restarts.rates.tolist()
+    assert again.passed == restarts.passed
