@@ -199,11 +199,15 @@ class Cell:
         record, others = self._record(), self.folder / OTHERS
         lines = (self.folder / "metrics.jsonl").read_text(encoding="utf-8").splitlines()
         collect_s, learn_s = (sum(json.loads(line)[name] for line in lines) for name in ("collect_s", "learn_s"))
+        search = record["search"] or {"steps": 0, "replayed": 0, "seconds": 0.0}
         return {
             "end": record["end"],
+            "workers": record["settings"]["rollout"]["workers"],
             "steps": record["steps"],
+            "all_steps": record["steps"] + record["replayed"] + search["steps"] + search["replayed"],
             "minutes": round(record["seconds"] / 60, 2),
-            "steps_per_s": round(record["steps"] / record["seconds"]),
+            "search_minutes": round(search["seconds"] / 60, 2),
+            "steps_per_s": round(record["steps"] / (record["seconds"] - search["seconds"])),
             "learn_share": round(learn_s / (collect_s + learn_s), 3),
             "window": record["window"],
             "other_cores": float(others.read_text(encoding="utf-8")) if others.exists() else None,

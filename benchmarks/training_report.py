@@ -89,9 +89,12 @@ def _trained(records: Mapping[str, Record]) -> str:
     header = (
         "level",
         "seed",
+        "workers",
         "ended",
         "steps",
         "minutes",
+        "of them search",
+        "all steps",
         "paper, hours",
         "steps/s",
         "learning",
@@ -107,7 +110,10 @@ def _trained(records: Mapping[str, Record]) -> str:
         (
             level,
             seed,
+            record["workers"],
             *_course(record),
+            f"{record['search_minutes']:.1f}",
+            f"{record['all_steps']:,}",
             PAPER_HOURS[level],
             f"{record['steps_per_s']:,}",
             f"{record['learn_share']:.2f}",
@@ -122,12 +128,15 @@ def _trained(records: Mapping[str, Record]) -> str:
 ## Training
 
 `python -m benchmarks --only training` makes these figures, and goes on where it was stopped. A row is
-`tltlc train --level LEVEL --seed SEED --minutes {MINUTES:g} --workers 2` on two cores, then `tltlc evaluate` of its
-policy on fresh episodes, with actions sampled and with the likeliest ones. *Ended*: `met` where the spec was met in two
-successive windows of 50 episodes. *Minutes* are of wall time, *steps/s* all steps over all of it, *learning* the share
-of it that updates took, *others* how many cores of the machine were busy with other work. *Pass rate* with its Wilson
-interval; *progress* and *reward* (with the undiscounted terminal penalty) are means with standard deviations. *Paper*:
-Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, Table I.
+`tltlc train --level LEVEL --seed SEED --minutes {MINUTES:g} --workers N`, then `tltlc evaluate` of its policy on fresh
+episodes, with actions sampled and with the likeliest ones. *Workers* of 2: the training had two cores to itself; of 1:
+it had one core, and another training the other. *Ended*: `met` where the spec was met in two successive windows of 50
+episodes. *Steps* are the decisions that the agent learned from; *all steps* also those of the search for ways and
+those that were played again to begin on a way. *Minutes* are of wall time, those of the search included; *steps/s* are
+of the time after it, *learning* is the share of that which updates took, and *others* are how many cores of the machine
+were busy with other work. *Pass rate* with its Wilson interval; *progress* and *reward* (with the undiscounted
+terminal penalty) are means with standard deviations. *Paper*: Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, Table
+I.
 
 {table(header, body)}
 

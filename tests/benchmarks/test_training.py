@@ -17,7 +17,10 @@ def trained(pass_rate: float, minutes: float, end: str = "met") -> Record:
     return {
         "end": end,
         "steps": 900_000,
+        "workers": 2,
         "minutes": minutes,
+        "search_minutes": 1.0,
+        "all_steps": 900_000,
         "steps_per_s": 1600,
         "learn_share": 0.4,
         "other_cores": 0.1,
@@ -63,7 +66,7 @@ def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
     settings = json.loads((folder / "no-semantic-map" / "run.json").read_text(encoding="utf-8"))
     assert settings["sensors"]["map"] is None
     text = training_report.section(records)
-    assert "| cover_and_hide | 1 | minutes | 128 |" in text
+    assert "| cover_and_hide | 1 | 2 | minutes | 128 |" in text
     assert "| no semantic map | minutes | 128 |" in text
     assert picture.read_bytes().startswith(b"\x89PNG")
 
