@@ -14,6 +14,7 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.training.restarts import Restarts
+from tltl_runtime.training.search import end_of
 from tltl_runtime.training.starts import Episodes
 from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.record import record
@@ -85,7 +86,8 @@ class TrainingEnv(VecEnv):
         over = terminated | truncated
         ended = _finished(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
         if self._episodes:
-            observation, cut = self._turn(self._episodes, observation, taken, over, ended)
+            ends = {row: end_of(infos["final_info"], row) for row, each in ended.items() if each.success}
+            observation, cut = self._turn(self._episodes, observation, taken, over, ended, ends)
             over, truncated = over | cut, truncated | cut
         else:
             self._finished += ended.values()
@@ -118,17 +120,18 @@ class TrainingEnv(VecEnv):
         actions: NDArray[np.int64],
         over: NDArray[np.bool_],
         ended: Mapping[int, Finished],
+        ends: Mapping[int, int],
     ) -> tuple[Any, NDArray[np.bool_]]:
         """Note what ended, and cut off what took too long; the observation of all, and what was cut off."""
         assert self.restarts is not None
         episodes.take(actions)
         for row, finished in ended.items():
-            self.restarts.ended(episodes.starts[row], episodes.actions[row], finished.success)
+            self.restarts.ended(episodes.starts[row], episodes.actions[row], ends.get(row))
             if episodes.starts[row].part is None:
                 self._finished.append(finished)
         cut = np.array([episodes.is_spent(row) for row in range(self.num_envs)]) & ~over
         for row in np.flatnonzero(cut).tolist():
-            self.restarts.ended(episodes.starts[row], episodes.actions[row], False)
+            self.restarts.ended(episodes.starts[row], episodes.actions[row], None)
         episodes.turn(over)
         return (episodes.cut(cut) if cut.any() else observation), cut
 

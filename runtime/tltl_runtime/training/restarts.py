@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from tltl_runtime.training.search import Way
 from tltl_runtime.training.starts import Actions, Start
 
-_WAYS = 8
-"""As many of the shortest ways are kept."""
+_WAYS = 4
+"""Of the ways with the same end, as many of the shortest are kept."""
 _FRESH = 0.1
 """How many episodes begin at the level's start in any case."""
 _LEAST = 0.01
@@ -31,61 +31,79 @@ _SPARE = 1.5, 20
 class Restarts:
     """Draws starts; ``generator`` is its own.
 
-    ``ways`` are the shortest ones that are known; the agent's own successes join them.  ``rates`` are the success
-    rates from each part, in [0, 1], ``passed`` is that from the level's start.
+    ``ways`` has the shortest ones that are known for each end, since a spec may be met in more than one manner, and the
+    shortest of all would hide the others; the agent's own successes join them.  ``rates`` has for each end the success
+    rates from each part of its ways, in [0, 1]; ``passed`` is the success rate from the level's start.
     """
 
     def __init__(self, ways: Sequence[Way], parts: int, generator: np.random.Generator) -> None:
         self._random = generator
-        self.ways = list(ways)
-        self.rates: NDArray[np.float64] = np.zeros(parts)
-        # The end of a way is where the learning begins.
-        self.rates[-1] = 0.5
+        self._parts = parts
+        self.ways: dict[int, list[Way]] = {}
+        self.rates: dict[int, NDArray[np.float64]] = {}
         self.passed = 0.0
-        self._keep_shortest()
+        for way in ways:
+            self._add(way)
 
     def draw(self) -> Start:
         """Where the next episode begins: the more often at the level's start, the better the agent is from there."""
         seed = int(self._random.integers(2**31))
         if not self.ways or self._random.random() < _FRESH + (1 - 2 * _FRESH) * self.passed:
             return Start(seed)
-        weights = self.rates * (1 - self.rates) + _LEAST
-        part = int(self._random.choice(len(weights), p=weights / weights.sum()))
-        way = self.ways[self._random.integers(len(self.ways))]
-        at = int(len(way.actions) * (part + self._random.random()) / len(weights))
+        ends, rates = list(self.rates), np.concatenate(list(self.rates.values()))
+        weights = rates * (1 - rates) + _LEAST
+        index, part = divmod(int(self._random.choice(len(weights), p=weights / weights.sum())), self._parts)
+        ways = self.ways[ends[index]]
+        way = ways[self._random.integers(len(ways))]
+        at = int(len(way.actions) * (part + self._random.random()) / self._parts)
         times, more = _SPARE
-        return Start(way.seed, way.actions[:at], part, int((len(way.actions) - at) * times) + more)
+        return Start(way.seed, way.actions[:at], (way.end, part), int((len(way.actions) - at) * times) + more)
 
-    def ended(self, start: Start, actions: Actions, success: bool) -> None:
-        """Learn how an episode ended that began at ``start``; ``actions`` are all of it."""
+    def ended(self, start: Start, actions: Actions, end: int | None) -> None:
+        """Learn how an episode ended that began at ``start``: in success with this ``end``, or None, without.
+
+        ``actions`` are all of it.
+        """
         of_part, from_start = _RATE
+        success = end is not None
         if start.part is None:
             self.passed += from_start * (success - self.passed)
         else:
-            self.rates[start.part] += of_part * (success - self.rates[start.part])
-        if success and (len(self.ways) < _WAYS or len(actions) < len(self.ways[-1].actions)):
-            self.ways.append(Way(start.seed, actions))
-            self._keep_shortest()
+            way_end, part = start.part
+            self.rates[way_end][part] += of_part * (success - self.rates[way_end][part])
+        if end is not None:
+            self._add(Way(start.seed, actions, end))
 
     def state(self) -> dict[str, NDArray[Any]]:
         """All but the generator, as arrays, for :meth:`load`."""
-        actions = [action for way in self.ways for action in way.actions]
+        ways = [way for known in self.ways.values() for way in known]
         return {
-            "way_seeds": np.array([way.seed for way in self.ways], dtype=np.int64),
-            "way_lengths": np.array([len(way.actions) for way in self.ways], dtype=np.int64),
-            "way_actions": np.array(actions, dtype=np.int8),
-            "rates": self.rates.copy(),
+            "way_seeds": np.array([way.seed for way in ways], dtype=np.int64),
+            "way_ends": np.array([way.end for way in ways], dtype=np.int64),
+            "way_lengths": np.array([len(way.actions) for way in ways], dtype=np.int64),
+            "way_actions": np.array([action for way in ways for action in way.actions], dtype=np.int8),
+            "rates": np.array(list(self.rates.values())),
             "passed": np.array([self.passed]),
         }
 
     def load(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Take up what :meth:`state` gave."""
-        ends = np.cumsum(state["way_lengths"])[:-1]
-        actions = np.split(state["way_actions"], ends) if len(state["way_seeds"]) else []
-        self.ways = [Way(int(seed), own.tolist()) for seed, own in zip(state["way_seeds"], actions, strict=True)]
-        self.rates = state["rates"].copy()
+        self.ways, self.rates = {}, {}
+        if len(state["way_seeds"]):
+            actions = np.split(state["way_actions"], np.cumsum(state["way_lengths"])[:-1])
+            for seed, end, own in zip(state["way_seeds"], state["way_ends"], actions, strict=True):
+                self._add(Way(int(seed), own.tolist(), int(end)))
+            self.rates = dict(zip(self.rates, state["rates"].copy(), strict=True))
         self.passed = float(state["passed"][0])
 
-    def _keep_shortest(self) -> None:
-        self.ways.sort(key=lambda way: len(way.actions))
-        del self.ways[_WAYS:]
+    def _add(self, way: Way) -> None:
+        """Keep a way where it is among the shortest to its end."""
+        if way.end not in self.ways:
+            self.ways[way.end] = []
+            self.rates[way.end] = np.zeros(self._parts)
+            # The end of a way is where the learning begins.
+            self.rates[way.end][-1] = 0.5
+        known = self.ways[way.end]
+        known.append(way)
+        known.sort(key=lambda each: len(each.actions))
+        del known[_WAYS:]

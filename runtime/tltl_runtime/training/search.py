@@ -9,7 +9,8 @@ actions that led there again, and from there chance goes on: Ecoffet et al., Fir
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +32,9 @@ _TOLD_EVERY_S = 0.5
 class Exploration:
     """The search before the training, and what is made of it.
 
-    It ends with the ``ways``-th episode that meets the spec (0: no search), or after ``steps`` decisions, those that
-    are played again not counted.  The ways are divided into ``parts`` at which episodes of the training may begin.
+    It ends when ``ways`` episodes have met the spec (0: no search) and it has gone on for as long as it took to the
+    first of them, so that other ends are found, too; or after ``steps`` decisions, those that are played again not
+    counted.  The ways are divided into ``parts`` at which episodes of the training may begin.
     """
 
     ways: int
@@ -42,10 +44,21 @@ class Exploration:
 
 @record
 class Way:
-    """An episode that met the spec: its seed, and all of its actions."""
+    """An episode that met the spec: its seed, all of its actions, and its ``end`` as :func:`end_of` tells it."""
 
     seed: int
     actions: Actions
+    end: int
+
+
+def end_of(infos: Mapping[str, Any], row: int) -> int:
+    """How the episode ended that the ``final_info`` of a vector environment tells of in a row: bit i says whether the
+    spec's i-th atom was true.
+    """
+    atoms = infos["atoms"]
+    # Gymnasium has a mask beside each; an int64 has no more bits.
+    names = [name for name in atoms if f"_{name}" in atoms][:63]
+    return sum(1 << index for index, name in enumerate(names) if atoms[name][row] > 0)
 
 
 @record
@@ -88,8 +101,9 @@ class Search:
         shape = self._env.num_envs, len(choices)
         action = self._random.integers(0, choices, size=shape)
         left = np.full(self._env.num_envs, _BURST)
-        steps = 0
-        while steps < self._exploration.steps and len(self.ways) < self._exploration.ways:
+        steps = first = 0
+        enough = self._exploration.steps
+        while steps < enough:
             kept = self._random.random(shape) < _KEPT
             action = np.where(kept, action, self._random.integers(0, choices, size=shape))
             _, _, terminated, truncated, infos = self._env.step(action)
@@ -100,12 +114,17 @@ class Search:
                 if not over[row]:
                     left[row] = self._note(episodes, row, infos, int(left[row]) - 1)
                 elif infos["final_info"]["success"][row]:
-                    self.ways.append(Way(episodes.starts[row].seed, episodes.actions[row]))
+                    end = end_of(infos["final_info"], row)
+                    self.ways.append(Way(episodes.starts[row].seed, episodes.actions[row], end))
             spent = ~over & (left <= 0)
             episodes.turn(over)
             if spent.any():
                 episodes.cut(spent)
             left[over | spent] = _BURST
+            if self.ways and not first:
+                first = steps
+            if len(self.ways) >= self._exploration.ways:
+                enough = min(enough, 2 * first)
             if time.perf_counter() - told > _TOLD_EVERY_S:
                 told = time.perf_counter()
                 yield self._searched(steps, episodes.replayed, told - began)

@@ -23,13 +23,13 @@ Actions = list[list[int]]
 class Start:
     """The seed of an episode and the ``actions`` that are played before the agent's first, [n, branches].
 
-    ``part`` says where on a way this is, see :class:`~tltl_runtime.training.restarts.Restarts`, None: on none.  After
+    ``part`` says where on a way this is, the way's end and the number of its part, None: on none.  After
     ``most`` decisions of the agent the episode is cut off, None: nowhere.
     """
 
     seed: int
     actions: Sequence[Sequence[int]] = ()
-    part: int | None = None
+    part: tuple[int, int] | None = None
     most: int | None = None
 
 

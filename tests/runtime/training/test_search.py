@@ -43,6 +43,7 @@ def test_ways_meet_the_spec_when_they_are_played_again(env: WorkerVectorEnv) -> 
     assert told[-1].lengths == tuple(sorted(len(way.actions) for way in ways))
     assert told[-1].places > 10
     alone = make_env("navigation", "v0", NEAR)
+    assert {way.end for way in ways} == {1}
     for way in ways:
         alone.reset(seed=way.seed)
         infos = [alone.step(action)[4] for action in way.actions]
@@ -95,43 +96,49 @@ def test_episodes_begin_where_others_were(env: WorkerVectorEnv) -> None:
 
 
 def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
-    way = Way(1, [[0, 0, 0, 0, 0]] * 80)
+    way = Way(1, [[0, 0, 0, 0, 0]] * 80, 1)
     restarts = Restarts([way], 8, np.random.default_rng(0))
-    drawn = Counter(restarts.draw().part for _ in range(1000))
-    assert drawn[7] == max(drawn.values())
-    assert drawn[None] < 200
+
+    def drawn() -> Counter[int | None]:
+        parts = (restarts.draw().part for _ in range(1000))
+        return Counter(None if part is None else part[1] for part in parts)
+
+    first = drawn()
+    assert first[7] == max(first.values())
+    assert first[None] < 200
     longer = [[1, 0, 0, 0, 0]] * 90
-    for part in (7, 6):
-        for _ in range(60):
-            restarts.ended(Start(1, way.actions[: 10 * part], part), longer, True)
-    for _ in range(4):
-        restarts.ended(Start(1, way.actions[:50], 5), longer, True)
-    drawn = Counter(restarts.draw().part for _ in range(1000))
-    assert drawn[5] > 3 * max(drawn[7], drawn[6], drawn[4])
+    for part, times in ((7, 60), (6, 60), (5, 4)):
+        for _ in range(times):
+            restarts.ended(Start(1, way.actions[: 10 * part], (1, part)), longer, 1)
+    later = drawn()
+    assert later[5] > 3 * max(later[7], later[6], later[4])
     for _ in range(500):
-        restarts.ended(Start(2), longer, True)
-    assert Counter(restarts.draw().part for _ in range(1000))[None] > 800
+        restarts.ended(Start(2), longer, 1)
+    assert drawn()[None] > 800
 
 
 def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:
-    way = Way(9, [[0, 0, 0, 0, index % 2] for index in range(160)])
+    way = Way(9, [[0, 0, 0, 0, index % 2] for index in range(160)], 1)
     restarts = Restarts([way], 16, np.random.default_rng(1))
     for start in (restarts.draw() for _ in range(300)):
         if start.part is not None:
-            assert start.part * 10 <= len(start.actions) < (start.part + 1) * 10
+            end, part = start.part
+            assert end == 1
+            assert part * 10 <= len(start.actions) < (part + 1) * 10
             assert start.actions == way.actions[: len(start.actions)]
             assert start.most is not None
             assert start.most >= 160 - len(start.actions)
 
 
-def test_the_shortest_ways_are_kept_and_the_agents_own_join_them() -> None:
-    ways = [Way(index, [[0] * 5] * (100 + index)) for index in range(20)]
+def test_the_shortest_ways_to_each_end_are_kept_and_the_agents_own_join_them() -> None:
+    ways = [Way(index, [[0] * 5] * (100 + index), index % 2) for index in range(20)]
     restarts = Restarts(ways, 4, np.random.default_rng(1))
-    assert [len(way.actions) for way in restarts.ways] == list(range(100, 108))
-    restarts.ended(Start(77), [[1] * 5] * 50, True)
-    restarts.ended(Start(78), [[1] * 5] * 40, False)
-    assert [way.seed for way in restarts.ways][:2] == [77, 0]
-    assert len(restarts.ways) == 8
+    restarts.ended(Start(77), [[1] * 5] * 50, 0)
+    restarts.ended(Start(78), [[1] * 5] * 40, None)
+    restarts.ended(Start(79), [[1] * 5] * 400, 3)
+    kept = {end: [way.seed for way in known] for end, known in restarts.ways.items()}
+    assert kept == {0: [77, 0, 2, 4], 1: [1, 3, 5, 7], 3: [79]}
+    assert {start.part[0] for start in (restarts.draw() for _ in range(200)) if start.part} == {0, 1, 3}
 
 
 def test_without_ways_episodes_begin_at_their_beginning() -> None:
@@ -141,12 +148,16 @@ def test_without_ways_episodes_begin_at_their_beginning() -> None:
 
 @pytest.mark.parametrize("count", [0, 3])
 def test_what_is_kept_of_restarts_is_all_of_them(count: int) -> None:
-    ways = [Way(index, [[index, 0, 1, 0, 1]] * (5 + index)) for index in range(count)]
+    ways = [Way(index, [[index, 0, 1, 0, 1]] * (5 + index), index) for index in range(count)]
     restarts = Restarts(ways, 4, np.random.default_rng(1))
-    restarts.ended(Start(3, (), 2), [], True)
-    restarts.ended(Start(3), [[0] * 5] * 200, False)
+    if count:
+        restarts.ended(Start(3, (), (2, 2)), [], None)
+    restarts.ended(Start(3), [[0] * 5] * 200, None)
     again = Restarts([], 4, np.random.default_rng(1))
     again.load(restarts.state())
     assert again.ways == restarts.ways
-    assert again.rates.tolist() == restarts.rates.tolist()
+    assert {end: rates.tolist() for end, rates in again.rates.items()} == {
+        end: rates.tolist() for end, rates in restarts.rates.items()
+    }
     assert again.passed == restarts.passed
+    assert [again.draw() for _ in range(9)] == [restarts.draw() for _ in range(9)]
