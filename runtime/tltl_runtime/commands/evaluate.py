@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.commands.ending import requests_heard
+from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.workers import Workers
 from tltlc.cli.report import Report
@@ -99,12 +100,12 @@ def command(
     """
     if policy is None and level is None:
         raise click.UsageError("name a POLICY or a --level, or both")
-    from tltl_runtime.commands.evaluation_files import EvaluationFiles
-    from tltl_runtime.evaluation.evaluate import results, set_up
-    from tltl_runtime.evaluation.player import Task
-    from tltl_runtime.policies.file import read_policy
+    with Report() as report, learning_for("`tltlc evaluate`"), requests_heard():
+        from tltl_runtime.commands.evaluation_files import EvaluationFiles
+        from tltl_runtime.evaluation.evaluate import results, set_up
+        from tltl_runtime.evaluation.player import Task
+        from tltl_runtime.policies.file import read_policy
 
-    with Report() as report, requests_heard():
         path, name, variant = _chosen(policy, level)
         setup = set_up(read_policy(path), name, variant, spec, seed, recorded if folder else None)
         files = EvaluationFiles(setup, path, first, folder, json_file)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tltl_runtime.commands.learning import learning_for
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -49,11 +50,11 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
         raise click.UsageError(f"-o writes a .onnx, not `{path}`")
     if path is not None and len(files) > 1:
         raise click.UsageError("-o takes one POLICY")
-    from tltl_runtime.policies.file import read_policy
-    from tltl_runtime.policies.summary import summary, summary_text
-
     summaries: list[dict[str, Any]] = []
-    with Report(format, results=True) as report:
+    with Report(format, results=True) as report, learning_for("`tltlc inspect`"):
+        from tltl_runtime.policies.file import read_policy
+        from tltl_runtime.policies.summary import summary, summary_text
+
         for name in files:
             try:
                 policy = read_policy(_file(name))

@@ -8,7 +8,7 @@ from typing import Final
 
 from tltlc.cli import exits
 
-_MODULES: Final = {"torch", "rsl_rl", "tensordict", "safetensors", "tensorboard"}
+_MODULES: Final = {"torch", "rsl_rl", "tensordict", "safetensors", "tensorboard", "onnx", "onnxscript"}
 
 
 @contextmanager

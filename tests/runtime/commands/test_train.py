@@ -221,15 +221,6 @@ def test_the_page_names_the_keys_of_the_record(tltlc: TltlcFunction, here: Path)
     assert said == list(json.loads(Path("it/record.json").read_text()))
 
 
-def test_without_what_learns(here: Path) -> None:
-    program = "import sys; sys.modules['torch'] = None; from tltlc.cli.main import main; main(['train', 'soon.tltl'])"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
-    assert (done.returncode, done.stdout) == (4, "")
-    assert done.stderr == (
-        "error[TLT0730]: `tltlc train` needs `torch`, which is not installed\n  help: pip install 'tltlc[rl]'\n"
-    )
-
-
 def _command(*options: str) -> list[str]:
     arguments = ["train", str(EXAMPLE), "--config", "small.toml", "--out", "run", *options]
     return [sys.executable, "-m", "tltlc", *arguments]
