@@ -19,7 +19,7 @@ from rich.text import Text
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.report import Report, Window
 from tltl_runtime.training.run import Run
-from tltl_runtime.training.search import Exploration, Searched
+from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Stop
 from tltlc.automaton.fspa import State
 
@@ -77,7 +77,7 @@ class _Lines:
         self._next = 0.0
 
     def searched(self, searched: Searched) -> None:
-        self._print(search_line(searched, self._run.settings.exploration))
+        self._print(search_line(searched))
 
     def trained(self, report: Report) -> None:
         self._print(line(report, self._run.settings.stop), always=report.stop is not None)
@@ -143,10 +143,11 @@ class _Picture:
             return Text("playing the first steps …")
         found = len(searched.lengths)
         table = _grid()
-        table.add_row("ways found", _bar(found / exploration.ways, "green"), f"{found:4}", f"of {exploration.ways}")
+        wanted = f"of at least {exploration.ways}"
+        table.add_row("ways found", _bar(found / exploration.ways, "green"), f"{found:4}", wanted)
         share = min(1.0, searched.steps / exploration.steps)
         table.add_row("searched", _bar(share, "blue"), f"{share:4.0%}", f"of {exploration.steps:,} steps at the most")
-        return Group(table, Text(f"\n{search_line(searched, exploration)}"))
+        return Group(table, Text(f"\n{search_line(searched)}"))
 
     def _kept(self, now: float) -> str:
         if self._checkpoint is None:
@@ -170,10 +171,10 @@ def line(report: Report, stop: Stop) -> str:
     return ", ".join(parts)
 
 
-def search_line(searched: Searched, exploration: Exploration) -> str:
+def search_line(searched: Searched) -> str:
     """How far the search is, in a line."""
     if found := len(searched.lengths):
-        ways = f"{found} of {exploration.ways} ways to meet the spec, the shortest of {min(searched.lengths)} steps"
+        ways = f"{found} way{'s' * (found > 1)} to meet the spec, the shortest of {min(searched.lengths)} steps"
     else:
         ways = "no way to meet the spec yet"
     took = f"{searched.steps:,} steps in {duration(searched.seconds)}"
