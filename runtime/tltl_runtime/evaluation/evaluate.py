@@ -39,9 +39,9 @@ def evaluate(
 ) -> Iterator[Played]:
     """Have a policy play ``episodes``, and tell how each went, in their order and as soon as they are over.
 
-    ``level``, ``variant`` and ``spec`` are by default those that the policy was trained for.  ``workers`` play,
-    whichever they are the same episodes.  A process starts by
-    importing the main module, so a script's own work stands under ``if __name__ == "__main__"``.
+    ``level``, ``variant`` and ``spec`` are by default those that the policy was trained for; the variant of another
+    level is ``v0``.  The episodes are the same whichever ``workers`` play.  A process starts by importing the main
+    module, so a script's own work stands under ``if __name__ == "__main__"``.
 
     Raises:
         TltlError: what :func:`set_up`, :func:`results` and ``read_policy`` raise.

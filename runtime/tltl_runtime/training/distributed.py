@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import torch
 from torch import distributed
 
+from tltl_runtime.vector.env import cores as usable_cores
 from tltlc.record import record
 
 T = TypeVar("T")
@@ -53,8 +54,7 @@ def peers() -> Peers:
 
 def cores() -> int:
     """How many cores there are for each process of this machine, at least one."""
-    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return max(1, usable // peers().local_count)
+    return max(1, usable_cores() // peers().local_count)
 
 
 @contextmanager

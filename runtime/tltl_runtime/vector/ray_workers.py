@@ -102,10 +102,9 @@ class RayWorkers:
         self._stack.close()
 
     def _answer(self, worker: int, reference: Any) -> Any:
-        errors = self._ray.exceptions
         try:
             answer, table = self._ray.get(reference)
-        except (errors.RayTaskError, errors.RayActorError) as error:
+        except self._ray.exceptions.RayError as error:
             self._ray.kill(self._actors.pop(worker))
             return Loss(worker, traceback=str(error))
         if table is not None:
