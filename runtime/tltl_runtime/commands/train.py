@@ -139,7 +139,7 @@ def _train(run: Run, *, resume: bool) -> Trained:
 
     try:
         with _broken_off(run.folder), display(run) as shown:
-            with closing(train(run, resume=resume, searching=shown.searched)) as reports:  # type: ignore[type-var]
+            with closing(train(run, resume=resume, searching=shown.searched)) as reports:
                 for last in reports:
                     shown.trained(last)
             return last

@@ -68,7 +68,8 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
             content[name] = {field: getattr(made, field) for field in kind.__match_args__}
     data = BytesIO()
     torch.save({"format": FORMAT, "version": VERSION, **content}, data)
-    temporary = path.with_name(f".{path.name}-{os.getpid()}.tmp")
+    # The folder belongs to one process, and what a process left that was killed is written over.
+    temporary = path.with_name(f".{path.name}.tmp")
     try:
         with temporary.open("wb") as file:
             file.write(data.getbuffer())

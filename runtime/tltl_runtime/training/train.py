@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from contextlib import ExitStack, closing
 from math import isfinite
 from typing import Any
@@ -27,7 +27,7 @@ from tltl_runtime.training.folder import held
 from tltl_runtime.training.metrics import Metrics
 from tltl_runtime.training.report import Report, StopReason
 from tltl_runtime.training.restarts import Restarts
-from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, read_run, write_run
+from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, write_run
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.search import Search, Searched, Way
 from tltl_runtime.training.settings import rsl_config
@@ -39,15 +39,13 @@ from tltl_runtime.vector.env import TLTL_INFO
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import replace
 
-__all__ = ["CHECKPOINT", "POLICY", "RUN", "Run", "read_run", "train"]
-
 _OF_TORCH, _OF_ENVIRONMENTS, _OF_SEARCH, _OF_STARTS = range(4)
 """The streams of random numbers of a process."""
 
 
 def train(
     run: Run, *, resume: bool = False, searching: Callable[[Searched], None] = lambda searched: None
-) -> Iterator[Report]:
+) -> Generator[Report]:
     """Train in ``run.folder``, with a report after each iteration; the last one says why it ends.
 
     The folder gets ``run.json``, ``checkpoint.pt``, ``policy.safetensors`` and the measurements of
@@ -58,7 +56,8 @@ def train(
     A search for ways to meet the spec comes first, which tells ``searching`` how far it is.
 
     Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun each process trains with
-    environments of its own, and all give the same reports; the first alone writes.
+    environments of its own, and all report the same but for losses, times and searches, which are each one's own; the
+    first alone writes.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; TLT0862, there is no such device or class; TLT0864, the
@@ -115,15 +114,18 @@ class _Training:
         self._replayed_before = self._state.replayed
         self._saved, self._saved_at, self._saved_best = self._state, self._began, self._state.best
 
-    def reports(self) -> Iterator[Report]:
+    def reports(self) -> Generator[Report]:
         """Train to the end."""
         if self._state.iteration and (reason := self._reason()):
+            if self._own.rank == 0 and not (self._run.folder / POLICY).exists():
+                # A limit that is lower now ends it before any policy was the best.
+                self._write_policy()
             iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
             yield self._report(iteration, reason, checkpointed=False)
             return
         if self._state.iteration == 0:
             # Whoever is killed soon need not search again.
-            self._write()
+            self._write_checkpoint()
         metrics = None
         try:
             if self._own.rank == 0:
@@ -135,9 +137,11 @@ class _Training:
                 if report.stop:
                     return
         finally:
-            self._save()
-            if metrics:
-                metrics.close()
+            try:
+                self._save()
+            finally:
+                if metrics:
+                    metrics.close()
 
     def _after(self, iteration: Iteration, metrics: Metrics | None) -> Report:
         """Take up what an iteration gave, and write what is due."""
@@ -213,12 +217,17 @@ class _Training:
         # Whatever comes of it, it is not tried again at once.
         self._saved, self._saved_at = state, time.perf_counter()
         if state.best is not self._saved_best or self._reason():
-            weights = state.best.actor if state.best else state.algorithm["actor_state_dict"]
-            write_policy(self._run.folder / POLICY, _policy(self._run, self._runner.env, weights))
+            self._write_policy()
             self._saved_best = state.best
-        self._write()
+        self._write_checkpoint()
 
-    def _write(self) -> None:
+    def _write_policy(self) -> None:
+        """Write the best policy, or the last one where none is the best yet."""
+        best = self._state.best
+        weights = best.actor if best else self._state.algorithm["actor_state_dict"]
+        write_policy(self._run.folder / POLICY, _policy(self._run, self._runner.env, weights))
+
+    def _write_checkpoint(self) -> None:
         if self._own.rank == 0:
             write_checkpoint(self._run.folder / CHECKPOINT, self._state)
 

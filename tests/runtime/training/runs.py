@@ -18,9 +18,10 @@ from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
+from tltl_runtime.training.run import Run
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.settings import read_settings
-from tltl_runtime.training.train import Run, train
+from tltl_runtime.training.train import train
 from tltlc.record import replace
 
 SMALL: dict[str, Any] = {

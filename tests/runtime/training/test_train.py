@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,9 @@ import torch
 from tests.runtime.training.runs import run_in
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.supply.offer import params
+from tltl_runtime.task import load_task
 from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.metrics import METRICS, read_metrics
@@ -22,6 +26,9 @@ from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, re
 from tltl_runtime.training.train import train
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
+
+SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+"""A spec that who does anything at all meets, after eight steps."""
 
 
 @pytest.fixture(name="folder", scope="module")
@@ -101,7 +108,7 @@ def test_a_training_that_is_left_goes_on_after_its_last_iteration(folder: Path) 
     reports = train(run)
     assert not next(reports).checkpointed
     next(reports)
-    reports.close()  # type: ignore[attr-defined]
+    reports.close()
     assert (_checkpoint(run).iteration, _checkpoint(run).steps) == (2, 128)
     # What a process that was killed had measured beyond its checkpoint is measured again.
     with (run.folder / METRICS).open("a") as file:
@@ -113,12 +120,47 @@ def test_a_training_that_is_left_goes_on_after_its_last_iteration(folder: Path) 
     assert (last.iteration.number, last.steps, last.stop) == (3, 192, "steps")
 
 
+def test_a_lower_limit_ends_a_training_with_a_policy(folder: Path) -> None:
+    run = run_in(folder / "lower", stop__steps=10**6)
+    reports = train(run)
+    next(reports)
+    reports.close()
+    assert not (run.folder / POLICY).exists()
+    (last,) = train(replace(run, settings=run_in(folder, stop__steps=64).settings), resume=True)
+    assert (last.steps, last.stop) == (64, "steps")
+    weights, now = read_policy(run.folder / POLICY).weights(), _checkpoint(run).algorithm["actor_state_dict"]
+    assert all(torch.equal(weights[name], now[name].to(torch.float16)) for name in now)
+
+
+def test_a_training_that_was_resumed_begins_on_the_ways_that_it_knew(folder: Path) -> None:
+    task = load_task(SOON, offered=params(load_level("cover_and_hide")))
+
+    def run_of(name: str, steps: int) -> Run:
+        changes = {"exploration__ways": 2, "exploration__parts": 4, "stop__episodes": 10**5, "stop__steps": steps}
+        return replace(run_in(folder / name, **changes), fspa=task.fspa, params=task.params)
+
+    run = run_of("ways", 128)
+    first = list(train(run))
+    assert first[-1].searched is not None
+    assert first[-1].searched.lengths[:2] == (8, 8)
+    assert first[-1].replayed > 0
+    kept = _checkpoint(run).processes[0]
+    assert kept["way_lengths"].tolist() == [8] * len(kept["way_seeds"])
+    shutil.copytree(run.folder, folder / "ways-2")
+    resumed = [list(train(run_of(name, 256), resume=True)) for name in ("ways", "ways-2")]
+    assert _numbers(resumed[0]) == _numbers(resumed[1])
+    assert [each.iteration.number for each in resumed[0]] == [3, 4]
+    assert resumed[0][-1].searched == first[-1].searched
+    assert resumed[0][-1].replayed == resumed[1][-1].replayed > first[-1].replayed
+    assert {*kept["way_seeds"].tolist()} <= {*_checkpoint(run).processes[0]["way_seeds"].tolist()}
+
+
 def test_the_best_policy_is_the_one_that_played_its_window(folder: Path) -> None:
     # Every episode on this level that lasts no longer than a rollout fails; a window is one episode.
     run = run_in(folder / "best", rollout__steps=512, stop__steps=2048, stop__episodes=1)
     reports = train(run)
     report = next(report for report in reports if report.best_pass_rate is not None)
-    reports.close()  # type: ignore[attr-defined]
+    reports.close()
     assert report.window.count
     checkpoint = _checkpoint(run)
     assert checkpoint.best is not None
@@ -263,11 +305,19 @@ def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) 
     assert _checkpoint(run).iteration == 1
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as other systems do")
 def test_a_failure_to_write_leaves_the_older_checkpoint(copy: Run) -> None:
+    import resource
+
     path = copy.folder / CHECKPOINT
     before = path.read_bytes()
     checkpoint = _checkpoint(copy)
-    with pytest.raises(TltlError, match="TLT0005"):
-        write_checkpoint(copy.folder / "missing" / CHECKPOINT, checkpoint)
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) // 2, hard))
+    try:
+        with pytest.raises(TltlError, match="TLT0005"):
+            write_checkpoint(path, checkpoint)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert path.read_bytes() == before
     assert not list(copy.folder.glob("*.tmp"))
