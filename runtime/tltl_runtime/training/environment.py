@@ -82,12 +82,13 @@ class TrainingEnv(VecEnv):
     def step(self, actions: Tensor) -> tuple[TensorDict, Tensor, Tensor, dict[str, Any]]:
         """Take a step in each environment with actions [num_envs, branches]."""
         taken = actions.to("cpu", torch.int64).numpy()
-        observation, reward, terminated, truncated, infos = self.env.step(taken)
+        step = self._episodes.step if self._episodes else self.env.step
+        observation, reward, terminated, truncated, infos = step(taken)
         over = terminated | truncated
         ended = _finished(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
         if self._episodes:
             ends = {row: end_of(infos["final_info"], row) for row, each in ended.items() if each.success}
-            observation, cut = self._turn(self._episodes, observation, taken, over, ended, ends)
+            observation, cut = self._turn(self._episodes, observation, over, ended, ends)
             over, truncated = over | cut, truncated | cut
         else:
             self._finished += ended.values()
@@ -117,14 +118,12 @@ class TrainingEnv(VecEnv):
         self,
         episodes: Episodes,
         observation: Any,
-        actions: NDArray[np.int64],
         over: NDArray[np.bool_],
         ended: Mapping[int, Finished],
         ends: Mapping[int, int],
     ) -> tuple[Any, NDArray[np.bool_]]:
         """Note what ended, and cut off what took too long; the observation of all, and what was cut off."""
         assert self.restarts is not None
-        episodes.take(actions)
         for row, finished in ended.items():
             self.restarts.ended(episodes.starts[row], episodes.actions[row], ends.get(row))
             if episodes.starts[row].part is None:

@@ -106,9 +106,8 @@ class Search:
         while steps < enough:
             kept = self._random.random(shape) < _KEPT
             action = np.where(kept, action, self._random.integers(0, choices, size=shape))
-            _, _, terminated, truncated, infos = self._env.step(action)
+            _, _, terminated, truncated, infos = episodes.step(action)
             steps += self._env.num_envs
-            episodes.take(action)
             over = terminated | truncated
             for row in range(self._env.num_envs):
                 if not over[row]:

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.vector import WorkerVectorEnv
-from tltlc.record import record
+from tltl_runtime.vector.errors import Playing, WorkerError
+from tltlc.record import record, replace
 
 Actions = list[list[int]]
 
@@ -73,10 +74,18 @@ class Episodes:
         self.observation, _ = env.reset()
         self.turn(self._all)
 
-    def take(self, actions: NDArray[np.int64]) -> None:
-        """Note the actions [num_envs, branches] that are played now."""
+    def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
+        """Step all environments with the actions [num_envs, branches], and note these; what the environments give.
+
+        Raises:
+            WorkerError: a worker was lost; it tells the seeds of the starts, and steps with those played again.
+        """
         for known, action in zip(self.actions, actions.tolist(), strict=True):
             known.append(action)
+        try:
+            return self._env.step(actions)
+        except WorkerError as error:
+            raise WorkerError(error.loss, tuple(map(self._placed, error.playing))) from error
 
     def turn(self, over: NDArray[np.bool_]) -> None:
         """Take note that in these environments the next episodes have begun."""
@@ -100,6 +109,11 @@ class Episodes:
         """Whether the agent has had as many decisions as the start of the episode in this environment gave it."""
         start = self.starts[row]
         return start.most is not None and len(self.actions[row]) - len(start.actions) >= start.most
+
+    def _placed(self, playing: Playing) -> Playing:
+        """What is played, as this knows it: the environment was not told of the seeds."""
+        row = playing.env
+        return replace(playing, seed=self.starts[row].seed, episode=1, step=len(self.actions[row]))
 
     def _tell(self) -> None:
         self._env.set_attr("begin", [(start.seed, np.array(start.actions, dtype=np.int8)) for start in self._next])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import sys
 from collections import Counter
 from collections.abc import Iterator
 
@@ -14,6 +17,7 @@ from tltl_runtime.training.search import Exploration, Search, Searched, Way
 from tltl_runtime.training.starts import Episodes, Replayed, Start
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
+from tltl_runtime.vector.errors import WorkerError
 
 NEAR = "import spatial\nentity s1\nspec near_s1 { level navigation  limit 300 steps  reach near(s1) }"
 FAR = "import spatial\nentity exit\nspec out { level navigation  limit 300 steps  reach near(exit) }"
@@ -78,8 +82,7 @@ def test_episodes_begin_where_others_were(env: WorkerVectorEnv) -> None:
     for key, value in observation.items():
         assert np.array_equal(episodes.observation[key], np.stack([value] * 4))
     for action in actions[20:]:
-        env.step(np.array([action] * 4))
-        episodes.take(np.array([action] * 4))
+        episodes.step(np.array([action] * 4))
         observation, *_ = alone.step(action)
     assert not any(episodes.is_spent(row) for row in range(4))
     # The next ones begin where these are now.
@@ -89,10 +92,23 @@ def test_episodes_begin_where_others_were(env: WorkerVectorEnv) -> None:
     assert episodes.actions[0] == episodes.actions[1] == actions
     assert episodes.replayed == 4 * 20 + 2 * 25
     for _ in range(2):
-        env.step(np.zeros((4, 5), dtype=np.int64))
-        episodes.take(np.zeros((4, 5), dtype=np.int64))
+        episodes.step(np.zeros((4, 5), dtype=np.int64))
     assert [episodes.is_spent(row) for row in range(4)] == [True, False, False, True]
     alone.close()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="kills a process as other systems do")
+def test_a_lost_worker_is_told_with_the_seeds_that_episodes_began_with(env: WorkerVectorEnv) -> None:
+    starts = iter([Start(seed, [[0] * 5] * 3) for seed in range(10, 18)])
+    episodes = Episodes(env, lambda: next(starts))
+    episodes.step(np.zeros((4, 5), dtype=np.int64))
+    (worker,) = env.worker_pids
+    assert worker is not None
+    os.kill(worker, signal.SIGKILL)
+    with pytest.raises(WorkerError) as found:
+        episodes.step(np.zeros((4, 5), dtype=np.int64))
+    told = [(each.env, each.seed, each.episode, each.step) for each in found.value.playing]
+    assert told == [(row, 10 + row, 1, 5) for row in range(4)]
 
 
 def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
