@@ -25,12 +25,19 @@ def read_source(
     Errors (:class:`TltlError`): TLT0001 where the system cannot read it, and those of :func:`decode`.
     """
     shown = name if name is not None else os.fspath(path)
+    return decode(read_bytes(path, shown, max_bytes), shown, max_bytes=max_bytes)
+
+
+def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes:
+    """The bytes of a file, which messages call ``name``; of a larger one the first ``max_bytes`` and one more.
+
+    Error (:class:`TltlError`): TLT0001 where the system cannot read it.
+    """
     try:
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
-            data = file.read(max_bytes + 1)
+            return file.read(max_bytes + 1)
     except (OSError, ValueError) as error:
-        raise reading_error(shown, error) from None
-    return decode(data, shown, max_bytes=max_bytes)
+        raise reading_error(name, error) from None
 
 
 def decode(data: bytes, name: str, *, max_bytes: int = MAX_SOURCE_BYTES) -> SourceFile:

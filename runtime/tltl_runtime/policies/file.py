@@ -19,7 +19,7 @@ from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reading_error
+from tltlc.files import read_bytes
 from tltlc.pipeline import read_artefact
 from tltlc.source import SourceFile
 from tltlc.writing import write_file
@@ -56,12 +56,7 @@ def read_policy(path: str | os.PathLike[str]) -> Policy:
             TLT0842 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0605.
     """
     name = os.fspath(path)
-    try:
-        with Path(path).open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:
-        raise reading_error(name, error) from None
-    return from_bytes(data, name)
+    return from_bytes(read_bytes(path, name, MAX_BYTES), name)
 
 
 def to_bytes(policy: Policy) -> bytes:

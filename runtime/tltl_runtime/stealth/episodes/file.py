@@ -22,7 +22,7 @@ from tltl_runtime.stealth.snapshot import BRANCHES
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reading_error
+from tltlc.files import read_bytes
 from tltlc.monitor import RewardOptions
 from tltlc.pipeline import read_artefact
 from tltlc.record import record, replace
@@ -107,12 +107,7 @@ def read_episode(path: str | os.PathLike[str]) -> Episode:
             TLT0822 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0605.
     """
     name = os.fspath(path)
-    try:
-        with Path(path).open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:
-        raise reading_error(name, error) from None
-    return from_bytes(data, name)
+    return from_bytes(read_bytes(path, name, MAX_BYTES), name)
 
 
 def to_bytes(episode: Episode) -> bytes:
