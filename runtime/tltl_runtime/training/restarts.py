@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from tltl_runtime.training.search import Way
 from tltl_runtime.training.starts import Actions, Start
 
-_WAYS = 4
-"""Of the ways with the same end, as many of the shortest are kept."""
+_WAYS = 6
+"""Of the ways with the same end, as many of the shortest are kept, each of another seed."""
 _FRESH = 0.1
 """How many episodes begin at the level's start in any case."""
-_LEAST = 0.01
+_LEAST = 0.005
 """The weight of a part that teaches nothing now: it may do so again."""
 _RATE = 0.1, 0.02
 """How fast success rates follow the episodes: those of a part, that from the level's start."""
@@ -103,7 +103,8 @@ class Restarts:
             self.rates[way.end] = np.zeros(self._parts)
             # The end of a way is where the learning begins.
             self.rates[way.end][-1] = 0.5
-        known = self.ways[way.end]
-        known.append(way)
-        known.sort(key=lambda each: len(each.actions))
-        del known[_WAYS:]
+        shortest: dict[int, Way] = {}
+        for each in sorted([*self.ways[way.end], way], key=lambda each: len(each.actions)):
+            # Of one seed no more than one: what guards do in it would be learned by heart.
+            shortest.setdefault(each.seed, each)
+        self.ways[way.end] = list(shortest.values())[:_WAYS]

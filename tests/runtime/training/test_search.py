@@ -148,12 +148,14 @@ def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:
 
 def test_the_shortest_ways_to_each_end_are_kept_and_the_agents_own_join_them() -> None:
     ways = [Way(index, [[0] * 5] * (100 + index), index % 2) for index in range(20)]
+    ways += [Way(0, [[0] * 5] * length, 0) for length in (99, 150)]
     restarts = Restarts(ways, 4, np.random.default_rng(1))
     restarts.ended(Start(77), [[1] * 5] * 50, 0)
     restarts.ended(Start(78), [[1] * 5] * 40, None)
     restarts.ended(Start(79), [[1] * 5] * 400, 3)
     kept = {end: [way.seed for way in known] for end, known in restarts.ways.items()}
-    assert kept == {0: [77, 0, 2, 4], 1: [1, 3, 5, 7], 3: [79]}
+    assert kept == {0: [77, 0, 2, 4, 6, 8], 1: [1, 3, 5, 7, 9, 11], 3: [79]}
+    assert [len(way.actions) for way in restarts.ways[0]] == [50, 99, 102, 104, 106, 108]
     assert {start.part[0] for start in (restarts.draw() for _ in range(200)) if start.part} == {0, 1, 3}
 
 
