@@ -6,25 +6,21 @@ import time
 from collections.abc import Callable, Generator, Mapping
 from contextlib import ExitStack, closing
 from math import isfinite
-from typing import Any
 
 import numpy as np
 import torch
 from rsl_rl.algorithms import PPO
-from rsl_rl.utils import resolve_callable
 from torch import Tensor
 
-from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.policies.identity import level_hash
-from tltl_runtime.policies.policy import Policy, actor_of
 from tltl_runtime.policies.threads import threads
-from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.training.available import class_of, device_of
 from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, read_checkpoint, write_checkpoint
 from tltl_runtime.training.distributed import Peers, cores, joined
 from tltl_runtime.training.environment import TrainingEnv
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.metrics import Metrics
+from tltl_runtime.training.policy import policy_of
 from tltl_runtime.training.report import Report, StopReason
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, write_run
@@ -32,7 +28,6 @@ from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.search import Search, Searched, Way
 from tltl_runtime.training.settings import rsl_config
 from tltl_runtime.training.starts import Replayed
-from tltl_runtime.training.versions import versions
 from tltl_runtime.training.windows import Windows
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
@@ -65,10 +60,10 @@ def train(
             number any more; TLT0867, the folder holds a training and ``resume`` is false.
         WorkerError: a process that plays was lost.
     """
-    runner = _class("runner", run.settings.classes.runner, Runner)
-    _class("algorithm", run.settings.classes.algorithm, PPO)
+    runner = class_of("runner", run.settings.classes.runner, Runner)
+    class_of("algorithm", run.settings.classes.algorithm, PPO)
     with ExitStack() as stack:
-        own, device = stack.enter_context(joined(_device(run.settings.device)))
+        own, device = stack.enter_context(joined(device_of(run.settings.device)))
         begun = None
         if own.rank == 0:
             stack.enter_context(held(run.folder))
@@ -225,7 +220,7 @@ class _Training:
         """Write the best policy, or the last one where none is the best yet."""
         best = self._state.best
         weights = best.actor if best else self._state.algorithm["actor_state_dict"]
-        write_policy(self._run.folder / POLICY, _policy(self._run, self._runner.env, weights))
+        write_policy(self._run.folder / POLICY, policy_of(self._run, self._runner.env, weights))
 
     def _write_checkpoint(self) -> None:
         if self._own.rank == 0:
@@ -289,39 +284,6 @@ def _prepared(
     return TrainingEnv(played, [int(each) for each in seeds], device, restarts), searched
 
 
-def _class(setting: str, name: str, base: type) -> Any:
-    """The class of a name, a subclass of ``base``; TLT0862 where it is none."""
-    try:
-        found = resolve_callable(name)
-        why = "" if isinstance(found, type) and issubclass(found, base) else f"it is no subclass of {base.__name__}"
-    except (ImportError, AttributeError, ValueError) as error:
-        why = str(error)
-    if why:
-        title = f"wrong class for `classes.{setting}`, `{name}`: {why}"
-        help_ = f'expected "package.module:Class", a subclass of {base.__module__}:{base.__qualname__}'
-        raise TltlError([Diagnostic("TLT0862", title, help=help_)])
-    return found
-
-
-def _policy(run: Run, env: TrainingEnv, weights: Mapping[str, Tensor]) -> Policy:
-    level = load_level(run.level, run.variant)
-    card = Card(
-        level=level.name,
-        variant=level.variant,
-        level_hash=level_hash(level),
-        fspa=run.fspa,
-        params=run.params,
-        reward=run.settings.reward,
-        sensors=run.sensors,
-        shapes=tuple(env.shapes.items()),
-        branches=env.branches,
-        network=run.settings.network,
-        versions=versions(),
-        training={},
-    )
-    return Policy(card, actor_of(card, {name: each.cpu() for name, each in weights.items()}))
-
-
 def _stream(run: Run, own: Peers, purpose: int, iteration: int) -> np.random.SeedSequence:
     return np.random.SeedSequence(run.seed, spawn_key=(own.rank, purpose, iteration))
 
@@ -348,12 +310,3 @@ def _check_losses(iteration: Iteration) -> None:
         title = f"the training has diverged: in iteration {iteration.number} the loss `{wrong[0]}` is no number"
         help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
         raise TltlError([Diagnostic("TLT0866", title, help=help_)])
-
-
-def _device(device: str) -> str:
-    """The device; TLT0862 where torch has none of that name."""
-    count = torch.cuda.device_count() if torch.cuda.is_available() else 0
-    if device.startswith("cuda") and int(device.partition(":")[2] or 0) >= count:
-        title = f"there is no device `{device}` here, or torch was built without it"
-        raise TltlError([Diagnostic("TLT0862", title, help='train on the "cpu"')])
-    return device

@@ -1,0 +1,35 @@
+"""The policy of a training."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from torch import Tensor
+
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.policy import Policy, actor_of
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.training.environment import TrainingEnv
+from tltl_runtime.training.run import Run
+from tltl_runtime.training.versions import versions
+
+
+def policy_of(run: Run, env: TrainingEnv, weights: Mapping[str, Tensor]) -> Policy:
+    """The actor of these ``weights`` with the card of what ``run`` trains for in ``env``; it has no record yet."""
+    level = load_level(run.level, run.variant)
+    card = Card(
+        level=level.name,
+        variant=level.variant,
+        level_hash=level_hash(level),
+        fspa=run.fspa,
+        params=run.params,
+        reward=run.settings.reward,
+        sensors=run.sensors,
+        shapes=tuple(env.shapes.items()),
+        branches=env.branches,
+        network=run.settings.network,
+        versions=versions(),
+        training={},
+    )
+    return Policy(card, actor_of(card, {name: each.cpu() for name, each in weights.items()}))
