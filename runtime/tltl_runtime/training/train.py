@@ -278,8 +278,10 @@ def _prepared(
                 searching(searched)
             ways = search.ways
         restarts = Restarts(ways, exploration.parts, np.random.default_rng(_stream(run, own, _OF_STARTS, iteration)))
-        if begun is not None and own.rank < len(begun.processes):
-            restarts.load({name: each.numpy() for name, each in begun.processes[own.rank].items()})
+        if begun is not None:
+            # Of more processes than there were, the new ones know the ways of older ones.
+            known = begun.processes[own.rank % len(begun.processes)]
+            restarts.load({name: each.numpy() for name, each in known.items()})
     seeds = _stream(run, own, _OF_ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
     return TrainingEnv(played, [int(each) for each in seeds], device, restarts), searched
 
