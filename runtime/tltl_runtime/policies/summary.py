@@ -60,7 +60,8 @@ def _map(sensor: Mapping[str, Any]) -> str:
 def _training(record: Mapping[str, Any]) -> str:
     """How the training went, as far as its record tells in numbers."""
     window = record.get("window")
-    values = {**(window if isinstance(window, dict) else {}), **record}
+    # Of no episodes there is no rate.
+    values = {**(window if isinstance(window, dict) and window.get("episodes") else {}), **record}
     wordings = (
         ("seed", "seed {seed}"),
         ("steps", "{steps:,} steps"),

@@ -56,7 +56,15 @@ def test_a_summary_as_json_with_a_file_that_is_no_policy(tltlc, file: Path, poli
     assert said["observation"]["automaton"] == [len(said["states"])]
 
 
-@pytest.mark.parametrize("training", [{}, {"seed": "x", "seconds": [], "window": 3}, {"window": {"pass_rate": None}}])
+@pytest.mark.parametrize(
+    "training",
+    [
+        {},
+        {"seed": "x", "seconds": [], "window": 3},
+        {"window": {"pass_rate": None}},
+        {"window": {"episodes": 0, "pass_rate": 0.0}},
+    ],
+)
 def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_path: Path, training: object) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     path = tmp_path / "bot.safetensors"
     write_policy(path, Policy(replace(policy.card, training=training), policy.actor))
