@@ -39,6 +39,8 @@ FRESH_SEED = 1000
 CURVE_POINTS = 60
 OTHERS = "other_cores.txt"
 """In the folder of a training: what else the machine did while it ran for the last time."""
+SOURCE = "source.json"
+"""In the folder of a training: the code with which it was begun, or resumed for the last time."""
 NO_LIMIT = 10**9
 """Of steps: minutes alone end a training."""
 
@@ -172,7 +174,10 @@ class Cell:
         if (self.folder / "record.json").exists():
             return True
         load = Load()
+        source = {"revision": _revision(), "source": source_digest("tltlc", "runtime")}
         ended = self._run(minutes) in (0, 1)
+        if self.folder.exists():
+            (self.folder / SOURCE).write_text(json.dumps(source), encoding="utf-8")
         others = load.other_cores()
         if ended and others is not None:
             (self.folder / OTHERS).write_text(f"{others:.2f}", encoding="utf-8")
@@ -212,8 +217,7 @@ class Cell:
             "window": record["window"],
             "other_cores": float(others.read_text(encoding="utf-8")) if others.exists() else None,
             "versions": record["versions"],
-            "revision": _revision(),
-            "source": source_digest("tltlc", "runtime"),
+            **json.loads((self.folder / SOURCE).read_text(encoding="utf-8")),
         }
 
 

@@ -18,6 +18,8 @@ from tltl_runtime.training.starts import Actions, Start
 
 _WAYS = 6
 """Of the ways with the same end, as many of the shortest are kept, each of another seed."""
+_ENDS = 8
+"""Of the ends as many are kept as were found first."""
 _FRESH = 0.1
 """How many episodes begin at the level's start in any case."""
 _LEAST = 0.005
@@ -99,6 +101,8 @@ class Restarts:
     def _add(self, way: Way) -> None:
         """Keep a way where it is among the shortest to its end."""
         if way.end not in self.ways:
+            if len(self.ways) == _ENDS:
+                return
             self.ways[way.end] = []
             self.rates[way.end] = np.zeros(self._parts)
             # The end of a way is where the learning begins.

@@ -25,6 +25,8 @@ _BURST = 60
 """Decisions from a place on."""
 _FRESH = 0.05
 """How many episodes begin at their beginning."""
+_OTHERS = 4
+"""So many times as long as to the first way the search takes to find other ends, too."""
 _TOLD_EVERY_S = 0.5
 
 
@@ -32,9 +34,9 @@ _TOLD_EVERY_S = 0.5
 class Exploration:
     """The search before the training, and what is made of it.
 
-    It ends when ``ways`` episodes have met the spec (0: no search) and it has gone on for as long as it took to the
-    first of them, so that other ends are found, too; or after ``steps`` decisions, those that are played again not
-    counted.  The ways are divided into ``parts`` at which episodes of the training may begin.
+    It ends when ``ways`` episodes have met the spec (0: no search) and it has gone on for four times as long as it took
+    to the first of them, so that other ends are found, too; or after ``steps`` decisions, those that are played again
+    not counted.  The ways are divided into ``parts`` at which episodes of the training may begin.
     """
 
     ways: int
@@ -123,7 +125,7 @@ class Search:
             if self.ways and not first:
                 first = steps
             if len(self.ways) >= self._exploration.ways:
-                enough = min(enough, 2 * first)
+                enough = min(enough, _OTHERS * first)
             if time.perf_counter() - told > _TOLD_EVERY_S:
                 told = time.perf_counter()
                 yield self._searched(steps, episodes.replayed, told - began)

@@ -6,7 +6,7 @@ actions again.  The agent's own decisions follow.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import gymnasium
@@ -37,18 +37,28 @@ class Start:
 class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
     """An environment whose episodes begin with ``begin``: a seed, and actions that are played at once.
 
-    None: as the environment's own.  It stays what it is until it is set again.
+    It stays what it is until it is set again, to anything but None; before, they begin as the environment's own do.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
         super().__init__(env)
-        self.begin: tuple[int, NDArray[np.int8]] | None = None
+        self._begin: tuple[int, NDArray[np.int8]] | None = None
+
+    @property
+    def begin(self) -> tuple[int, NDArray[np.int8]] | None:
+        """What the next episodes begin with."""
+        return self._begin
+
+    @begin.setter
+    def begin(self, begin: tuple[int, NDArray[np.int8]] | None) -> None:
+        # A vector environment sets all of its environments at once, and few of them begin anew.
+        self._begin = begin or self._begin
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode, and play what is to be played again; that does not end it."""
-        if self.begin is None:
+        if self._begin is None:
             return self.env.reset(seed=seed, options=options)
-        own, actions = self.begin
+        own, actions = self._begin
         observation, info = self.env.reset(seed=own, options=options)
         for action in actions:
             observation, _, _, _, info = self.env.step(action)
@@ -70,7 +80,7 @@ class Episodes:
         self.starts = list(self._next)
         self.actions: list[Actions] = [[] for _ in self._next]
         self.replayed = 0
-        self._tell()
+        self._tell(range(env.num_envs))
         self.observation, _ = env.reset()
         self.turn(self._all)
 
@@ -89,15 +99,15 @@ class Episodes:
 
     def turn(self, over: NDArray[np.bool_]) -> None:
         """Take note that in these environments the next episodes have begun."""
-        rows = np.flatnonzero(over)
-        if not len(rows):
+        rows = np.flatnonzero(over).tolist()
+        if not rows:
             return
         for row in rows:
             start = self.starts[row] = self._next[row]
             self.actions[row] = [list(action) for action in start.actions]
             self.replayed += len(start.actions)
             self._next[row] = self._draw()
-        self._tell()
+        self._tell(rows)
 
     def cut(self, over: NDArray[np.bool_]) -> Any:
         """Break off the episodes of these environments and begin the next ones; the observation of all."""
@@ -115,5 +125,9 @@ class Episodes:
         row = playing.env
         return replace(playing, seed=self.starts[row].seed, episode=1, step=len(self.actions[row]))
 
-    def _tell(self) -> None:
-        self._env.set_attr("begin", [(start.seed, np.array(start.actions, dtype=np.int8)) for start in self._next])
+    def _tell(self, rows: Iterable[int]) -> None:
+        """Tell the environments of these rows what their next episodes begin with."""
+        begin: list[tuple[int, NDArray[np.int8]] | None] = [None] * self._env.num_envs
+        for row in rows:
+            begin[row] = self._next[row].seed, np.array(self._next[row].actions, dtype=np.int8)
+        self._env.set_attr("begin", begin)
