@@ -23,6 +23,7 @@ class Ppo:
 
     learning_rate: float
     entropy: float
+    entropy_schedule: Literal["fading", "fixed"]
     clip: float
     lam: float
     gamma: float

@@ -90,6 +90,7 @@ class _Training:
             runner.alg.load(begun.algorithm, None, strict=True)
             runner.current_learning_iteration = begun.iteration
             self._windows.load(begun.window)
+            self._fade_entropy()
             if own.rank < len(begun.processes):
                 _set_own(begun.processes[own.rank], runner)
         self._state = begun or Checkpoint(
@@ -147,6 +148,7 @@ class _Training:
         finished = tuple(each for one, *_ in told for each in one)
         iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
         self._windows.add(finished)
+        self._fade_entropy()
         after = replace(
             self._state,
             iteration=iteration.number,
@@ -173,6 +175,12 @@ class _Training:
         if due:
             self._save()
         return report
+
+    def _fade_entropy(self) -> None:
+        """Reward undecided actions the less, the more often the spec is met: then there is less to try."""
+        ppo = self._run.settings.ppo
+        if ppo.entropy_schedule == "fading":
+            self._runner.alg.entropy_coef = ppo.entropy * (1 - self._windows.window.pass_rate)
 
     def _best(self) -> Best | None:
         """The best policy so far: that which played the last window, where none before it did better."""

@@ -70,6 +70,14 @@ class Diverging(Runner):
             yield iteration if iteration.number < 2 else replace(iteration, losses={"value": math.nan})
 
 
+class Weighing(Runner):
+    """A runner that tells the weight of the bonus for undecided actions among the losses."""
+
+    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
+        for iteration in super().iterations(most):
+            yield replace(iteration, losses={"weight": self.alg.entropy_coef})
+
+
 def _say(**values: Any) -> None:
     # In one piece: several processes may write at once.
     os.write(1, (json.dumps({"rank": os.environ.get("RANK", "0"), **values}) + "\n").encode())

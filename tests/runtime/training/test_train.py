@@ -305,6 +305,17 @@ def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) 
     assert _checkpoint(run).iteration == 1
 
 
+@pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0), ("fixed", 0.01)])
+def test_the_bonus_for_undecided_actions_fades_as_the_spec_is_met(folder: Path, schedule: str, last: float) -> None:
+    run = run_in(
+        folder / schedule, ppo__entropy_schedule=schedule, classes__runner="tests.runtime.training.runs:Weighing"
+    )
+    soon = load_task("import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n")
+    *_, report = train(replace(run, fspa=soon.fspa, params=soon.params))
+    assert report.window.pass_rate == 1.0
+    assert report.iteration.losses["weight"] == last
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as other systems do")
 def test_a_failure_to_write_leaves_the_older_checkpoint(copy: Run) -> None:
     import resource
