@@ -23,7 +23,7 @@ from tltl_runtime.training.metrics import Metrics
 from tltl_runtime.training.policy import policy_of
 from tltl_runtime.training.report import Report, StopReason
 from tltl_runtime.training.restarts import Restarts
-from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, write_run
+from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run, identity, read_run, write_run
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.search import Search, Searched, Way
 from tltl_runtime.training.settings import rsl_config
@@ -239,8 +239,9 @@ def _begun(run: Run, resume: bool) -> Checkpoint | None:
     """The checkpoint to go on from; what is trained is written down."""
     if resume:
         begun = read_checkpoint(run.folder / CHECKPOINT, identity(run))
-        # Its limits may be others now, and hold when it is resumed the next time.
-        write_run(run)
+        if read_run(run.folder).settings != run.settings:
+            # Its limits are others now, and hold when it is resumed the next time.
+            write_run(run)
         return begun
     if (run.folder / RUN).exists():
         title = f"`{run.folder}` holds a training already"
