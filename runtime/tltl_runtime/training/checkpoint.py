@@ -39,7 +39,8 @@ class Checkpoint:
     found, ``replayed`` the decisions that were played again.  ``algorithm`` is what rsl-rl's algorithm saves;
     ``processes`` holds what each process has for itself: the states of torch's generators of random numbers by device,
     and that of its :class:`~tltl_runtime.training.restarts.Restarts`; ``window`` is the state of
-    :class:`~tltl_runtime.training.windows.Windows`.
+    :class:`~tltl_runtime.training.windows.Windows`, and ``met`` says whether the best policy has met the
+    spec in them and in fresh episodes.
     """
 
     run: str
@@ -53,6 +54,7 @@ class Checkpoint:
     processes: tuple[Mapping[str, Tensor], ...]
     window: tuple[tuple[Any, ...], ...]
     best: Best | None
+    met: bool
 
 
 _RECORDS: Final[Mapping[str, Any]] = {"best": Best, "searched": Searched}

@@ -12,6 +12,7 @@ import torch
 from rsl_rl.algorithms import PPO
 from torch import Tensor
 
+from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.available import class_of, device_of
@@ -34,7 +35,7 @@ from tltl_runtime.vector.env import TLTL_INFO
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import replace
 
-_OF_TORCH, _OF_ENVIRONMENTS, _OF_SEARCH, _OF_STARTS = range(4)
+_OF_TORCH, _OF_ENVIRONMENTS, _OF_SEARCH, _OF_STARTS, _OF_CONFIRMATION = range(5)
 """The streams of random numbers of a process."""
 
 
@@ -105,6 +106,7 @@ class _Training:
             processes=tuple(own.gather(_own(runner))),
             window=(),
             best=None,
+            met=False,
         )
         self._seconds_before, self._began = self._state.seconds, time.perf_counter()
         self._replayed_before = self._state.replayed
@@ -161,6 +163,8 @@ class _Training:
             window=tuple(self._windows.state()),
             best=self._best(),
         )
+        if self._windows.met:
+            after = replace(after, met=self._own.broadcast(self._own.rank > 0 or self._is_confirmed(after)))
         before, self._state = self._state, after
         reason = self._reason()
         due = bool(reason) or time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
@@ -190,9 +194,22 @@ class _Training:
         # The rollout was played with the weights from before the update that followed it.
         return Best(score, self._state.algorithm["actor_state_dict"])
 
+    def _is_confirmed(self, state: Checkpoint) -> bool:
+        """Whether the policy that is kept meets the spec throughout as many fresh episodes as the windows have.
+
+        These were played by the policies of several iterations, and chance, too, makes windows without a failure.
+        """
+        assert state.best is not None
+        run = self._run
+        policy = policy_of(run, self._runner.env, state.best.actor)
+        seed = int(_stream(run, self._own, _OF_CONFIRMATION, state.iteration).generate_state(1)[0])
+        count = self._stop.windows * self._stop.episodes
+        played = evaluate(policy, run.level, run.variant, episodes=count, seed=seed, spec=run.fspa)
+        return all(each.success for each in played)
+
     def _reason(self) -> StopReason | None:
         """Why the training is over, if it is."""
-        if self._windows.met:
+        if self._state.met:
             return "met"
         if self._state.steps >= self._stop.steps:
             return "steps"

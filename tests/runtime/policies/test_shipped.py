@@ -16,7 +16,7 @@ from tltl_runtime.task import load_task
 
 
 def test_they_are_found_by_the_names_of_levels() -> None:
-    assert set(shipped_policies()) <= set(level_names())
+    assert set(shipped_policies()) == set(level_names())
     assert all(shipped_policy(name) == path for name, path in shipped_policies().items())
     assert shipped_policy("../shipped/navigation") is None
     assert shipped_policy("my_level.toml") is None
