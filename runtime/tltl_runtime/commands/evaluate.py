@@ -121,7 +121,7 @@ def command(
 
 def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, str | None]:
     """The file of the policy, and the level and the variant where it plays; None: where it was trained."""
-    from tltl_runtime.training.run import POLICY, RUN, read_run
+    from tltl_runtime.training.run import POLICY, RUN, read_place
 
     name, variant = (None, None) if level is None else split(level)
     if policy is None:
@@ -131,8 +131,7 @@ def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, s
         return policy, name, variant
     if name is None and (policy / RUN).is_file():
         # The card has the level's name alone, and here is the path of its file.
-        run = read_run(policy)
-        name, variant = run.level, run.variant
+        name, variant = read_place(policy)
     return policy / POLICY, name, variant
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
-  tltlc inspect training/cover_and_hide-v0-0
+  tltlc inspect training/cover_and_hide-v0-cover_and_hide-0
   tltlc inspect bots/*.safetensors --format json
   tltlc inspect bot.safetensors -o bot.onnx      the policy for another engine
 """

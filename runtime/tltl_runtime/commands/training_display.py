@@ -75,11 +75,16 @@ class _Lines:
     def __init__(self, run: Run) -> None:
         self._run = run
         self._next = 0.0
+        self._searched: Searched | None = None
 
     def searched(self, searched: Searched) -> None:
+        self._searched = searched
         self._print(search_line(searched))
 
     def trained(self, report: Report) -> None:
+        if self._searched:
+            self._print(search_line(self._searched), always=True)
+            self._searched, self._next = None, 0.0
         self._print(line(report, self._run.settings.stop), always=report.stop is not None)
 
     def _print(self, text: str, *, always: bool = False) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -76,6 +76,21 @@ def write_run(run: Run) -> None:
 
 def read_run(folder: Path) -> Run:
     """The training in a folder; raises TltlError: TLT0001 where there is none, TLT0863 where its file is no such."""
+    source, document = _document(folder)
+    values = _values(source, document, tuple(_PLAIN))
+    if "artefact" not in document:
+        raise _unfit(source, "it lacks 'artefact'")
+    artefact = json.dumps(document["artefact"])
+    return Run(folder=folder, fspa=read_artefact(SourceFile(f"{source.name}/artefact", artefact)), **values)
+
+
+def read_place(folder: Path) -> tuple[str, str]:
+    """Level and variant of the training in a folder, whatever else has changed since; errors as of :func:`read_run`."""
+    values = _values(*_document(folder), ("level", "variant"))
+    return values["level"], values["variant"]
+
+
+def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
     source = read_source(folder / RUN, max_bytes=MAX_ARTEFACT_BYTES)
     try:
         document = json.loads(source.text)
@@ -85,14 +100,16 @@ def read_run(folder: Path) -> Run:
         raise _unfit(source, "it describes no training")
     if document.get("version") != _VERSION:
         raise _unfit(source, f"it has version {document.get('version')!r:.20}, and only {_VERSION} can be read")
+    return source, document
+
+
+def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
     try:
-        values = {name: from_json(kind, document[name], name) for name, kind in _PLAIN.items()}
-        artefact = json.dumps(document["artefact"])
+        return {name: from_json(_PLAIN[name], document[name], name) for name in names}
     except KeyError as error:
         raise _unfit(source, f"it lacks {error}") from None
     except (RecordJsonError, RecursionError) as error:
         raise _unfit(source, str(error)) from None
-    return Run(folder=folder, fspa=read_artefact(SourceFile(f"{source.name}/artefact", artefact)), **values)
 
 
 def identity(run: Run) -> str:
