@@ -75,9 +75,7 @@ Examples:
     "--record",
     "recorded",
     type=click.Choice(("failures", "all", "none")),
-    default="failures",
-    show_default=True,
-    help="Of which episodes --out has the recordings.",
+    help="Of which episodes --out has the recordings (default: failures).",
 )
 @level_faults()
 def command(
@@ -90,7 +88,7 @@ def command(
     workers: Any,
     json_file: Path | None,
     folder: Path | None,
-    recorded: Recorded,
+    recorded: Recorded | None,
 ) -> int:
     """Have a trained policy play, and report how often it meets the spec.
 
@@ -100,6 +98,8 @@ def command(
     """
     if policy is None and level is None:
         raise click.UsageError("name a POLICY or a --level, or both")
+    if recorded and not folder:
+        raise click.UsageError("--record needs the folder for the recordings: --out DIR")
     with Report() as report, learning_for("`tltlc evaluate`"), requests_heard():
         from tltl_runtime.commands.evaluation_files import EvaluationFiles
         from tltl_runtime.evaluation.evaluate import results, set_up
@@ -107,7 +107,7 @@ def command(
         from tltl_runtime.policies.file import read_policy
 
         path, name, variant = _chosen(policy, level)
-        setup = set_up(read_policy(path), name, variant, spec, seed, recorded if folder else None)
+        setup = set_up(read_policy(path), name, variant, spec, seed, (recorded or "failures") if folder else None)
         files = EvaluationFiles(setup, path, first, folder, json_file)
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:

@@ -49,6 +49,8 @@ share, and `overlays/` the small changes that make the variants of the level. Al
     tltlc check --level {level}:v0 --plan plan.png  what does it look like?
     tltlc play {level}                              play it yourself
     tltlc demonstrate {level}                       watch the scripted expert
+    tltlc train {spec} --out bot                    have an agent learn it (extra `rl`)
+    tltlc evaluate bot                              and see how often it succeeds, and where not
     tltlc test {spec}                               does the spec mean what we meant?
 
 The file of a level is its name, as in `level NAME` in the spec: who renames one renames both.

@@ -134,7 +134,7 @@ def command(
 def _train(run: Run, *, resume: bool) -> Trained:
     """Train to the end, showing how it goes; the last report."""
     from tltl_runtime.commands.training_display import display
-    from tltl_runtime.training.run import RUN
+    from tltl_runtime.training.run import CHECKPOINT, RUN
     from tltl_runtime.training.train import train
 
     try:
@@ -145,7 +145,8 @@ def _train(run: Run, *, resume: bool) -> Trained:
             return last
     except KeyboardInterrupt:
         if (run.folder / RUN).exists():
-            click.echo(f"stopped; to go on: {_resume(run.folder)}", err=True)
+            searching = "" if (run.folder / CHECKPOINT).exists() else " in the search, which then begins anew"
+            click.echo(f"stopped{searching}; to go on: {_resume(run.folder)}", err=True)
         raise
 
 

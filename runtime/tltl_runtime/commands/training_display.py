@@ -18,7 +18,7 @@ from rich.text import Text
 
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.report import Report, Window
-from tltl_runtime.training.run import Run
+from tltl_runtime.training.run import CHECKPOINT, Run
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Stop
 from tltlc.automaton.fspa import State
@@ -104,6 +104,7 @@ class _Picture:
         self._in_a_row = 0
         self._at = time.monotonic()
         self._checkpoint: float | None = None
+        self._resumed = (run.folder / CHECKPOINT).exists()
 
     def searched(self, searched: Searched) -> None:
         self._searched = searched
@@ -156,7 +157,7 @@ class _Picture:
 
     def _kept(self, now: float) -> str:
         if self._checkpoint is None:
-            return "no checkpoint yet"
+            return "resumed from its checkpoint" if self._resumed else "no checkpoint yet"
         return f"last checkpoint {duration(now - self._checkpoint)} ago"
 
 

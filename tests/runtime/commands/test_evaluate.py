@@ -92,6 +92,12 @@ def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> No
     assert sorted(path.name for path in folder.iterdir()) == sorted(names)
 
 
+def test_recordings_need_a_folder(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    found = tltlc("evaluate", policy, "--record", "all")
+    assert (found.status, found.out) == (2, "")
+    assert "--record needs the folder for the recordings: --out DIR" in found.err
+
+
 def test_the_folder_of_a_training_knows_the_file_of_its_level(
     tltlc: Run,  # noqa: F811
     tmp_path: Path,
