@@ -302,6 +302,8 @@ def _prepared(
             search = Search(played, len(run.fspa.states), exploration, _stream(run, own, _OF_SEARCH, 0))
             for searched in search.run():
                 searching(searched)
+                if 0 < run.settings.stop.minutes * 60 <= searched.seconds:
+                    break
             ways = search.ways
         restarts = Restarts(ways, exploration.parts, np.random.default_rng(_stream(run, own, _OF_STARTS, iteration)))
         if begun is not None:

@@ -305,6 +305,14 @@ def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) 
     assert _checkpoint(run).iteration == 1
 
 
+def test_a_limit_of_minutes_ends_the_search_too(folder: Path) -> None:
+    run = run_in(folder / "short", exploration__ways=10, exploration__steps=10**9, stop__minutes=0.005)
+    (report,) = train(run)
+    assert report.stop == "minutes"
+    assert report.searched is not None
+    assert report.searched.steps < 100_000
+
+
 @pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0), ("fixed", 0.01)])
 def test_the_bonus_for_undecided_actions_fades_as_the_spec_is_met(folder: Path, schedule: str, last: float) -> None:
     run = run_in(
