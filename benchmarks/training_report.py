@@ -129,8 +129,8 @@ def _trained(records: Mapping[str, Record]) -> str:
 
 `python -m benchmarks --only training` makes these figures, and goes on where it was stopped. A row is
 `tltlc train --level LEVEL --seed SEED --minutes {MINUTES:g} --workers N`, then `tltlc evaluate` of its policy on fresh
-episodes, with actions sampled and with the likeliest ones. *Workers* of 2: the training had two cores to itself; of 1:
-it had one core, and another training the other. *Ended*: `met` where the spec was met in two successive windows of 50
+episodes, with actions sampled and with the likeliest ones. *Workers* of 2: the training had two cores; of 1: it had
+one core, and another training the other. *Ended*: `met` where the spec was met in two successive windows of 50
 episodes. *Steps* are the decisions that the agent learned from; *all steps* also those of the search for ways and
 those that were played again to begin on a way. *Minutes* are of wall time, those of the search included; *steps/s* are
 of the time after it, *learning* is the share of that which updates took, and *others* are how many cores of the machine

@@ -75,14 +75,13 @@ class Episodes:
     def __init__(self, env: WorkerVectorEnv, draw: Callable[[], Start]) -> None:
         self._env = env
         self._draw = draw
-        self._all = np.ones(env.num_envs, dtype=np.bool_)
         self._next = [draw() for _ in range(env.num_envs)]
         self.starts = list(self._next)
         self.actions: list[Actions] = [[] for _ in self._next]
         self.replayed = 0
         self._tell(range(env.num_envs))
         self.observation, _ = env.reset()
-        self.turn(self._all)
+        self.turn(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
         """Step all environments with the actions [num_envs, branches], and note these; what the environments give.
