@@ -30,6 +30,15 @@ def _finite(_: click.Context, parameter: click.Parameter, value: float | None) -
     return value
 
 
+def _device(_: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
+    from tltl_runtime.training.settings_file import KINDS
+
+    kind = KINDS[""]["device"]
+    if value is not None and kind.read(value) is None:
+        raise click.BadParameter(f"`{value}` is not {kind}", param=parameter)
+    return value
+
+
 @click.command(
     epilog="""\b
 Examples:
@@ -84,7 +93,7 @@ Watching, from another terminal:
     type=Workers(),
     help="Processes that play (0: one a core), or those of a Ray cluster.",
 )
-@click.option("--device", type=click.Choice(["cpu", "cuda"]), help="Where the network learns.")
+@click.option("--device", metavar="cpu|cuda|cuda:N", callback=_device, help="Where the network learns.")
 @senses_options
 @click.option("--print-config", is_flag=True, help="Print the default settings, as a file for --config, and exit.")
 def command(

@@ -7,6 +7,7 @@ from typing import Any
 import torch
 from rsl_rl.utils import resolve_callable
 
+from tltl_runtime.training.distributed import peers
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
@@ -25,9 +26,25 @@ def class_of(setting: str, name: str, base: type) -> Any:
 
 
 def device_of(device: str) -> str:
-    """The device; TLT0862 where torch has none of that name."""
-    count = torch.cuda.device_count() if torch.cuda.is_available() else 0
-    if device.startswith("cuda") and int(device.partition(":")[2] or 0) >= count:
-        title = f"there is no device `{device}` here, or torch was built without it"
-        raise TltlError([Diagnostic("TLT0862", title, help='train on the "cpu"')])
-    return device
+    """The device of this process: where torchrun started several, "cuda" is a GPU of its own for each.
+
+    Raises TltlError, TLT0862, where there is none.
+    """
+    if not device.startswith("cuda"):
+        return device
+    own, gpus = peers(), torch.cuda.device_count() if torch.cuda.is_available() else 0
+    if own.count == 1:
+        if int(device.partition(":")[2] or 0) >= gpus:
+            raise _no_device(f"there is no device `{device}` here, or torch was built without it", 'train on the "cpu"')
+        return device
+    if device != "cuda":
+        title = f"each of {own.count} processes takes a device of its own, and `{device}` is but one"
+        raise _no_device(title, 'say "cuda"; the variable CUDA_VISIBLE_DEVICES chooses which ones they take')
+    if own.local_count > gpus:
+        title = f"each of {own.local_count} processes takes a device of its own, and torch finds {gpus} here"
+        raise _no_device(title, 'start no more processes than devices, or train on the "cpu"')
+    return f"cuda:{own.local_rank}"
+
+
+def _no_device(title: str, help_: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0862", title, help=help_)])

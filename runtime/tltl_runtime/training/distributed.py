@@ -59,17 +59,14 @@ def cores() -> int:
 
 @contextmanager
 def joined(device: str) -> Iterator[tuple[Peers, str]]:
-    """Within, the processes can speak to each other; this one, and its own device: each has a GPU where ``device`` is
-    ``cuda``.
-    """
+    """Within, the processes can speak to each other; this one, and ``device``, its own."""
     found = peers()
     if found.count == 1:
         yield found, device
         return
     on_gpu = device.startswith("cuda")
     if on_gpu:
-        device = f"cuda:{found.local_rank}"
-        torch.cuda.set_device(found.local_rank)
+        torch.cuda.set_device(device)
     # Values travel by gloo on any device, and gradients by what is fastest for them.
     distributed.init_process_group("cpu:gloo,cuda:nccl" if on_gpu else "gloo")
     try:

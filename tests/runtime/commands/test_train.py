@@ -130,6 +130,8 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction, here: Path) -> None: 
         (["endless.tltl"], 1, "`endless` has no limit, so an episode may go on for ever"),
         (["soon.tltl", "--minutes", "nan"], 2, "a limit is a finite number"),
         (["soon.tltl", "--workers", "many"], 2, "`many` is neither a number of processes nor `ray`"),
+        (["soon.tltl", "--device", "gpu"], 2, '`gpu` is not a device: "cpu", "cuda" or "cuda:0"'),
+        (["soon.tltl", "--device", "cuda:31"], 1, "there is no device `cuda:31` here"),
         (["soon.tltl", "--entities", "s9"], 2, "the level `cover_and_hide` has no entity `s9`"),
         (["soon.tltl", "--config", "gone.toml"], 3, "cannot read `gone.toml`"),
         (["--resume", "gone"], 3, "cannot read `gone/run.json`"),

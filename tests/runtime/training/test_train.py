@@ -297,6 +297,19 @@ def test_what_there_is_not_is_said_before_anything_is_written(
     assert not Path("run", RUN).exists()
 
 
+@pytest.mark.parametrize(("name", "device"), [("TLT0862_one_device", "cuda:0"), ("TLT0862_devices", "cuda")])
+def test_processes_of_torchrun_take_a_device_each(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, device: str
+) -> None:
+    for variable, value in (("WORLD_SIZE", 128), ("LOCAL_WORLD_SIZE", 64), ("RANK", 0), ("LOCAL_RANK", 0)):
+        monkeypatch.setenv(variable, str(value))
+    with pytest.raises(TltlError) as caught:
+        next(train(run_in(tmp_path / "run", device=device)))
+    if not torch.cuda.is_available():
+        compare(name, caught.value)
+    assert not (tmp_path / "run").exists()
+
+
 def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) -> None:
     run = run_in(folder / "diverged", classes__runner="tests.runtime.training.runs:Diverging")
     with pytest.raises(TltlError) as caught:
