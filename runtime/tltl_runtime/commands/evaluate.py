@@ -121,18 +121,18 @@ def command(
 
 def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, str | None]:
     """The file of the policy, and the level and the variant where it plays; None: where it was trained."""
-    from tltl_runtime.training.run import POLICY, RUN, read_place
+    from tltl_runtime.commands.policy_path import policy_path
+    from tltl_runtime.training.run import RUN, read_place
 
     name, variant = (None, None) if level is None else split(level)
     if policy is None:
         assert name is not None
         return _shipped(name), name, variant
-    if not policy.is_dir():
-        return policy, name, variant
+    path = policy_path(policy)
     if name is None and (policy / RUN).is_file():
         # The card has the level's name alone, and here is the path of its file.
         name, variant = read_place(policy)
-    return policy / POLICY, name, variant
+    return path, name, variant
 
 
 def _shipped(level: str) -> Path:

@@ -74,13 +74,11 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
 
 
 def _file(name: str) -> Path:
+    from tltl_runtime.commands.policy_path import policy_path
     from tltl_runtime.policies.shipped import shipped_policy
-    from tltl_runtime.training.run import POLICY
 
     path = Path(name)
-    if path.is_dir():
-        return path / POLICY
-    return path if path.exists() else shipped_policy(name) or path
+    return policy_path(path) if path.exists() else shipped_policy(name) or path
 
 
 def _export(policy: Policy, path: Path) -> None:

@@ -1,0 +1,63 @@
+"""The policy of a training, by the training's folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.training.runs import run_in
+from tltl_runtime.commands.policy_path import policy_path
+from tltl_runtime.training.metrics import METRICS
+from tltl_runtime.training.run import POLICY, write_run
+from tltlc.diagnostics.diagnostic import TltlError
+
+
+@pytest.fixture(name="here")
+def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with two trainings in `training`, made the current one."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("one", "two words"):
+        write_run(run_in(Path("training") / name))
+    return Path("training")
+
+
+def test_a_file_and_that_of_a_folder(here: Path) -> None:
+    file = here / "one" / POLICY
+    file.touch()
+    assert policy_path(here / "one") == policy_path(file) == file
+    assert policy_path(Path("gone")) == Path("gone")
+
+
+@pytest.mark.parametrize("command", ["evaluate", "inspect"])
+def test_a_training_without_a_policy(tltlc, here: Path, command: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found: Outcome = tltlc(command, "training/two words")
+    assert (found.status, found.out) == (1, "")
+    assert found.err == (
+        "error[TLT0872]: the training in `training/two words` has no policy yet: its first iteration is not over\n"
+        "  help: `tltlc train --resume 'training/two words'` goes on until it has one; "
+        "one that is going on has it soon\n"
+    )
+    lines = [{"iteration": number, "steps": 4096 * number, "episodes": number} for number in (1, 2)]
+    (here / "two words" / METRICS).write_text("".join(json.dumps(line) + "\n" for line in lines))
+    assert "has no policy yet: after 8,192 steps, 3 episodes ended\n" in tltlc(command, "training/two words").err
+
+
+def test_a_folder_of_trainings(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("evaluate", "training").err == (
+        "error[TLT0872]: `training` holds trainings, and is none itself\n"
+        "  help: name one of them: `training/one`, `training/two words`\n"
+    )
+    for number in range(9):
+        write_run(run_in(here / f"more-{number}"))
+    with pytest.raises(TltlError) as caught:
+        policy_path(here)
+    (said,) = caught.value.diagnostics
+    assert said.help is not None and said.help.endswith("`training/more-7` and 3 more")
+
+
+def test_a_folder_of_something_else(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    Path("empty").mkdir()
+    assert "there is neither a training nor a policy in `empty`" in tltlc("inspect", "empty").err
