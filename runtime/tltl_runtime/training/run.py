@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from shlex import quote
 from typing import Any, Final
 
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.levels.file import level_path, load_level
-from tltl_runtime.training.settings import Settings
+from tltl_runtime.training.settings import Settings, read_settings
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -77,6 +78,7 @@ def write_run(run: Run) -> None:
 def read_run(folder: Path) -> Run:
     """The training in a folder; raises TltlError: TLT0001 where there is none, TLT0863 where its file is no such."""
     source, document = _document(folder)
+    _check_settings(source, document)
     values = _values(source, document, tuple(_PLAIN))
     if "artefact" not in document:
         raise _unfit(source, "it lacks 'artefact'")
@@ -101,6 +103,25 @@ def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
     if document.get("version") != _VERSION:
         raise _unfit(source, f"it has version {document.get('version')!r:.20}, and only {_VERSION} can be read")
     return source, document
+
+
+def _check_settings(source: SourceFile, document: Mapping[str, Any]) -> None:
+    """TLT0863 where there are other settings now than in the version that wrote the document."""
+    there, known = set(_leaves(document.get("settings", {}))), set(_leaves(to_json(read_settings())))
+    help_ = f"begin the training anew; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what it learned"
+    if there and (later := sorted(known - there)):
+        raise _unfit(source, f"it is of an older version of tltlc, which had no setting `{later[0]}`", help_)
+    if gone := sorted(there - known):
+        raise _unfit(source, f"it is of another version of tltlc, which had a setting `{gone[0]}`", help_)
+
+
+def _leaves(settings: object, path: str = "") -> Iterator[str]:
+    """The names of settings in JSON, with dots between them."""
+    if not isinstance(settings, dict):
+        yield path
+        return
+    for name, each in settings.items():
+        yield from _leaves(each, f"{path}.{name}".lstrip("."))
 
 
 def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
@@ -132,6 +153,7 @@ def identity(run: Run) -> str:
     return hashlib.sha256(json.dumps(counts, sort_keys=True).encode()).hexdigest()
 
 
-def _unfit(source: SourceFile, why: str) -> TltlError:
-    help_ = "name the folder of a training, as `tltlc train --out` did"
+def _unfit(
+    source: SourceFile, why: str, help_: str = "name the folder of a training, as `tltlc train --out` did"
+) -> TltlError:
     return TltlError([Diagnostic("TLT0863", f"`{source.name}` cannot be resumed from: {why}", help=help_)])

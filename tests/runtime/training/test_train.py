@@ -263,17 +263,27 @@ def test_two_trainings_in_one_folder_are_refused(copy: Run) -> None:
     compare("TLT0865", caught.value)
 
 
+def _with_ppo(document: Any, **changes: Any) -> Any:
+    """The description with other settings of PPO, without those that are None."""
+    ppo = {name: each for name, each in {**document["settings"]["ppo"], **changes}.items() if each is not None}
+    return {**document, "settings": {**document["settings"], "ppo": ppo}}
+
+
 @pytest.mark.parametrize(
-    ("name", "text"), [("TLT0863", "{"), ("TLT0863_other", "[]"), ("TLT0863_key", None), ("TLT0863_value", None)]
+    ("name", "change"),
+    [
+        ("TLT0863", lambda document: None),
+        ("TLT0863_other", lambda document: []),
+        ("TLT0863_key", lambda document: {name: each for name, each in document.items() if name != "seed"}),
+        ("TLT0863_value", lambda document: _with_ppo(document, epochs="three")),
+        ("TLT0863_older", lambda document: _with_ppo(document, entropy_schedule=None)),
+        ("TLT0863_gone", lambda document: _with_ppo(document, momentum=0.9)),
+    ],
 )
-def test_a_description_that_does_not_fit_is_refused(copy: Run, name: str, text: str | None) -> None:
+def test_a_description_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Any], Any]) -> None:
     path = copy.folder / RUN
-    document = json.loads(path.read_text())
-    if name == "TLT0863_key":
-        del document["seed"]
-    else:
-        document["settings"]["ppo"]["epochs"] = "three"
-    path.write_text(json.dumps(document) if text is None else text)
+    changed = change(json.loads(path.read_text()))
+    path.write_text("{" if changed is None else json.dumps(changed))
     with pytest.raises(TltlError) as caught:
         read_run(copy.folder)
     compare(name, caught.value)
