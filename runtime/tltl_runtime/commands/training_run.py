@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from shlex import quote
 from typing import Any, Final, Literal, TypeVar
 
 import click
@@ -16,9 +17,11 @@ from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.senses.sensors import chosen
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
-from tltl_runtime.training.run import Run, read_run
+from tltl_runtime.training.distributed import peers
+from tltl_runtime.training.run import RUN, Run, read_run
 from tltl_runtime.training.settings import Settings, read_settings
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reading_error
 from tltlc.record import record, replace
 from tltlc.spec_file import split
 
@@ -52,8 +55,10 @@ class Asked:
 
 
 def new_run(asked: Asked, folder: Path | None) -> Run:
-    """A new training, by default in a folder that is called like it; raises TltlError for all that is wrong with its
-    spec, level, senses and settings.
+    """A new training, by default in a folder that is called like it.
+
+    Raises TltlError for all that is wrong with its spec, level, senses and settings, TLT0873 for a folder that has
+    files of something else.
     """
     if asked.level is not None:
         path, variant = split(asked.level)
@@ -69,6 +74,7 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     check_limit(task.fspa)
     seed = asked.seed or 0
     folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}"
+    _check_folder(folder)
     return Run(
         folder=folder,
         fspa=task.fspa,
@@ -102,6 +108,20 @@ def _own_level(spec: str) -> str:
         raise _usage(f"`{fspa.name}` does not say which level it is about: name one with --level")
     beside = Path(split(spec)[0]).parent / f"{fspa.level}.toml"
     return str(beside) if beside.is_file() else fspa.level
+
+
+def _check_folder(folder: Path) -> None:
+    """TLT0873 where there are files of something else: whoever cleans up after a training would lose them."""
+    if peers().rank > 0 or not folder.is_dir() or (folder / RUN).exists():
+        return
+    try:
+        names = sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
+    except OSError as error:
+        raise reading_error(str(folder), error) from None
+    if names:
+        title = f"`{folder}` is no training, and has other files: `{names[0]}`{' and more' * (len(names) > 1)}"
+        help_ = f"name a folder of its own, e.g. `--out {quote(str(folder / 'training'))}`"
+        raise TltlError([Diagnostic("TLT0873", title, help=help_)])
 
 
 def _usage(message: str) -> click.UsageError:

@@ -120,6 +120,22 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction, here: Path) -> None: 
     assert tltlc("train", "soon.tltl", *same, "--resume", "it").status == 0
 
 
+def test_a_training_goes_into_no_folder_of_other_files(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    (here / "mine").mkdir()
+    (here / "mine" / ".hidden").touch()
+    asked = ("train", "soon.tltl", "--config", "small.toml", "--out", "mine")
+    (here / "mine" / "notes.txt").write_text("of mine")
+    assert tltlc(*asked) == Outcome(
+        1,
+        "",
+        "error[TLT0873]: `mine` is no training, and has other files: `notes.txt`\n"
+        "  help: name a folder of its own, e.g. `--out mine/training`\n",
+    )
+    assert {path.name for path in (here / "mine").iterdir()} == {".hidden", "notes.txt"}
+    (here / "mine" / "notes.txt").unlink()
+    assert tltlc(*asked).status == 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "status", "said"),
     [
