@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import closing, nullcontext
 from pathlib import Path
@@ -115,7 +116,7 @@ def command(
                 for result in _counted(playing, len(tasks)):
                     files.add(result)
         finally:
-            _tell(files, json_file, len(tasks))
+            _tell(files, json_file, episodes)
     return report.status
 
 
@@ -150,16 +151,21 @@ def _shipped(level: str) -> Path:
 
 def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
     """The results; standard error says how far they are, with a bar on a terminal, else with a line each tenth."""
-    passed = 0
+    from tltl_runtime.commands.evaluation_files import CHOICES
+
+    played, passed = Counter[bool](), Counter[bool]()
     with _bar(count) as bar:
         for number, result in enumerate(playing, 1):
             yield result
-            passed += result.played.success
-            said = f"{number} of {count} episodes played, {passed} passed"
+            sampled = result.task.sampled
+            played[sampled] += 1
+            passed[sampled] += result.played.success
+            so_far = [f"{passed[each]} of {played[each]} {name}" for each, name in CHOICES.items() if played[each]]
+            said = f"passed: {', '.join(so_far)}"
             if bar is not None:
                 bar.update(bar.task_ids[0], completed=number, description=said)
             elif number * 10 // count > (number - 1) * 10 // count:
-                click.echo(said, err=True)
+                click.echo(f"{number / count:.0%} played; {said}", err=True)
 
 
 def _bar(count: int) -> Any:
@@ -174,14 +180,15 @@ def _bar(count: int) -> Any:
 
 
 def _tell(files: EvaluationFiles, json_file: Path | None, wanted: int) -> None:
-    """Report on what was played, which is not all of it where the evaluation was broken off."""
+    """Report on what was played, which is not all of the ``wanted`` episodes of each kind where it was broken off."""
     played = files.played
-    if not played:
+    if not any(played.values()):
         return
-    if played < wanted:
-        click.echo(f"stopped: {played} of {wanted} episodes were played", err=True)
-    document = files.document(complete=played == wanted)
-    text = json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    complete = all(count == wanted for count in played.values())
+    if not complete:
+        counts = " and ".join(f"{count} of {wanted} {name}" for name, count in played.items())
+        click.echo(f"stopped: {counts} episodes were played", err=True)
+    text = json.dumps(files.document(complete), indent=2, ensure_ascii=False) + "\n"
     if json_file is None or str(json_file) != "-":
         click.echo(files.text(), nl=False)
     else:

@@ -46,9 +46,9 @@ class EvaluationFiles:
                 writable_folder(place)
 
     @property
-    def played(self) -> int:
-        """How many episodes were played."""
-        return sum(map(len, self._played.values()))
+    def played(self) -> dict[str, int]:
+        """How many episodes were played, by the name of the way to choose actions."""
+        return {CHOICES[sampled]: len(played) for sampled, played in self._played.items()}
 
     def add(self, result: Result) -> None:
         """Take the next result, and write its recording where there is one."""

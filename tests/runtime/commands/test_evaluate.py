@@ -45,7 +45,9 @@ def test_the_report_for_people(tltlc: Run, policy: Path) -> None:  # noqa: F811
     assert "sampled: 3 of 3 failed" in lines
     assert "  3 out of time in state 0, remaining: Reach near(exit), and keep alive throughout." in lines
     assert lines[-1] == "`--seed 5 --first 0 --episodes 1 --out DIR` records one of them, for `tltlc replay`."
-    assert found.err.splitlines()[-1] == "6 of 6 episodes played, 0 passed"
+    told = found.err.splitlines()
+    assert told[2] == "50% played; passed: 0 of 3 sampled"
+    assert told[-1] == "100% played; passed: 0 of 3 sampled, 0 of 3 arg-max"
 
 
 def test_the_report_for_programs(tltlc: Run, policy: Path) -> None:  # noqa: F811
@@ -126,13 +128,13 @@ def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status
     command = [sys.executable, "-m", "tltlc", "evaluate", str(policy), "--episodes", "300", "--workers", workers]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as evaluating:
         assert evaluating.stderr is not None
-        assert evaluating.stderr.readline() == "60 of 600 episodes played, 0 passed\n"
+        assert evaluating.stderr.readline() == "10% played; passed: 0 of 60 sampled\n"
         evaluating.send_signal(getattr(signal, name))
         out, err = evaluating.communicate(timeout=60)
     assert evaluating.returncode == status
-    (stopped,) = re.findall(r"^stopped: (\d+) of 600 episodes were played$", err, re.MULTILINE)
+    (stopped,) = re.findall(r"^stopped: (\d+) of 300 sampled and 0 of 300 arg-max episodes were played$", err, re.M)
     (played,) = re.findall(r"^episodes +(\d+)", out, re.MULTILINE)
-    assert 60 <= int(played) <= int(stopped) < 600
+    assert 60 <= int(played) == int(stopped) < 300
 
 
 @pytest.mark.parametrize(
