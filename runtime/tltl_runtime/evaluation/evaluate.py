@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Literal
@@ -85,23 +85,33 @@ def check_limit(fspa: Fspa) -> None:
         raise TltlError([Diagnostic("TLT0851", title, help="write `limit 60 s` or the like in the spec")])
 
 
-def results(setup: Setup, tasks: Sequence[Task], workers: Workers = 1) -> Generator[Result]:
+def results(
+    setup: Setup,
+    tasks: Sequence[Task],
+    workers: Workers = 1,
+    waiting: Callable[[float], None] = lambda left: None,
+) -> Generator[Result]:
     """Play the tasks and give their results in order; closing the iterator ends the workers.
 
+    Where no core of a Ray cluster is free, ``waiting`` is told for how many more seconds one is waited for.
+
     Raises:
-        TltlError: TLT0850, a worker was lost; TLT0730, where Ray is asked for and is not installed.
+        TltlError: TLT0850, a worker was lost; TLT0730, Ray is asked for and is not installed; TLT0852, there is no
+            cluster, or no core of it becomes free; what the making of an environment raises.
         ValueError: a number of workers below 0.
     """
     with ExitStack() as stack:
-        yield from spread(_team(setup, workers, len(tasks), stack), tasks, setup.seed)
+        yield from spread(_team(setup, workers, len(tasks), stack, waiting), tasks, setup.seed)
 
 
-def _team(setup: Setup, workers: Workers, most: int, stack: ExitStack) -> list[Worker]:
+def _team(
+    setup: Setup, workers: Workers, most: int, stack: ExitStack, waiting: Callable[[float], None]
+) -> list[Worker]:
     """Up to ``most`` workers, which ``stack`` closes."""
     if workers == "ray":
         from tltl_runtime.evaluation.ray_pool import ray_workers
 
-        return list(stack.enter_context(ray_workers(setup, most)))
+        return list(stack.enter_context(ray_workers(setup, most, waiting)))
     if workers < 0:
         raise ValueError(f"there are no {workers} workers")
     team: list[Worker] = []

@@ -8,6 +8,7 @@ import signal
 import threading
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from typing import Final
 
 from tltl_runtime.evaluation.player import Player, Result, Setup, Task
 from tltl_runtime.evaluation.spread import LostError
@@ -43,7 +44,10 @@ class Process:
     def play(self, task: Task) -> Future[Result]:
         """Begin an episode."""
         future: Future[Result] = Future()
-        self._executor.submit(_play, task).add_done_callback(lambda done: _pass_on(done, future))
+        try:
+            self._executor.submit(_play, task).add_done_callback(lambda done: _pass_on(done, future))
+        except BrokenProcessPool:
+            future.set_exception(LostError(_ENDED))
         return future
 
     def close(self) -> None:
@@ -51,16 +55,19 @@ class Process:
         self._executor.shutdown(wait=False, cancel_futures=True)
 
 
-_player: Player
+_ENDED: Final = "its process ended; where it said nothing before, it was perhaps killed for want of memory"
+
+_setup: Setup
+_player: Player | None = None
 """Of a process that plays."""
 
 
 def _begin(setup: Setup) -> None:
-    global _player
+    global _setup
     # Ctrl-C goes to the whole group of processes; whoever started this one decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    _player = Player(setup)
+    _setup = setup
 
 
 def _end_with_parent() -> None:
@@ -72,13 +79,16 @@ def _end_with_parent() -> None:
 
 
 def _play(task: Task) -> Result:
+    # What is raised in `_begin` would be lost, and here it is told.
+    global _player
+    _player = _player or Player(_setup)
     return _player.play(task)
 
 
 def _pass_on(done: Future[Result], future: Future[Result]) -> None:
     error = done.exception()
     if isinstance(error, BrokenProcessPool):
-        future.set_exception(LostError("its process ended, perhaps killed for want of memory"))
+        future.set_exception(LostError(_ENDED))
     elif error is not None:
         future.set_exception(error)
     else:

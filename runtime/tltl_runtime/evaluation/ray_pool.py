@@ -2,41 +2,82 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 from tltl_runtime.evaluation.player import Player, Result, Setup, Task
 from tltl_runtime.evaluation.spread import LostError
 from tltl_runtime.vector.cluster import cluster, free_cores
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+PATIENCE_S: Final = 120.0
+"""How long a cluster whose cores are busy may take to give one."""
+_AFTER_THE_FIRST_S: Final = 30.0
+"""How long the others may take once there is a worker."""
+_TOLD_EVERY_S: Final = 10.0
 
 
 @contextmanager
-def ray_workers(setup: Setup, most: int) -> Iterator[list[RayWorker]]:
-    """A worker on each free core of the cluster, up to ``most``; errors as of :func:`cluster`."""
+def ray_workers(
+    setup: Setup, most: int, waiting: Callable[[float], None], patience: float = PATIENCE_S
+) -> Iterator[list[RayWorker]]:
+    """A worker on each free core of the cluster, up to ``most``.
+
+    ``waiting`` is told now and then how many seconds of ``patience`` are left for the first of them.
+
+    Raises:
+        TltlError: as :func:`cluster`; TLT0852, too, where no core becomes free in time.
+    """
     with cluster() as ray:
         shared = ray.put(setup)
         workers = [RayWorker(ray, shared) for _ in range(min(most, free_cores(ray)))]
         try:
-            yield workers
+            yield _ready(ray, workers, waiting, patience)
         finally:
             for worker in workers:
                 worker.close()
+
+
+def _ready(ray: Any, workers: list[RayWorker], waiting: Callable[[float], None], patience: float) -> list[RayWorker]:
+    """Those that have a core, all of them unless somebody else was quicker."""
+    deadline = time.monotonic() + patience
+    asked = {worker.is_there(): worker for worker in workers}
+    there: list[Any] = []
+    while len(there) < len(asked) and (left := deadline - time.monotonic()) > 0:
+        found, _ = ray.wait(list(asked), num_returns=len(there) + 1, timeout=min(left, _TOLD_EVERY_S))
+        if found and not there:
+            deadline = min(deadline, time.monotonic() + _AFTER_THE_FIRST_S)
+        elif not found:
+            waiting(left)
+        there = found
+    if not there:
+        cores = int(ray.cluster_resources().get("CPU", 0))
+        title = f"no core of the Ray cluster, which has {cores}, became free within {patience:g} s"
+        help_ = "`ray status` tells what is in use: wait until that is over, or play here with `--workers 0`"
+        raise TltlError([Diagnostic("TLT0852", title, help=help_)])
+    return [asked[reference] for reference in there]
 
 
 class RayWorker:
     """A player somewhere in the cluster; ``setup`` is a reference to its :class:`Setup`."""
 
     def __init__(self, ray: Any, setup: Any) -> None:
-        self._ray = ray
+        self._ray, self._setup = ray, setup
         # Ray would restart an actor and play again, silently, what has killed it.
-        self._actor = ray.remote(num_cpus=1, max_restarts=0)(Player).remote(setup)
+        self._actor = ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote()
+
+    def is_there(self) -> Any:
+        """A reference to something that is there as soon as the actor is."""
+        return self._actor.__ray_ready__.remote()
 
     def play(self, task: Task) -> Future[Result]:
         """Begin an episode."""
         future: Future[Result] = Future()
-        self._actor.play.remote(task).future().add_done_callback(lambda done: self._pass_on(done, future))
+        playing = self._actor.play.remote(self._setup, task).future()
+        playing.add_done_callback(lambda done: self._pass_on(done, future))
         return future
 
     def close(self) -> None:
@@ -50,4 +91,17 @@ class RayWorker:
         elif isinstance(error, self._ray.exceptions.RayTaskError):
             future.set_exception(error.cause)
         else:
-            future.set_exception(LostError(next(iter(str(error).splitlines()), type(error).__name__)))
+            lines = str(error).splitlines() or [type(error).__name__]
+            # What kept an actor from beginning, such as a package that is missing there, comes last.
+            future.set_exception(LostError(lines[-1 if getattr(error, "actor_init_failed", False) else 0]))
+
+
+class _Actor:
+    """A player of whose beginning it is known what went wrong: of an actor's own Ray tells but that it failed."""
+
+    def __init__(self) -> None:
+        self._player: Player | None = None
+
+    def play(self, setup: Setup, task: Task) -> Result:
+        self._player = self._player or Player(setup)
+        return self._player.play(task)

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import os
 import pickle
+import re
 import signal
+import time
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from importlib.util import find_spec
+from multiprocessing import active_children
+from typing import Any
 
 import pytest
 
 from tests.runtime.evaluation.untrained import untrained
+from tltl_runtime.evaluation import ray_pool
 from tltl_runtime.evaluation.evaluate import Workers, evaluate, results, set_up
+from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import Played, episode_seed
 from tltl_runtime.evaluation.player import Setup, Task
+from tltl_runtime.evaluation.spread import LostError
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.episodes.file import from_bytes
 from tltl_runtime.stealth.levels.file import load_level
@@ -107,6 +114,68 @@ def test_what_the_game_raises_comes_as_it_is(policy: Policy, workers: Workers) -
     with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as found:
         list(results(setup, [Task(0)], workers))
     assert found.value.body == "player"
+
+
+@pytest.mark.parametrize("workers", [1, *POOLS])
+def test_what_keeps_a_worker_from_beginning_comes_as_it_is(policy: Policy, workers: Workers) -> None:
+    setup = Setup(policy, "nowhere", "v0", policy.card.fspa, 3, policy.card.params)
+    with pytest.raises(TltlError, match="there is no level `nowhere`"):
+        list(results(setup, [Task(0)], workers))
+
+
+def test_a_process_that_ended_between_two_episodes_is_lost_all_the_same(policy: Policy) -> None:
+    worker = Process(set_up(policy, None, None, None, 3))
+    try:
+        assert worker.play(Task(0)).result().task == Task(0)
+        for child in active_children():
+            child.kill()
+            child.join()
+        time.sleep(0.2)
+        with pytest.raises(LostError, match="its process ended"):
+            worker.play(Task(1)).result()
+    finally:
+        worker.close()
+
+
+@pytest.fixture
+def busy() -> Iterator[Any]:
+    """An actor that has all cores of the Ray instance."""
+    ray = pytest.importorskip("ray")
+    actor = ray.remote(num_cpus=ray.cluster_resources()["CPU"])(Busy).remote()
+    ray.get(actor.__ray_ready__.remote())
+    yield actor
+    ray.kill(actor)
+
+
+class Busy:
+    """Is there, and does nothing."""
+
+
+def test_a_cluster_without_a_free_core_is_waited_for_and_then_told(policy: Policy, busy: Any) -> None:
+    setup = set_up(policy, None, None, None, 3)
+    with pytest.raises(TltlError) as found, ray_pool.ray_workers(setup, 2, lambda left: None, patience=1.0):
+        pass
+    (diagnostic,) = found.value.diagnostics
+    assert diagnostic.code == "TLT0852"
+    assert re.fullmatch(r"no core of the Ray cluster, which has \d+, became free within 1 s", diagnostic.title)
+    assert diagnostic.help is not None
+    assert "--workers 0" in diagnostic.help
+
+
+def test_a_core_that_becomes_free_meanwhile_is_taken(
+    policy: Policy, busy: Any, expected: list[Played], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import ray
+
+    def waiting(left: float) -> None:
+        told.append(left)
+        ray.kill(busy)
+
+    told: list[float] = []
+    monkeypatch.setattr(ray_pool, "_TOLD_EVERY_S", 0.5)
+    played = results(set_up(policy, None, None, None, 3), [Task(0)], "ray", waiting)
+    assert [each.played for each in played] == [expected[0]]
+    assert told[0] == pytest.approx(ray_pool.PATIENCE_S, abs=5)
 
 
 def test_errors_can_be_sent() -> None:
