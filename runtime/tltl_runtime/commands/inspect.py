@@ -66,7 +66,7 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
                 _export(policy, path)
                 report.say(f"wrote {path}")
             elif format == "text":
-                print(f"{name}\n{summary_text(said)}")
+                print(f"{name}\n{summary_text(said)}{_still_going(Path(name), policy)}")
             summaries.append(said)
         if format == "json" and path is None:
             print(json.dumps(summaries, indent=2, ensure_ascii=False))
@@ -79,6 +79,15 @@ def _file(name: str) -> Path:
 
     path = Path(name)
     return policy_path(path) if path.exists() else shipped_policy(name) or path
+
+
+def _still_going(path: Path, policy: Policy) -> str:
+    """How far the training in a folder is that has a policy, but no record yet."""
+    from tltl_runtime.commands.policy_path import progress
+    from tltl_runtime.training.run import RUN
+
+    going = not policy.card.training and (path / RUN).exists()
+    return f"  ended    not yet: {progress(path)}\n" if going else ""
 
 
 def _export(policy: Policy, path: Path) -> None:

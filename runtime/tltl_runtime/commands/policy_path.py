@@ -25,7 +25,7 @@ def policy_path(path: Path) -> Path:
     if (path / POLICY).exists():
         return path / POLICY
     if (path / RUN).exists():
-        title = f"the training in `{path}` has no policy yet: {_stand(path)}"
+        title = f"the training in `{path}` has no policy yet: {progress(path)}"
         help_ = f"`tltlc train --resume {quote(str(path))}` goes on until it has one; one that is going on has it soon"
     elif trainings := _trainings(path):
         named = ", ".join(f"`{each}`" for each in trainings[:_MOST_NAMED])
@@ -37,8 +37,8 @@ def policy_path(path: Path) -> Path:
     raise TltlError([Diagnostic("TLT0872", title, help=help_)])
 
 
-def _stand(folder: Path) -> str:
-    """How far a training is that has no policy yet."""
+def progress(folder: Path) -> str:
+    """How far the training in a folder is, in words; raises TltlError, TLT0001, where its file cannot be read."""
     measured = read_metrics(folder / METRICS)
     if not measured:
         return "its first iteration is not over"

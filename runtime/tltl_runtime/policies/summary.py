@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.record_json import to_json
+
+_ENDS: Final[Mapping[str, str]] = {
+    "met": "the spec was met",
+    "steps": "by the limit of steps",
+    "minutes": "by the limit of minutes",
+}
+"""Why a training ended, by what its record says."""
 
 
 def summary(policy: Policy) -> dict[str, Any]:
@@ -47,6 +54,8 @@ def summary_text(said: Mapping[str, Any]) -> str:
         "map": _map(map_) if map_ else "",
         "network": f"{layers} ({network['activation']}), {said['weights']:,} weights",
         "training": _training(said["training"]),
+        "ended": _ENDS.get(str(said["training"].get("end")), ""),
+        "search": _search(said["training"]),
         "versions": ", ".join(f"{name} {version}" for name, version in said["versions"].items()),
     }
     shown = {name: "".join(sign if sign.isprintable() else "\ufffd" for sign in text) for name, text in rows.items()}
@@ -69,3 +78,13 @@ def _training(record: Mapping[str, Any]) -> str:
         ("pass_rate", "pass rate {pass_rate:.2f} at the end"),
     )
     return ", ".join(text.format(**values) for key, text in wordings if isinstance(values.get(key), (int, float)))
+
+
+def _search(record: Mapping[str, Any]) -> str:
+    """What the search before the training found, as far as its record tells."""
+    search = record.get("search")
+    lengths = search.get("lengths") if isinstance(search, dict) else None
+    if not isinstance(lengths, list) or not all(type(each) is int for each in lengths):
+        return ""
+    ways = f"{len(lengths)} way{'s' * (len(lengths) != 1)} to meet the spec"
+    return f"{ways}, the shortest of {min(lengths)} steps" if lengths else "no way to meet the spec was found"

@@ -12,12 +12,23 @@ import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
+from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.summary import summary, summary_text
+from tltl_runtime.training.metrics import METRICS
+from tltl_runtime.training.run import POLICY, write_run
 from tltlc.record import replace
 
-TRAINING = {"seed": 3, "steps": 412_000, "seconds": 512.25, "window": {"episodes": 100, "pass_rate": 0.98}}
+TRAINING = {
+    "seed": 3,
+    "end": "met",
+    "steps": 412_000,
+    "seconds": 512.25,
+    "window": {"episodes": 100, "pass_rate": 0.98},
+    "search": {"steps": 6400, "lengths": [90, 80]},
+}
 
 
 @pytest.fixture(name="policy", scope="module")
@@ -41,6 +52,8 @@ def test_a_summary(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[n
     assert lines[3].startswith("  senses   s1, s2, exit, ")
     assert lines[4].startswith("  map      15 x 15 cells of ")
     assert "  training seed 3, 412,000 steps, 512 s, pass rate 0.98 at the end" in lines
+    assert "  ended    the spec was met" in lines
+    assert "  search   2 ways to meet the spec, the shortest of 80 steps" in lines
     assert tltlc("inspect", str(file.parent)).out.splitlines()[1:] == lines[1:]
 
 
@@ -63,6 +76,8 @@ def test_a_summary_as_json_with_a_file_that_is_no_policy(tltlc, file: Path, poli
         {"seed": "x", "seconds": [], "window": 3},
         {"window": {"pass_rate": None}},
         {"window": {"episodes": 0, "pass_rate": 0.0}},
+        {"end": ["met"], "search": {"lengths": ["x"]}},
+        {"search": None},
     ],
 )
 def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_path: Path, training: object) -> None:  # type: ignore[no-untyped-def] # noqa: F811
@@ -70,7 +85,28 @@ def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_p
     write_policy(path, Policy(replace(policy.card, training=training), policy.actor))
     found: Outcome = tltlc("inspect", str(path))
     assert (found.status, found.err) == (0, "")
-    assert "  training" not in found.out
+    assert not any(f"  {row} " in found.out for row in ("training", "ended", "search"))
+
+
+@pytest.mark.parametrize(
+    ("training", "said"),
+    [
+        ({"end": "minutes", "search": {"lengths": []}}, ["by the limit of minutes", "no way to meet the spec"]),
+        ({"end": "steps", "search": {"lengths": [7]}}, ["the limit of steps", "1 way to meet the spec, the shortest"]),
+    ],
+)
+def test_how_a_training_ended(policy: Policy, training: dict[str, object], said: list[str]) -> None:
+    text = summary_text(summary(Policy(replace(policy.card, training=training), policy.actor)))
+    assert all(each in text for each in said)
+
+
+def test_a_training_that_goes_on(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    write_run(run_in(tmp_path))
+    write_policy(tmp_path / POLICY, Policy(replace(policy.card, training={}), policy.actor))
+    line = {"iteration": 1, "steps": 4096, "episodes": 1}
+    (tmp_path / METRICS).write_text(json.dumps(line) + "\n")
+    found: Outcome = tltlc("inspect", str(tmp_path))
+    assert "  ended    not yet: after 4,096 steps, 1 episode ended" in found.out.splitlines()
 
 
 def test_a_stranger_s_file_does_not_command_the_terminal(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
