@@ -112,7 +112,7 @@ def command(
         files = EvaluationFiles(setup, path, first, folder, json_file)
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:
-            with closing(results(setup, tasks, workers)) as playing:
+            with closing(results(setup, tasks, workers, _waiting)) as playing:
                 for result in _counted(playing, len(tasks)):
                     files.add(result)
         finally:
@@ -166,6 +166,10 @@ def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
                 bar.update(bar.task_ids[0], completed=number, description=said)
             elif number * 10 // count > (number - 1) * 10 // count:
                 click.echo(f"{number / count:.0%} played; {said}", err=True)
+
+
+def _waiting(left: float) -> None:
+    click.echo(f"waiting for a free core of the Ray cluster, for {left:.0f} s at the most", err=True)
 
 
 def _bar(count: int) -> Any:
