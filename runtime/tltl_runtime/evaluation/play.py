@@ -7,8 +7,9 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.stealth.episodes.episode import End
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
 
 _OF_LEVEL, _OF_ACTIONS = 0, 1
@@ -43,6 +44,9 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
 
     ``env`` is a :class:`~tltl_runtime.wrapper.TltlEnv`, or wrappers around one, whose spec has a limit.  The episode
     depends on policy, environment and these three numbers alone; sampled or not, the environment's seed is the same.
+
+    Raises:
+        TltlError: TLT0854, the environment or the policy gives values that are no finite numbers.
     """
     generator = np.random.default_rng(_stream(seed, index, _OF_ACTIONS)) if sampled else None
     reset_seed = episode_seed(seed, index)
@@ -50,7 +54,13 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
     before, reward, steps, over = 0, 0.0, 0, False
     while not over:
         before = info["state"]
-        observation, gained, terminated, truncated, info = env.step(policy.choose(observation, generator))
+        try:
+            action = policy.choose(observation, generator)
+        except NoNumbersError as error:
+            where = f"episode {index} of seed {seed} (seed {reset_seed} of the level), step {steps + 1}"
+            help_ = "mend the environment where it gives them, else train the policy again"
+            raise TltlError([Diagnostic("TLT0854", f"{where}: {error}", help=help_)]) from None
+        observation, gained, terminated, truncated, info = env.step(action)
         reward, steps, over = reward + float(gained), steps + 1, terminated or truncated
     violated = info["verdict"] == "violated"
     fspa = env.get_wrapper_attr("task").fspa

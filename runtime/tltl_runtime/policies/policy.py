@@ -17,6 +17,10 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import model_config
 
 
+class NoNumbersError(ValueError):
+    """What goes into a network, or comes out of it, is not finite; the message says what."""
+
+
 class Policy:
     """An actor's weights with their card.
 
@@ -53,13 +57,24 @@ class Policy:
         """The action [branches]: sampled with ``generator``, without one the likeliest choice of each branch.
 
         Of equally likely choices the first is taken.
+
+        Raises:
+            NoNumbersError: the observation, or what the network makes of it, has values that are no finite numbers.
         """
         logits = self.logits(observation).astype(np.float64)
+        if not np.isfinite(logits).all():
+            raise NoNumbersError(_no_numbers(observation))
         if generator is not None:
             # Of logits with such noise the greatest is a sample of their softmax.
             logits += generator.gumbel(size=len(logits))
         ends = np.cumsum(self.card.branches)
         return np.array([logits[end - size : end].argmax() for size, end in zip(self.card.branches, ends, strict=True)])
+
+
+def _no_numbers(observation: Mapping[str, NDArray[Any]]) -> str:
+    parts = [key for key, each in observation.items() if not np.isfinite(each).all()]
+    what = f"`{parts[0]}` of the observation has values" if parts else "the policy's network gives values"
+    return f"{what} that are no finite numbers"
 
 
 def new_actor(card: Card) -> MLPModel:

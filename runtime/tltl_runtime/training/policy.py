@@ -13,10 +13,15 @@ from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.environment import TrainingEnv
 from tltl_runtime.training.run import Run
 from tltl_runtime.training.versions import versions
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def policy_of(run: Run, env: TrainingEnv, weights: Mapping[str, Tensor]) -> Policy:
-    """The actor of these ``weights`` with the card of what ``run`` trains for in ``env``; it has no record yet."""
+    """The actor of these ``weights`` with the card of what ``run`` trains for in ``env``; it has no record yet.
+
+    Raises:
+        TltlError: TLT0866, a weight is no finite number in half precision.
+    """
     level = load_level(run.level, run.variant)
     card = Card(
         level=level.name,
@@ -32,4 +37,9 @@ def policy_of(run: Run, env: TrainingEnv, weights: Mapping[str, Tensor]) -> Poli
         versions=versions(),
         training={},
     )
-    return Policy(card, actor_of(card, {name: each.cpu() for name, each in weights.items()}))
+    actor = actor_of(card, {name: each.cpu() for name, each in weights.items()})
+    try:
+        return Policy(card, actor)
+    except ValueError as error:
+        help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
+        raise TltlError([Diagnostic("TLT0866", str(error), help=help_)]) from None

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import gymnasium
 import numpy as np
 import pytest
 
@@ -9,6 +12,7 @@ from tests.runtime.evaluation.untrained import untrained
 from tltl_runtime.evaluation.play import Played, episode_seed, play
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.env import make_env
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.monitor import RewardOptions
 
 LATE = "import stealth\nspec late { limit 50 steps\n reach seen\n keep before(1 s) }"
@@ -74,3 +78,39 @@ def test_a_success_costs_its_steps() -> None:
     found = played(AT_ONCE)
     assert (found.success, found.end, found.progress, found.steps) == (True, "success", 1.0, 1)
     assert found.reward == pytest.approx(1.0 - 1 / 50)
+
+
+class Blinded(gymnasium.ObservationWrapper[Any, Any, Any]):
+    """Senses no number at all from the third decision on."""
+
+    def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
+        super().__init__(env)
+        self._left = 3
+
+    def observation(self, observation: dict[str, Any]) -> dict[str, Any]:
+        self._left -= 1
+        return observation if self._left > 0 else {**observation, "entities": observation["entities"] * np.nan}
+
+
+def refusal(policy: Policy, blinded: bool) -> tuple[str, str]:
+    env: gymnasium.Env[Any, Any] = make_env("cover_and_hide", "v0", policy.card.fspa, reward=RewardOptions())
+    with pytest.raises(TltlError) as found:
+        play(policy, Blinded(env) if blinded else env, 3, 5, sampled=False)
+    env.close()
+    (diagnostic,) = found.value.diagnostics
+    return diagnostic.code, diagnostic.title
+
+
+def test_an_observation_without_numbers(policy: Policy) -> None:
+    where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 3"
+    said = f"{where}: `entities` of the observation has values that are no finite numbers"
+    assert refusal(policy, blinded=True) == ("TLT0854", said)
+
+
+def test_a_network_whose_sums_overflow() -> None:
+    huge = untrained()
+    for weights in huge.actor.parameters():
+        weights.mul_(1e30)
+    where = f"episode 5 of seed 3 (seed {episode_seed(3, 5)} of the level), step 1"
+    said = f"{where}: the policy's network gives values that are no finite numbers"
+    assert refusal(huge, blinded=False) == ("TLT0854", said)

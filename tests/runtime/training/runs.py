@@ -70,6 +70,15 @@ class Diverging(Runner):
             yield iteration if iteration.number < 2 else replace(iteration, losses={"value": math.nan})
 
 
+class Growing(Runner):
+    """A runner one of whose weights grows larger than a policy's file can hold."""
+
+    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
+        for iteration in super().iterations(most):
+            next(self.alg.actor.parameters()).data.view(-1)[0] = 1e5
+            yield iteration
+
+
 class Weighing(Runner):
     """A runner that tells the weight of the bonus for undecided actions among the losses."""
 

@@ -328,6 +328,14 @@ def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) 
     assert _checkpoint(run).iteration == 1
 
 
+def test_a_policy_whose_weights_are_too_large_is_refused(folder: Path) -> None:
+    run = run_in(folder / "large", classes__runner="tests.runtime.training.runs:Growing")
+    with pytest.raises(TltlError) as caught:
+        list(train(run))
+    compare("TLT0866_weight", caught.value)
+    assert _checkpoint(run).iteration < 3
+
+
 def test_a_limit_of_minutes_ends_the_search_too(folder: Path) -> None:
     run = run_in(folder / "short", exploration__ways=10, exploration__steps=10**9, stop__minutes=0.005)
     (report,) = train(run)
