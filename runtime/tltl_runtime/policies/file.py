@@ -16,9 +16,9 @@ from torch import Tensor
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.policy import Policy, actor_of, blank_actor
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.refusals import Refusals
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
 from tltlc.pipeline import read_artefact
 from tltlc.source import SourceFile
@@ -34,7 +34,7 @@ _PREFIX: Final = "actor."
 _KEY: Final = "card"
 """The one text beside the weights: with several, equal policies would give files that differ in their order."""
 
-_AGAIN: Final = "get a whole copy of the file, or train the policy again"
+_REFUSALS: Final = Refusals("a policy", "TLT0840", "TLT0841", "TLT0842", again="train the policy again")
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 
 
@@ -77,7 +77,7 @@ def card_json(card: Card) -> dict[str, Any]:
 def from_bytes(data: bytes, name: str) -> Policy:
     """The policy in the bytes of a file, which messages call ``name``; errors as of :func:`read_policy`."""
     if len(data) > MAX_BYTES:
-        raise _unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
+        raise _REFUSALS.unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
     header = _header(data, name)
     card = _card(header, name)
     _check_tensors(header, card, name)
@@ -95,7 +95,7 @@ def _header(data: bytes, name: str) -> dict[str, Any]:
     except (ValueError, RecursionError):
         header = None
     if not isinstance(header, dict):
-        raise _unreadable(name, "it is no whole safetensors file")
+        raise _REFUSALS.unreadable(name, "it is no whole safetensors file")
     return header
 
 
@@ -105,21 +105,17 @@ def _card(header: dict[str, Any], name: str) -> Card:
     except (KeyError, TypeError):
         document = None
     except (ValueError, RecursionError):
-        raise _broken(name, "its card is not JSON") from None
+        raise _REFUSALS.broken(name, "its card is not JSON") from None
     if not isinstance(document, dict) or document.pop("format", None) != FORMAT:
-        raise _unreadable(name, "it holds the weights of something else")
-    version = document.pop("version", None)
-    if type(version) is not int or version != VERSION:
-        help_ = "use a newer tltlc" if type(version) is int and version > VERSION else "train the policy again"
-        title = f"`{name}` has version {version!r:.20}, and only version {VERSION} can be read"
-        raise TltlError([Diagnostic("TLT0841", title, help=help_)])
+        raise _REFUSALS.unreadable(name, "it holds the weights of something else")
+    _REFUSALS.check_version(name, document.pop("version", None), VERSION)
     try:
         fspa = _fspa(document.pop("artefact", None), name)
         card = from_json(Card, document, "card", fspa=fspa)
     except (RecordJsonError, RecursionError) as error:
-        raise _broken(name, str(error)) from None
+        raise _REFUSALS.broken(name, str(error)) from None
     if wrong := _fault(card):
-        raise _broken(name, wrong)
+        raise _REFUSALS.broken(name, wrong)
     return card
 
 
@@ -155,33 +151,25 @@ def _check_tensors(header: dict[str, Any], card: Card, name: str) -> None:
     try:
         wanted = {f"{_PREFIX}{key}": list(each.shape) for key, each in blank_actor(card).state_dict().items()}
     except (ValueError, RuntimeError, OverflowError) as error:
-        raise _broken(name, f"its card describes no network: {error!s:.80}") from None
+        raise _REFUSALS.broken(name, f"its card describes no network: {error!s:.80}") from None
     there = {key: each for key, each in header.items() if key != "__metadata__"}
     for key in sorted(wanted.keys() | there.keys()):
         if key not in there:
-            raise _broken(name, f"the tensor `{key}` is missing")
+            raise _REFUSALS.broken(name, f"the tensor `{key}` is missing")
         if key not in wanted:
-            raise _broken(name, f"there is a tensor `{key:.60}`, which its network has no use for")
+            raise _REFUSALS.broken(name, f"there is a tensor `{key:.60}`, which its network has no use for")
         found = there[key] if isinstance(there[key], dict) else {}
         if found.get("dtype") != "F16" or found.get("shape") != wanted[key]:
             is_ = f"{found.get('dtype')!s:.20} of shape {found.get('shape')!s:.40}"
-            raise _broken(name, f"the tensor `{key}` is {is_}, not F16 of shape {wanted[key]}")
+            raise _REFUSALS.broken(name, f"the tensor `{key}` is {is_}, not F16 of shape {wanted[key]}")
 
 
 def _weights(data: bytes, name: str) -> dict[str, Tensor]:
     try:
         found = load(data)
     except (SafetensorError, ValueError):
-        raise _unreadable(name, "its weights are cut off or damaged") from None
+        raise _REFUSALS.unreadable(name, "its weights are cut off or damaged") from None
     for key, each in found.items():
         if not bool(each.isfinite().all()):
-            raise _broken(name, f"the tensor `{key}` has values that are no finite numbers")
+            raise _REFUSALS.broken(name, f"the tensor `{key}` has values that are no finite numbers")
     return {key.removeprefix(_PREFIX): each for key, each in found.items()}
-
-
-def _unreadable(name: str, why: str) -> TltlError:
-    return TltlError([Diagnostic("TLT0840", f"`{name}` cannot be read as a policy: {why}", help=_AGAIN)])
-
-
-def _broken(name: str, why: str) -> TltlError:
-    return TltlError([Diagnostic("TLT0842", f"`{name}` is a broken policy: {why}", help=_AGAIN)])

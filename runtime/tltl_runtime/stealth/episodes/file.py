@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.refusals import Refusals
 from tltl_runtime.stealth.episodes.arrays import ARRAYS, Array, Arrays, shape_of, sizes, snapshots, to_arrays
 from tltl_runtime.stealth.episodes.episode import End, Episode
 from tltl_runtime.stealth.episodes.numpy_archive import ArchiveError, read_array, read_members
@@ -21,7 +22,6 @@ from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.snapshot import BRANCHES
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
 from tltlc.monitor import RewardOptions
 from tltlc.pipeline import read_artefact
@@ -38,7 +38,7 @@ MAX_BYTES: Final = 1 << 28
 _TEXTS: Final = ("meta", "artefact")
 """The arrays that hold the bytes of a text, UTF-8."""
 
-_AGAIN: Final = "record the episode again, or get a whole copy of the file"
+_REFUSALS: Final = Refusals("an episode", "TLT0820", "TLT0821", "TLT0822", again="record the episode again")
 
 
 @record
@@ -185,13 +185,13 @@ def _names(level: Level, fspa: Fspa) -> Names:
 def _members(data: bytes, name: str) -> dict[str, bytes]:
     """The files of the archive that an episode has, by the names of their arrays."""
     if len(data) > MAX_BYTES:
-        raise _unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
+        raise _REFUSALS.unreadable(name, f"it is larger than {MAX_BYTES >> 20} MiB")
     try:
         members = read_members(data, [*_TEXTS, *(array.name for array in ARRAYS)], MAX_BYTES)
     except ArchiveError as error:
-        raise _unreadable(name, str(error)) from None
+        raise _REFUSALS.unreadable(name, str(error)) from None
     if "meta" not in members:
-        raise _unreadable(name, "it is an archive of something else")
+        raise _REFUSALS.unreadable(name, "it is an archive of something else")
     return members
 
 
@@ -199,31 +199,27 @@ def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
     try:
         document = json.loads(_text(members, "meta", name))
     except (ValueError, RecursionError):
-        raise _broken(name, "`meta` is not JSON") from None
+        raise _REFUSALS.broken(name, "`meta` is not JSON") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise _unreadable(name, "it is an archive of something else")
-    version = document.get("version")
-    if type(version) is not int or version != VERSION:
-        help_ = "use a newer tltlc" if type(version) is int and version > VERSION else "record the episode again"
-        title = f"`{name}` has version {version!r:.20}, and only version {VERSION} can be read"
-        raise TltlError([Diagnostic("TLT0821", title, help=help_)])
+        raise _REFUSALS.unreadable(name, "it is an archive of something else")
+    _REFUSALS.check_version(name, document.get("version"), VERSION)
     try:
         meta = from_json(Meta, document, "meta")
     except (RecordJsonError, RecursionError) as error:
-        raise _broken(name, str(error)) from None
+        raise _REFUSALS.broken(name, str(error)) from None
     if wrong := fault(meta.level):
-        raise _broken(name, f"its level is unfit: {wrong}")
+        raise _REFUSALS.broken(name, f"its level is unfit: {wrong}")
     return meta
 
 
 def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
     data = _array(members, array, name)
     if data.dtype != np.uint8 or data.ndim != 1:
-        raise _broken(name, f"the array `{array}` holds no bytes")
+        raise _REFUSALS.broken(name, f"the array `{array}` holds no bytes")
     try:
         return data.tobytes().decode()
     except UnicodeDecodeError:
-        raise _broken(name, f"the array `{array}` is no UTF-8 text") from None
+        raise _REFUSALS.broken(name, f"the array `{array}` is no UTF-8 text") from None
 
 
 def _read_arrays(members: Mapping[str, bytes], level: Level, fspa: Fspa, name: str) -> dict[str, NDArray[Any]]:
@@ -239,24 +235,26 @@ def _read_arrays(members: Mapping[str, bytes], level: Level, fspa: Fspa, name: s
 def _array(members: Mapping[str, bytes], array: str, name: str) -> NDArray[Any]:
     """An array of whatever shape."""
     if array not in members:
-        raise _broken(name, f"the array `{array}` is missing")
+        raise _REFUSALS.broken(name, f"the array `{array}` is missing")
     try:
         return read_array(members[array])
     except ArchiveError as error:
-        raise _broken(name, f"the array `{array}`: {error}") from None
+        raise _REFUSALS.broken(name, f"the array `{array}`: {error}") from None
 
 
 def _check(found: NDArray[Any], array: Array, shape: tuple[int, ...], name: str) -> None:
     if found.dtype != np.dtype(array.dtype) or found.shape != shape:
         expected = f"{array.dtype} of shape {shape}"
-        raise _broken(name, f"the array `{array.name}` is {found.dtype.str} of shape {found.shape}, not {expected}")
+        raise _REFUSALS.broken(
+            name, f"the array `{array.name}` is {found.dtype.str} of shape {found.shape}, not {expected}"
+        )
     if found.dtype == np.bool_:
         good = bool((found.view(np.uint8) <= 1).all())
     else:
         # What is no number is in no range.
         good = bool(((found >= array.low) & (found <= array.high) & np.isfinite(found)).all())
     if not good:
-        raise _broken(name, f"the array `{array.name}` has values that it cannot have")
+        raise _REFUSALS.broken(name, f"the array `{array.name}` has values that it cannot have")
 
 
 def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
@@ -268,16 +266,8 @@ def _check_indices(arrays: Arrays, meta: Meta, fspa: Fspa, name: str) -> None:
     ]
     for array, limit in limits:
         if bool((arrays[array] >= limit).any()):
-            raise _broken(name, f"the array `{array}` has values that it cannot have")
+            raise _REFUSALS.broken(name, f"the array `{array}` has values that it cannot have")
     if meta.names != _names(meta.level, fspa):
-        raise _broken(name, "`meta.names` are not those of the level and of the spec")
+        raise _REFUSALS.broken(name, "`meta.names` are not those of the level and of the spec")
     if meta.seed < 0:
-        raise _broken(name, "`meta.seed` is below 0")
-
-
-def _unreadable(name: str, why: str) -> TltlError:
-    return TltlError([Diagnostic("TLT0820", f"`{name}` cannot be read as an episode: {why}", help=_AGAIN)])
-
-
-def _broken(name: str, why: str) -> TltlError:
-    return TltlError([Diagnostic("TLT0822", f"`{name}` is a broken episode: {why}", help=_AGAIN)])
+        raise _REFUSALS.broken(name, "`meta.seed` is below 0")
