@@ -6,7 +6,7 @@ actions again.  The agent's own decisions follow.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import gymnasium
@@ -38,11 +38,16 @@ class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
     """An environment whose episodes begin with ``begin``: a seed, and actions that are played at once.
 
     It stays what it is until it is set again, to anything but None; before, they begin as the environment's own do.
+    Of what ``make`` gives there are two: while one is played, the other one is brought to where the next episode
+    begins, by :meth:`prepare`.
     """
 
-    def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
-        super().__init__(env)
+    def __init__(self, make: Callable[[], gymnasium.Env[Any, Any]]) -> None:
+        super().__init__(make())
+        self._other = make()
         self._begin: tuple[int, NDArray[np.int8]] | None = None
+        self._bringing: Iterator[None] | None = None
+        self._brought: tuple[Any, dict[str, Any]] = {}, {}
 
     @property
     def begin(self) -> tuple[int, NDArray[np.int8]] | None:
@@ -52,17 +57,37 @@ class Replayed(gymnasium.Wrapper[Any, Any, Any, Any]):
     @begin.setter
     def begin(self, begin: tuple[int, NDArray[np.int8]] | None) -> None:
         # A vector environment sets all of its environments at once, and few of them begin anew.
-        self._begin = begin or self._begin
+        if begin is not None:
+            self._begin = begin
+            self._bringing = self._bring(*begin)
+
+    def prepare(self) -> bool:
+        """Play a decision of what comes before the next episode's beginning; whether there was one to play."""
+        return self._bringing is not None and next(self._bringing, self) is None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begin an episode, and play what is to be played again; that does not end it."""
         if self._begin is None:
             return self.env.reset(seed=seed, options=options)
-        own, actions = self._begin
-        observation, info = self.env.reset(seed=own, options=options)
+        self._bringing = self._bringing or self._bring(*self._begin)
+        while self.prepare():
+            pass
+        self._bringing = None
+        self.env, self._other = self._other, self.env
+        return self._brought
+
+    def close(self) -> None:
+        """Close both environments."""
+        super().close()
+        self._other.close()
+
+    def _bring(self, seed: int, actions: NDArray[np.int8]) -> Iterator[None]:
+        """Bring the other environment to where ``actions`` lead."""
+        observation, info = self._other.reset(seed=seed)
         for action in actions:
-            observation, _, _, _, info = self.env.step(action)
-        return observation, info
+            yield
+            observation, _, _, _, info = self._other.step(action)
+        self._brought = observation, info
 
 
 class Episodes:

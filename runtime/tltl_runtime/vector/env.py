@@ -61,6 +61,9 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     the report goes to this module's logger, and its environments begin episodes of new seeds: their step is
     ``truncated``, of reward 0, its ``final_obs`` the last observation, and ``infos["lost"]`` is True there.
 
+    Where an environment has a method ``prepare``, its worker calls it while it is asked for nothing else, as long as
+    that returns True: so it does a little of what can be done before the next reset.
+
     Functions that are not importable, such as lambdas, are pickled by value.  A process starts by importing the main
     module, so a script's own work stands under ``if __name__ == "__main__"``.
 

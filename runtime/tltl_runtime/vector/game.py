@@ -30,14 +30,14 @@ def make_vec(
     reward: RewardOptions | None = None,
     params: Mapping[str, float] | None = None,
     render_mode: str | None = None,
-    wrapper: Callable[[TltlEnv], gymnasium.Env[Any, Any]] | None = None,
+    wrapper: Callable[[Callable[[], TltlEnv]], gymnasium.Env[Any, Any]] | None = None,
     **options: Any,
 ) -> WorkerVectorEnv:
     """``num_envs`` of what :func:`~tltl_runtime.stealth.env.make_env` makes, stepped by ``workers``.
 
-    Each is put into a ``wrapper``, where one is given, which must be importable.  ``options`` and errors are those of
-    :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``.  Raises ValueError for the render mode ``human``
-    of several environments, each of which would open a window.
+    Where a ``wrapper`` is given, each is what it makes of the function that makes one; it must be importable.
+    ``options`` and errors are those of :class:`~tltl_runtime.vector.WorkerVectorEnv` and of ``make_env``.  Raises
+    ValueError for the render mode ``human`` of several environments, each of which would open a window.
     """
     if render_mode == "human" and num_envs > 1:
         raise ValueError("render_mode 'human' shows one environment: with several, give 'rgb_array' and call render()")
@@ -49,9 +49,5 @@ def make_vec(
     make = partial(
         make_env, level, variant, fspa, sensors=sensors, reward=reward, params=params, render_mode=render_mode
     )
-    function = make if wrapper is None else partial(_wrapped, wrapper, make)
+    function = make if wrapper is None else partial(wrapper, make)
     return WorkerVectorEnv([function] * num_envs, workers, names=[f"{level} {variant}"] * num_envs, **options)
-
-
-def _wrapped(wrapper: Callable[[TltlEnv], gymnasium.Env[Any, Any]], make: Callable[[], TltlEnv]) -> Any:
-    return wrapper(make())

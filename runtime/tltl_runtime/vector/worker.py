@@ -34,6 +34,8 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
         share = Share(functions.fn, rows, first, autoreset)
         connection.send((DONE, None))
         while True:
+            while not connection.poll() and share.prepare():
+                pass
             command, arguments = connection.recv()
             if command == CLOSE:
                 share.close()
@@ -54,6 +56,7 @@ class Share:
         self._first = first
         self._same_step = autoreset == AutoresetMode.SAME_STEP
         self._envs = [make() for make in functions]
+        self._preparing = [env.prepare for env in self._envs if hasattr(env, "prepare")]
         self._over = [False] * len(self._envs)
         for row, env in enumerate(self._envs, first):
             for name, space in rows.spaces.items():
@@ -100,6 +103,10 @@ class Share:
                     said.append((row, info))
             self._tell(index, observation, float(reward), terminated, truncated, info)
         return said
+
+    def prepare(self) -> bool:
+        """Do a little of what environments can do ahead of time, those that have a ``prepare``; whether one did."""
+        return any(prepare() for prepare in self._preparing)
 
     def call(self, name: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
         """An attribute of each environment, or what its call gives."""

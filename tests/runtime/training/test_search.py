@@ -7,6 +7,7 @@ import signal
 import sys
 from collections import Counter
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 import pytest
@@ -95,6 +96,28 @@ def test_episodes_begin_where_others_were(env: WorkerVectorEnv) -> None:
         episodes.step(np.zeros((4, 5), dtype=np.int64))
     assert [episodes.is_spent(row) for row in range(4)] == [True, False, False, True]
     alone.close()
+
+
+@pytest.mark.parametrize("prepared", [0, 1, 10, 1000])
+def test_an_episode_that_was_prepared_meanwhile_is_the_same(prepared: int) -> None:
+    actions = np.array([[2, 1, 0, 0, 0]] * 20, dtype=np.int8)
+    env = Replayed(partial(make_env, "navigation", "v0", NEAR))
+    env.begin = 4, actions
+    # What was prepared for a beginning that is another now counts for nothing.
+    assert all(env.prepare() for _ in range(5))
+    env.begin = 5, actions
+    assert sum(env.prepare() for _ in range(prepared)) == min(prepared, len(actions))
+    first, info = env.reset()
+    env.begin = 5, actions[:3]
+    for _ in range(3):
+        env.step(actions[0])
+        env.prepare()
+    env.reset()
+    for action in actions[3:]:
+        last, _, _, _, later = env.step(action)
+    env.close()
+    assert info == later
+    assert all(np.array_equal(first[key], last[key]) for key in first)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process as other systems do")

@@ -56,6 +56,16 @@ class Fragile(gymnasium.Env[Any, Any]):
         return {"count": self.count, "pair": (numbers, np.array([1, 0, self.count % 2], dtype=np.int8))}
 
 
+class Preparing(Fragile):
+    """Has something to do ahead of time."""
+
+    left = 3
+
+    def prepare(self) -> bool:
+        self.left -= self.left > 0
+        return self.left > 0
+
+
 class Unmade(gymnasium.Env[Any, Any]):
     """Is made in the first process and in no other."""
 
