@@ -15,7 +15,7 @@ import click
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
-from tltl_runtime.commands.workers import Workers
+from tltl_runtime.commands.workers import WorkersType
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.spec_file import split
@@ -54,7 +54,7 @@ Examples:
 @click.option(
     "--workers",
     metavar="N|ray",
-    type=Workers(),
+    type=WorkersType(),
     default=1,
     show_default=True,
     help="Processes that play (0: one a core), or those of a Ray cluster.",

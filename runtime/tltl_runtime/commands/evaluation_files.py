@@ -7,17 +7,17 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
 
+from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.player import Result, Setup
-from tltl_runtime.evaluation.summary import Summary, summary
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.episodes.file import SUFFIX, from_bytes, new_path
+from tltl_runtime.stealth.episodes.trajectory import Trajectory
 from tltl_runtime.stealth.episodes.versions import versions
-from tltl_runtime.stealth.episodes.way import Way
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.pictures.plan import draw_episode
-from tltl_runtime.stealth.pictures.ways import draw_ways
+from tltl_runtime.stealth.pictures.trajectories import draw_trajectories
 from tltl_runtime.stealth.recording import writable_folder
 from tltlc.writing import write_file, write_files
 
@@ -40,7 +40,7 @@ class EvaluationFiles:
         self._json = None if str(json_file) == "-" else json_file
         self._level = load_level(setup.level, setup.variant)
         self._played: dict[bool, list[Played]] = {True: [], False: []}
-        self._ways: dict[bool, list[Way]] = {True: [], False: []}
+        self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         for place in (folder, self._json and self._json.parent):
             if place is not None:
                 writable_folder(place)
@@ -54,8 +54,8 @@ class EvaluationFiles:
         """Take the next result, and write its recording where there is one."""
         sampled = result.task.sampled
         self._played[sampled].append(result.played)
-        if result.way is not None:
-            self._ways[sampled].append(result.way)
+        if result.trajectory is not None:
+            self._trajectories[sampled].append(result.trajectory)
         if result.recording and self._folder is not None:
             stem = f"{self._name}-{self._setup.seed}-{result.task.index}-{CHOICES[sampled]}"
             path = new_path(self._folder, stem, result.recording)
@@ -67,7 +67,7 @@ class EvaluationFiles:
         """The report for people."""
         setup = self._setup
         head = f"{self._level.name} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
-        text = f"{head}\n\n{report_text({CHOICES[sampled]: each for sampled, each in self._summaries().items()})}"
+        text = f"{head}\n\n{report_text({CHOICES[sampled]: each for sampled, each in self._figures().items()})}"
         failed = [each.index for episodes in self._played.values() for each in episodes if not each.success]
         if failed and self._folder is None:
             again = f"--seed {setup.seed} --first {failed[0]} --episodes 1 --out DIR"
@@ -79,7 +79,7 @@ class EvaluationFiles:
 
         It does not depend on who played.  ``complete`` says whether all episodes were played.
         """
-        setup, figures = self._setup, self._summaries()
+        setup, figures = self._setup, self._figures()
         card = setup.policy.card
         return {
             "level": self._level.name,
@@ -107,15 +107,17 @@ class EvaluationFiles:
         if self._folder is None:
             return
         pictures: dict[str, str | bytes] = {}
-        for sampled, ways in self._ways.items():
-            if ways:
-                title = f"{self._level.name} {self._level.variant}: {len(ways)} episodes, {CHOICES[sampled]}"
-                pictures[f"ways-{CHOICES[sampled]}.png"] = draw_ways(self._level, self._setup.fspa, ways, title)
+        for sampled, trajectories in self._trajectories.items():
+            if trajectories:
+                title = f"{self._level.name} {self._level.variant}: {len(trajectories)} episodes, {CHOICES[sampled]}"
+                pictures[f"ways-{CHOICES[sampled]}.png"] = draw_trajectories(
+                    self._level, self._setup.fspa, trajectories, title
+                )
         write_files(self._folder, {"evaluation.json": text, **pictures})
 
     @property
     def _name(self) -> str:
         return f"{self._level.name}-{self._level.variant}"
 
-    def _summaries(self) -> dict[bool, Summary]:
-        return {sampled: summary(played) for sampled, played in self._played.items() if played}
+    def _figures(self) -> dict[bool, Figures]:
+        return {sampled: figures_of(played) for sampled, played in self._played.items() if played}

@@ -14,7 +14,7 @@ import click
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.senses import senses_options
-from tltl_runtime.commands.workers import Workers
+from tltl_runtime.commands.workers import WorkersType
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -90,7 +90,7 @@ Watching, from another terminal:
 @click.option(
     "--workers",
     metavar="N|ray",
-    type=Workers(),
+    type=WorkersType(),
     help="Processes that play (0: one a core), or those of a Ray cluster.",
 )
 @click.option("--device", metavar="cpu|cuda|cuda:N", callback=_device, help="Where the network learns.")

@@ -15,7 +15,7 @@ else:
 _MOST: Final = 10_000
 
 
-class Workers(_Type):
+class WorkersType(_Type):
     """How many processes play, 0 for as many as there are cores, or ``ray``."""
 
     name = "workers"

@@ -22,7 +22,7 @@ from tltl_runtime.vector.env import cores
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
-Workers = int | Literal["ray"]
+Pool = int | Literal["ray"]
 """This process (1), so many others (0: one for each core), or those of a Ray cluster."""
 
 
@@ -33,7 +33,7 @@ def evaluate(
     *,
     episodes: int,
     seed: int,
-    workers: Workers = 1,
+    workers: Pool = 1,
     sampled: bool = True,
     spec: str | Path | Fspa | None = None,
 ) -> Iterator[Played]:
@@ -88,7 +88,7 @@ def check_limit(fspa: Fspa) -> None:
 def results(
     setup: Setup,
     tasks: Sequence[Task],
-    workers: Workers = 1,
+    workers: Pool = 1,
     waiting: Callable[[float], None] = lambda left: None,
 ) -> Generator[Result]:
     """Play the tasks and give their results in order; closing the iterator ends the workers.
@@ -104,9 +104,7 @@ def results(
         yield from spread(_team(setup, workers, len(tasks), stack, waiting), tasks, setup.seed)
 
 
-def _team(
-    setup: Setup, workers: Workers, most: int, stack: ExitStack, waiting: Callable[[float], None]
-) -> list[Worker]:
+def _team(setup: Setup, workers: Pool, most: int, stack: ExitStack, waiting: Callable[[float], None]) -> list[Worker]:
     """Up to ``most`` workers, which ``stack`` closes."""
     if workers == "ray":
         from tltl_runtime.evaluation.ray_pool import ray_workers

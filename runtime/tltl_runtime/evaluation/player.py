@@ -12,7 +12,7 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import one_thread
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.file import to_bytes
-from tltl_runtime.stealth.episodes.way import Way, way
+from tltl_runtime.stealth.episodes.trajectory import Trajectory, trajectory
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
@@ -26,7 +26,7 @@ class Setup:
     """What an evaluation plays: ``policy`` on a level with a spec, rewarded as every reported figure is.
 
     ``level`` is what :func:`~tltl_runtime.stealth.levels.file.load_level` takes.  ``params`` are in SI units.
-    ``recorded`` says of which episodes recordings are wanted; unless it is None, the ways of all are kept.
+    ``recorded`` says of which episodes recordings are wanted; unless it is None, the trajectories of all are kept.
     """
 
     policy: Policy
@@ -48,11 +48,11 @@ class Task:
 
 @record
 class Result:
-    """An episode that was played; its way and the bytes of its recording where these are wanted."""
+    """An episode that was played; its trajectory and the bytes of its recording where these are wanted."""
 
     task: Task
     played: Played
-    way: Way | None = None
+    trajectory: Trajectory | None = None
     recording: bytes = b""
 
 
@@ -83,7 +83,7 @@ class Player:
             return Result(task, played)
         episode = self._recorder.episode
         kept = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
-        return Result(task, played, way(episode), to_bytes(episode) if kept else b"")
+        return Result(task, played, trajectory(episode), to_bytes(episode) if kept else b"")
 
     def close(self) -> None:
         """Free the game."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from tltl_runtime.evaluation.figures import Ended, Figures
 from tltl_runtime.evaluation.statistics import Spread
-from tltl_runtime.evaluation.summary import Ended, Summary
 from tltl_runtime.stealth.episodes.episode import End
 
 _WIDTH: Final = 24
@@ -18,18 +18,18 @@ _MOST_LISTED: Final = 12
 _ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of time"}
 
 
-def report_text(summaries: Mapping[str, Summary]) -> str:
+def report_text(figures: Mapping[str, Figures]) -> str:
     """A table with a column for each way to choose actions, then where failed episodes ended."""
-    every = summaries.values()
+    every = figures.values()
     lines = [
-        _row("", summaries),
+        _row("", figures),
         _row("episodes", [str(len(each.episodes)) for each in every]),
         _row("pass rate (95 %)", [_rate(each) for each in every]),
         _row("progress", [_spread(each.progress, 2) for each in every]),
         _row("reward", [_spread(each.reward, 2) for each in every]),
         _row("steps", [_spread(each.steps, 0) for each in every]),
     ]
-    for name, each in summaries.items():
+    for name, each in figures.items():
         failed = sum(ended.count for ended in each.ended)
         if failed:
             lines += ["", f"{name}: {failed} of {len(each.episodes)} failed"]
@@ -37,11 +37,11 @@ def report_text(summaries: Mapping[str, Summary]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _row(name: str, cells: Mapping[str, Summary] | list[str]) -> str:
+def _row(name: str, cells: Mapping[str, Figures] | list[str]) -> str:
     return f"{name:<18}{''.join(f'{cell:<{_WIDTH}}' for cell in cells)}".rstrip()
 
 
-def _rate(each: Summary) -> str:
+def _rate(each: Figures) -> str:
     low, high = each.pass_interval
     return f"{each.pass_rate:.2f} ({low:.2f} to {high:.2f})"
 

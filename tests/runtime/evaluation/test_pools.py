@@ -17,7 +17,7 @@ import pytest
 
 from tests.runtime.evaluation.untrained import untrained
 from tltl_runtime.evaluation import ray_pool
-from tltl_runtime.evaluation.evaluate import Workers, evaluate, results, set_up
+from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, set_up
 from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import Played, episode_seed
 from tltl_runtime.evaluation.player import Setup, Task
@@ -57,7 +57,7 @@ def ray_here() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("workers", POOLS)
-def test_the_same_on_every_pool(policy: Policy, expected: list[Played], workers: Workers) -> None:
+def test_the_same_on_every_pool(policy: Policy, expected: list[Played], workers: Pool) -> None:
     assert list(evaluate(policy, episodes=EPISODES, seed=3, workers=workers)) == expected
 
 
@@ -71,8 +71,8 @@ def test_recordings_where_they_are_wanted(policy: Policy, expected: list[Played]
     for recorded, there in (("all", True), ("failures", True), ("none", False)):
         for result in results(set_up(policy, None, None, None, 3, recorded), tasks):  # type: ignore[arg-type]
             assert result.played == expected[result.task.index]
-            assert result.way is not None
-            assert result.way.points.shape == (21, 2)
+            assert result.trajectory is not None
+            assert result.trajectory.points.shape == (21, 2)
             assert bool(result.recording) is there
             if there:
                 episode = from_bytes(result.recording, "it")
@@ -98,7 +98,7 @@ def out_of_the_level() -> None:
 
 
 @pytest.mark.parametrize("workers", POOLS)
-def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Workers) -> None:
+def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) -> None:
     setup = Setup(Deadly(policy, killed), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
     with pytest.raises(TltlError) as found, closing(results(setup, [Task(6)], workers)) as each:
         next(each)
@@ -109,7 +109,7 @@ def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Worker
 
 
 @pytest.mark.parametrize("workers", [1, pytest.param("ray", marks=needs_ray)])
-def test_what_the_game_raises_comes_as_it_is(policy: Policy, workers: Workers) -> None:
+def test_what_the_game_raises_comes_as_it_is(policy: Policy, workers: Pool) -> None:
     setup = Setup(Deadly(policy, out_of_the_level), "cover_and_hide", "v0", policy.card.fspa, 3, policy.card.params)  # type: ignore[arg-type]
     with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as found:
         list(results(setup, [Task(0)], workers))
@@ -117,7 +117,7 @@ def test_what_the_game_raises_comes_as_it_is(policy: Policy, workers: Workers) -
 
 
 @pytest.mark.parametrize("workers", [1, *POOLS])
-def test_what_keeps_a_worker_from_beginning_comes_as_it_is(policy: Policy, workers: Workers) -> None:
+def test_what_keeps_a_worker_from_beginning_comes_as_it_is(policy: Policy, workers: Pool) -> None:
     setup = Setup(policy, "nowhere", "v0", policy.card.fspa, 3, policy.card.params)
     with pytest.raises(TltlError, match="there is no level `nowhere`"):
         list(results(setup, [Task(0)], workers))

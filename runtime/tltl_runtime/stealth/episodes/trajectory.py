@@ -1,4 +1,4 @@
-"""The way of an episode: little enough to keep hundreds of them."""
+"""The trajectory of an episode: little enough to keep hundreds of them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.record import record
 
 
 @record
-class Way:
+class Trajectory:
     """Where the player went: ``points`` (n + 1, 2) in metres, ``states`` (n + 1,) of the automaton, how it ended."""
 
     points: NDArray[np.float32]
@@ -18,7 +18,7 @@ class Way:
     end: End
 
 
-def way(episode: Episode) -> Way:
-    """The way of an episode."""
+def trajectory(episode: Episode) -> Trajectory:
+    """The trajectory of an episode."""
     points = np.array([shot.player.position[:2] for shot in episode.snapshots], dtype=np.float32)
-    return Way(points, episode.states, episode.end)
+    return Trajectory(points, episode.states, episode.end)

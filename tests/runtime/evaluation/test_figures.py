@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tltl_runtime.evaluation.figures import Ended, figures_of
 from tltl_runtime.evaluation.play import Played
-from tltl_runtime.evaluation.summary import Ended, summary
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.stealth.episodes.episode import End
 from tltlc.record import replace
@@ -30,7 +30,7 @@ EPISODES = [
 
 
 def test_figures() -> None:
-    found = summary(EPISODES)
+    found = figures_of(EPISODES)
     assert found.pass_rate == pytest.approx(0.6)
     assert found.pass_interval == pytest.approx((0.3127, 0.8318), abs=1e-4)
     assert found.progress.mean == pytest.approx(0.725)
@@ -47,11 +47,11 @@ def test_figures() -> None:
 
 def test_of_nothing() -> None:
     with pytest.raises(ValueError, match="0 of 0 is no share"):
-        summary([])
+        figures_of([])
 
 
 def test_text() -> None:
-    found = report_text({"sampled": summary(EPISODES), "arg-max": summary([PASSED])})
+    found = report_text({"sampled": figures_of(EPISODES), "arg-max": figures_of([PASSED])})
     assert (
         found
         == """\
@@ -74,5 +74,5 @@ sampled: 4 of 10 failed
 
 
 def test_many_that_ended_alike_are_cut() -> None:
-    found = report_text({"sampled": summary([failed(index, 0, "limit", 0.1) for index in range(20)])})
+    found = report_text({"sampled": figures_of([failed(index, 0, "limit", 0.1) for index in range(20)])})
     assert "    episodes 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, …\n" in found

@@ -1,4 +1,4 @@
-"""The ways of many episodes over the plan of their level: what a designer looks at first."""
+"""The trajectories of many episodes over the plan of their level: what a designer looks at first."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from tltl_runtime.stealth.episodes.way import Way
+from tltl_runtime.stealth.episodes.trajectory import Trajectory
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.pictures.plan import (
     DPI,
@@ -27,27 +27,27 @@ from tltl_runtime.stealth.pictures.plan import (
 from tltlc.automaton.fspa import Fspa
 
 _FAINTEST: Final = 0.12
-"""Opacity of a way among very many."""
+"""Opacity of one among very many."""
 
 
-def draw_ways(level: Level, fspa: Fspa, ways: Sequence[Way], title: str) -> bytes:
-    """The ways as a PNG, coloured by the automaton's state; where an episode failed, there is a mark.
+def draw_trajectories(level: Level, fspa: Fspa, trajectories: Sequence[Trajectory], title: str) -> bytes:
+    """The trajectories as a PNG, coloured by the automaton's state; where an episode failed, there is a mark.
 
     The legend says what remained to be satisfied in each state, and how many episodes ended how.
     """
-    visited = sorted({int(state) for each in ways for state in each.states[:-1]})[:MOST_LISTED]
-    ends = Counter(each.end for each in ways)
+    visited = sorted({int(state) for each in trajectories for state in each.states[:-1]})[:MOST_LISTED]
+    ends = Counter(each.end for each in trajectories)
     width, height = natural_size(level)
     inches = (width, height + (len(visited) + len(ends) + 1) * LINE)
     figure = Figure(figsize=inches, dpi=DPI, layout="constrained")
     axes = level_axes(figure, level)
     axes.set_title(title, fontsize=min(12.0, inches[0] * 72 / (0.65 * len(title))))
-    opacity = max(_FAINTEST, min(0.9, 4.0 / max(1, len(ways))))
-    for each in ways:
+    opacity = max(_FAINTEST, min(0.9, 4.0 / max(1, len(trajectories))))
+    for each in trajectories:
         pieces = [each.points[row : row + 2] for row in range(len(each.points) - 1)]
         colours = [state_colour(int(state)) for state in each.states[:-1]]
         axes.add_collection(LineCollection(pieces, colors=colours, linewidths=1.5, alpha=opacity, zorder=4))
-    for each in ways:
+    for each in trajectories:
         if each.end != "success":
             marker, colour = ENDS[each.end]
             axes.plot(*each.points[-1], marker=marker, color=colour, markeredgecolor="white", markersize=8, zorder=6)

@@ -27,7 +27,7 @@ class Ended:
 
 
 @record
-class Summary:
+class Figures:
     """The figures over ``episodes``: ``pass_rate`` with its Wilson interval of 95 %, and the spread of the others.
 
     ``progress`` is the best of an episode, in [0, 1], ``reward`` its undiscounted sum, ``steps`` are decisions.
@@ -42,10 +42,10 @@ class Summary:
     episodes: tuple[Played, ...]
 
 
-def summary(episodes: Sequence[Played]) -> Summary:
+def figures_of(episodes: Sequence[Played]) -> Figures:
     """The figures over episodes; raises ValueError where there are none."""
     passed = sum(each.success for each in episodes)
-    return Summary(
+    return Figures(
         pass_rate=passed / len(episodes) if episodes else 0.0,
         pass_interval=wilson(passed, len(episodes)),
         progress=spread_of([each.progress for each in episodes]),

@@ -1,4 +1,4 @@
-"""The ways of many episodes over a plan."""
+"""The trajectories of many episodes over a plan."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ import numpy as np
 from PIL import Image
 
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.stealth.episodes.way import Way
+from tltl_runtime.stealth.episodes.trajectory import Trajectory
 from tltl_runtime.stealth.levels.file import load_level
-from tltl_runtime.stealth.pictures.ways import draw_ways
+from tltl_runtime.stealth.pictures.trajectories import draw_trajectories
 
 RED, GREEN = (220, 38, 38), (22, 163, 74)
 
 
-def test_ways_and_where_they_failed() -> None:
+def test_trajectories_and_where_they_failed() -> None:
     level = load_level("cover_and_hide")
     env = make_env("cover_and_hide")
     fspa = env.task.fspa
     env.close()
     line = np.array([[5.0, 1.0], [5.0, 3.0], [12.0, 3.0]], dtype=np.float32)
-    passed = Way(line, np.array([0, 0, 4], dtype=np.int32), "success")
-    failed = Way(line, np.array([0, 1, 2], dtype=np.int32), "violation")
+    passed = Trajectory(line, np.array([0, 0, 4], dtype=np.int32), "success")
+    failed = Trajectory(line, np.array([0, 1, 2], dtype=np.int32), "violation")
 
-    def count(ways: list[Way], colour: tuple[int, int, int]) -> int:
-        drawn = draw_ways(level, fspa, ways, "some episodes")
-        assert drawn == draw_ways(level, fspa, ways, "some episodes")
+    def count(trajectories: list[Trajectory], colour: tuple[int, int, int]) -> int:
+        drawn = draw_trajectories(level, fspa, trajectories, "some episodes")
+        assert drawn == draw_trajectories(level, fspa, trajectories, "some episodes")
         with Image.open(BytesIO(drawn)) as picture:
             colours = picture.convert("RGB").getcolors(1 << 20)
             assert colours is not None
