@@ -13,6 +13,7 @@ import click
 
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
+from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.senses import senses_options
 from tltl_runtime.commands.workers import WorkersType
 from tltlc.cli import exits
@@ -57,15 +58,7 @@ Watching, from another terminal:
 @click.option(
     "--level", metavar="LEVEL[:VARIANT]", help="Where; by default the level that the spec names.  VARIANT: v0."
 )
-@click.option(
-    "--output",
-    "--out",
-    "-o",
-    "folder",
-    metavar="DIR",
-    type=click.Path(path_type=Path, file_okay=False),
-    help="The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED).",
-)
+@output_folder("The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED).")
 @click.option("--seed", metavar="N", type=click.IntRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
 @click.option(
     "--resume",
@@ -177,7 +170,7 @@ def _broken_off(folder: Path) -> Iterator[None]:
 
 def _ended(run: Run, last: Trained) -> Iterator[str]:
     """How a training ended, what there is now, and what comes next."""
-    from tltl_runtime.commands.training_display import duration
+    from tltl_runtime.commands.training_text import duration
 
     window, folder = last.window, quote(str(run.folder))
     ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"

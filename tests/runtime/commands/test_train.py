@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from tests.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
 from tests.docs.blocks import DOCS
@@ -84,9 +85,33 @@ def test_to_its_limit_and_on(tltlc: TltlcFunction, here: Path) -> None:  # noqa:
     assert json.loads((folder / "record.json").read_text())["iterations"] == 3
 
 
+def test_a_training_that_is_over_when_it_is_resumed(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    run = ("train", EXAMPLE, "--config", "small.toml", "--out", "run")
+    assert tltlc(*run).status == 1
+    folder = Path("run")
+    before = (folder / "checkpoint.pt").read_bytes()
+    tltlc("train", "--resume", "run", "--steps", "256")
+    assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128, 192, 256]
+    # As where it was killed after its second iteration, and is given a limit that it has reached then.
+    (folder / "checkpoint.pt").write_bytes(before)
+    found = tltlc("train", "--resume", "run", "--steps", "128")
+    assert found.status == 1
+    assert "steps/s" not in found.err
+    assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128]
+    assert [point["steps"] for point in json.loads((folder / "record.json").read_text())["curve"]] == [64, 128]
+    events = EventAccumulator("run")
+    events.Reload()
+    assert [event.step for event in events.Scalars("time/episodes")] == [64, 128]
+
+
 def test_until_the_spec_is_met(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     found = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "runs/soon", "--no-map")
-    assert (found.status, found.err.count("\n")) == (0, 1), found.err
+    assert found.status == 0, found.err
+    assert found.err.splitlines()[:2] == [
+        "training soon on cover_and_hide v0, seed 0, in runs/soon",
+        "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume runs/soon",
+    ]
+    assert found.err.count("\n") == 3
     first, _, last = found.out.splitlines()
     assert re.fullmatch(r"the spec is met after 64 steps, \d+ s: met in 2 of the last 2 episodes, .*", first)
     assert last == "to evaluate it: tltlc evaluate runs/soon"
@@ -191,7 +216,7 @@ def test_the_defaults_can_be_had(tltlc: TltlcFunction) -> None:  # noqa: F811
 def test_asked_to_end_it_can_go_on(tltlc: TltlcFunction, here: Path, name: str, status: int) -> None:  # noqa: F811
     with _training(here, "--steps", "100000000") as process:
         assert process.stderr is not None
-        first = process.stderr.readline()
+        first = [process.stderr.readline() for _ in range(3)][-1]
         assert first.startswith("iteration 1: 64 steps in "), first + process.stderr.read()
         process.send_signal(getattr(signal, name))
         _, err = process.communicate(timeout=60)
@@ -206,7 +231,7 @@ def test_asked_to_end_it_can_go_on(tltlc: TltlcFunction, here: Path, name: str, 
 def test_a_worker_that_is_killed(here: Path) -> None:
     with _training(here, "--steps", "100000000") as process:
         assert process.stderr is not None
-        assert process.stderr.readline().startswith("iteration 1: ")
+        assert [process.stderr.readline() for _ in range(3)][-1].startswith("iteration 1: ")
         (worker,) = _workers(process.pid)
         os.kill(worker, signal.SIGKILL)
         _, err = process.communicate(timeout=60)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.training.reports import a_report, an_episode
-from tltl_runtime.commands.training_display import duration, in_a_row, line, search_line, seconds_left
+from tltl_runtime.commands.training_text import duration, found_line, in_a_row, line, search_line, seconds_left
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Stop, read_settings
 from tltlc.record import replace
@@ -26,6 +26,8 @@ def test_a_line(stop: Stop) -> None:
         "reward 0.65, 2,048 steps/s, at most 29 min 13 s left"
     )
     assert line(replace(late, stop="met"), stop).endswith("2,048 steps/s")
+    over = replace(late, stop="met", iteration=replace(late.iteration, steps=0, collect_s=0.0, learn_s=0.0))
+    assert line(over, stop).endswith("reward 0.65")
 
 
 @pytest.mark.parametrize(
@@ -39,6 +41,11 @@ def test_a_line(stop: Stop) -> None:
 def test_a_line_of_the_search(lengths: tuple[int, ...], said: str) -> None:
     searched = Searched(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=lengths)
     assert search_line(searched) == f"searching by chance: 6,400 steps in 1 min 1 s, 1,200 places, {said}"
+
+
+def test_a_line_of_what_was_found() -> None:
+    searched = Searched(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=(90, 80))
+    assert found_line(searched) == "search: 2 ways found in 1 min 1 s, the shortest of 80 steps"
 
 
 def test_the_nearer_limit_counts(stop: Stop) -> None:

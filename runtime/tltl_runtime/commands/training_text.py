@@ -1,0 +1,70 @@
+"""A training in words, a line each."""
+
+from __future__ import annotations
+
+from tltl_runtime.training.report import Report
+from tltl_runtime.training.search import Searched
+from tltl_runtime.training.settings import Stop
+
+
+def line(report: Report, stop: Stop) -> str:
+    """A report in a line."""
+    window = report.window
+    parts = [f"iteration {report.iteration.number}: {report.steps:,} steps in {duration(report.seconds)}"]
+    if window.count:
+        parts += [
+            f"met in {window.successes} of the last {window.count} episodes",
+            f"progress {window.progress:.2f}",
+            f"reward {window.reward:.2f}",
+        ]
+    if report.iteration.steps:
+        parts.append(f"{rate(report):,.0f} steps/s")
+    if not report.stop:
+        parts.append(f"at most {duration(seconds_left(report, stop))} left")
+    return ", ".join(parts)
+
+
+def search_line(searched: Searched) -> str:
+    """How far the search is, in a line."""
+    if found := len(searched.lengths):
+        ways = f"{found} way{'s' * (found > 1)} to meet the spec, the shortest of {min(searched.lengths)} steps"
+    else:
+        ways = "no way to meet the spec yet"
+    took = f"{searched.steps:,} steps in {duration(searched.seconds)}"
+    return f"searching by chance: {took}, {searched.places:,} places, {ways}"
+
+
+def found_line(searched: Searched) -> str:
+    """What the search found, in a line of 72 characters at the most."""
+    took, found = duration(searched.seconds), len(searched.lengths)
+    if not found:
+        return f"search: no way found in {took}; episodes begin at the level's start"
+    return f"search: {found} way{'s' * (found > 1)} found in {took}, the shortest of {min(searched.lengths)} steps"
+
+
+def in_a_row(report: Report, before: int) -> int:
+    """How many episodes without a failure the last ones are, of which there were ``before`` at the last report."""
+    if report.window.successes == report.window.count:
+        return report.window.count
+    ends = [episode.success for episode in report.iteration.finished]
+    return before + len(ends) if all(ends) else ends[::-1].index(False)
+
+
+def seconds_left(report: Report, stop: Stop) -> float:
+    """Seconds until a limit ends the training, at the speed that it had so far."""
+    left = max(0.0, (stop.steps - report.steps) * report.seconds / max(report.steps, 1))
+    return min(left, max(0.0, stop.minutes * 60 - report.seconds)) if stop.minutes else left
+
+
+def duration(seconds: float) -> str:
+    """A span of time for people: ``45 s``, ``12 min 5 s``, ``3 h 20 min``."""
+    minutes, rest = divmod(round(seconds), 60)
+    if not minutes:
+        return f"{rest} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s"
+
+
+def rate(report: Report) -> float:
+    """Steps a second of the last iteration; 0 where a training that is over had none."""
+    return report.iteration.steps / ((report.iteration.collect_s + report.iteration.learn_s) or 1.0)

@@ -1,0 +1,75 @@
+"""The picture of a training: it fits into the terminal, whatever its size, and its border stays whole."""
+
+from __future__ import annotations
+
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from tests.runtime.training.reports import a_report
+from tests.runtime.training.runs import run_in
+from tltl_runtime.commands.training_picture import Picture
+from tltl_runtime.training.report import Report
+from tltl_runtime.training.search import Searched
+from tltlc.record import replace
+
+SEARCHED = Searched(steps=6400, replayed=3200, seconds=80.0, places=1200, lengths=(90, 80))
+
+
+def _lines(folder: Path, columns: int, lines: int, report: Report | Searched | None) -> list[str]:
+    console = Console(width=columns, height=lines, file=StringIO(), force_terminal=True, color_system=None)
+    run = run_in(folder, exploration__ways=10, stop__steps=12_000_000)
+    picture = Picture(run, console)
+    if isinstance(report, Report):
+        picture.trained(report)
+    elif report is not None:
+        picture.searched(report)
+    with console.capture() as captured:
+        console.print(picture.drawn())
+    return captured.get().splitlines()
+
+
+@pytest.fixture(name="report")
+def _report() -> Report:
+    return replace(a_report(2000, states={0: 0.5, 1: 0.2, 2: 0.2, 4: 0.1}), searched=SEARCHED, checkpointed=True)
+
+
+@pytest.mark.parametrize(("columns", "lines"), [(80, 24), (80, 18), (80, 15), (120, 40), (101, 24)])
+def test_it_fits_and_no_figure_is_cut(tmp_path: Path, report: Report, columns: int, lines: int) -> None:
+    shown = _lines(tmp_path / ("very-" * 20 + "long"), columns, lines, report)
+    assert len(shown) < lines
+    # Ctrl-C twice leaves `^C^C` behind the border.
+    assert {len(each) for each in shown} == {min(100, columns - 4)}
+    text = "\n".join(shown)
+    for said in (
+        "cover_and_hide on cover_and_hide v0, seed 3",
+        "of 100, with which training ends",
+        "reward 0.65, 130 steps an episode; best so far: met in 80%",
+        "8,192,000 of at most 12,000,000 steps, 2,048 a second (25% learning)",
+        "1 h 6 min so far, at most 3",
+        "search: 2 ways found in 1 min 20 s, the shortest of 80 steps",
+        "last checkpoint 0 s ago; Ctrl-C stops it, and --resume goes on",
+        "state 0",
+    ):
+        assert said in text
+    assert shown[-1].endswith("-very-long ─╯")
+
+
+def test_where_there_are_few_lines_it_shows_the_commonest_states(tmp_path: Path, report: Report) -> None:
+    text = "\n".join(_lines(tmp_path, 80, 15, report))
+    assert "where the last 50 episodes ended (3 of 5 states)" in text
+    assert [number for number in range(5) if f"state {number}" in text] == [0, 1, 2]
+
+
+def test_before_the_first_iteration(tmp_path: Path) -> None:
+    assert "playing the first steps" in _lines(tmp_path, 80, 24, None)[1]
+    text = " ".join(each.strip("│ ") for each in _lines(tmp_path, 80, 24, SEARCHED))
+    assert "1,200 places, 2 ways to meet the spec, the shortest of 80 steps" in text
+
+
+def test_it_says_that_nothing_was_found(tmp_path: Path, report: Report) -> None:
+    nothing = replace(report, searched=replace(SEARCHED, lengths=()))
+    text = "\n".join(_lines(tmp_path, 80, 24, nothing))
+    assert "search: no way found in 1 min 20 s; episodes begin at the level's start" in text
