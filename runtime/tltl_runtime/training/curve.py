@@ -15,20 +15,34 @@ _DPI: Final = 100
 
 def draw_curve(title: str, curve: Sequence[Mapping[str, Any]]) -> bytes:
     """A PNG of the points of a training's ``curve``: ``steps`` and, from the first episode on, the other two."""
+    picture = BytesIO()
+    curve_figure(title, curve).savefig(picture, format="png", metadata={"Software": None})
+    return picture.getvalue()
+
+
+def curve_figure(title: str, curve: Sequence[Mapping[str, Any]]) -> Figure:
+    """What :func:`draw_curve` draws; where no episode has ended it says so."""
     shown = [point for point in curve if point["pass_rate"] is not None]
     steps = [point["steps"] for point in shown]
     figure = Figure(figsize=_SIZE, dpi=_DPI, layout="constrained")
     axes = figure.add_subplot()
-    axes.plot(steps, [point["progress"] for point in shown], color=_PROGRESS, linewidth=1.2, label="progress")
-    axes.plot(steps, [point["pass_rate"] for point in shown], color=_PASS_RATE, linewidth=2.0, label="pass rate")
+    # A single point would make no line.
+    style: dict[str, Any] = {"marker": "o" if len(shown) == 1 else None}
+    axes.plot(steps, [point["progress"] for point in shown], color=_PROGRESS, linewidth=1.2, label="progress", **style)
+    axes.plot(
+        steps, [point["pass_rate"] for point in shown], color=_PASS_RATE, linewidth=2.0, label="pass rate", **style
+    )
     axes.set_title(title, color=_INK, fontsize=11)
-    axes.set_xlabel("steps of all environments")
+    axes.set_xlabel("steps (decisions of all environments)")
+    axes.set_ylabel("pass rate, mean progress (0 to 1)")
     axes.set_ylim(-0.02, 1.02)
-    axes.set_xlim(left=0)
+    axes.set_xlim(0, max((point["steps"] for point in curve), default=1))
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
     axes.grid(color="#e2e8f0")
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(loc="lower right", frameon=False)
-    picture = BytesIO()
-    figure.savefig(picture, format="png", metadata={"Software": None})
-    return picture.getvalue()
+    if shown:
+        figure.legend(loc="outside lower center", ncols=2, frameon=False)
+    else:
+        middle = {"ha": "center", "va": "center", "transform": axes.transAxes}
+        axes.text(0.5, 0.5, "no episode has ended", color=_INK, **middle)
+    return figure
