@@ -86,12 +86,15 @@ class TrainingEnv(VecEnv):
         observation, reward, terminated, truncated, infos = step(taken)
         over = terminated | truncated
         ended = _finished(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
-        if self._episodes:
+        if self._episodes and self.restarts:
             ends = {row: end_of(infos["final_info"], row) for row, each in ended.items() if each.success}
-            observation, cut = self._turn(self._episodes, observation, over, ended, ends)
-            over, truncated = over | cut, truncated | cut
-        else:
-            self._finished += ended.values()
+            cut = _learned(self.restarts, self._episodes, over, ends)
+            ended = {row: each for row, each in ended.items() if self._episodes.starts[row].part is None}
+            self._episodes.turn(over)
+            if cut.any():
+                observation = self._episodes.cut(cut)
+                over, truncated = over | cut, truncated | cut
+        self._finished += ended.values()
         self._observation = self._tensors(observation)
         return (
             self._observation,
@@ -114,29 +117,21 @@ class TrainingEnv(VecEnv):
         """Close the environments."""
         self.env.close()
 
-    def _turn(
-        self,
-        episodes: Episodes,
-        observation: Any,
-        over: NDArray[np.bool_],
-        ended: Mapping[int, Finished],
-        ends: Mapping[int, int],
-    ) -> tuple[Any, NDArray[np.bool_]]:
-        """Note what ended, and cut off what took too long; the observation of all, and what was cut off."""
-        assert self.restarts is not None
-        for row, finished in ended.items():
-            self.restarts.ended(episodes.starts[row], episodes.actions[row], ends.get(row))
-            if episodes.starts[row].part is None:
-                self._finished.append(finished)
-        cut = np.array([episodes.is_spent(row) for row in range(self.num_envs)]) & ~over
-        for row in np.flatnonzero(cut).tolist():
-            self.restarts.ended(episodes.starts[row], episodes.actions[row], None)
-        episodes.turn(over)
-        return (episodes.cut(cut) if cut.any() else observation), cut
-
     def _tensors(self, observation: Mapping[str, NDArray[Any]]) -> TensorDict:
         tensors = {key: torch.from_numpy(each).to(self.device, torch.float32) for key, each in observation.items()}
         return TensorDict(tensors, batch_size=[self.num_envs], device=self.device)
+
+
+def _learned(
+    restarts: Restarts, episodes: Episodes, over: NDArray[np.bool_], ends: Mapping[int, int]
+) -> NDArray[np.bool_]:
+    """Let the restarts learn from episodes that are over, with the ends of those that met the spec, and from those that
+    take too long: which these are.
+    """
+    spent = np.array([episodes.is_spent(row) for row in range(len(over))]) & ~over
+    for row in [*np.flatnonzero(over).tolist(), *np.flatnonzero(spent).tolist()]:
+        restarts.ended(episodes.starts[row], episodes.actions[row], ends.get(row))
+    return spent
 
 
 def _finished(infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, Finished]:

@@ -143,11 +143,12 @@ class _Training:
 
     def _after(self, iteration: Iteration, metrics: Metrics | None) -> Report:
         """Take up what an iteration gave, and write what is due."""
-        _check_losses(iteration)
         seconds = self._seconds_before + time.perf_counter() - self._began
         # What all decide upon must be the same for all: the first process has the clock.
-        told = self._own.gather((iteration.finished, seconds, _own(self._runner), self._runner.env.replayed))
-        finished = tuple(each for one, *_ in told for each in one)
+        told = self._own.gather((iteration, seconds, _own(self._runner), self._runner.env.replayed))
+        for theirs, *_ in told:
+            _check_losses(theirs)
+        finished = tuple(each for theirs, *_ in told for each in theirs.finished)
         iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
         self._windows.add(finished)
         self._fade_entropy()
