@@ -11,6 +11,7 @@ from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.notation import notation_option
+from tltl_runtime.commands.options import output_folder, seed_option
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.spec_file import split
@@ -33,25 +34,8 @@ Examples:
     "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
 )
 @click.option("--episodes", metavar="N", type=click.IntRange(min=1), default=1, show_default=True)
-@click.option(
-    "--seed",
-    metavar="N",
-    type=click.IntRange(min=0),
-    default=0,
-    show_default=True,
-    help="Of the first episode; those of the next follow.",
-)
-@click.option(
-    "--output",
-    "--out",
-    "-o",
-    "folder",
-    metavar="DIR",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("demonstrations"),
-    show_default=True,
-    help="The folder for recordings and plans, made where it is missing.",
-)
+@seed_option("Of the first episode; those of the next follow.")
+@output_folder("The folder for recordings and plans, made where it is missing.", default=Path("demonstrations"))
 @click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Make a film of each episode, too.")
 @notation_option
 @click.option("--careless", is_flag=True, help="Play as if nobody could see.")

@@ -15,6 +15,7 @@ import click
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
+from tltl_runtime.commands.options import output_folder, seed_option
 from tltl_runtime.commands.workers import WorkersType
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -39,14 +40,7 @@ Examples:
     "--level", metavar="LEVEL[:VARIANT]", help="Where; by default where the policy was trained.  VARIANT: v0."
 )
 @click.option("--episodes", metavar="N", type=click.IntRange(1, 10**6), default=100, show_default=True)
-@click.option(
-    "--seed",
-    metavar="N",
-    type=click.IntRange(min=0),
-    default=0,
-    show_default=True,
-    help="Of the evaluation: episode i of seed N always plays the same.",
-)
+@seed_option("Of the evaluation: episode i of seed N always plays the same.")
 @click.option(
     "--first", metavar="I", type=click.IntRange(min=0), default=0, show_default=True, help="Begin with episode I."
 )
@@ -63,15 +57,7 @@ Examples:
     "--json", "json_file", metavar="FILE", type=click.Path(path_type=Path, allow_dash=True, dir_okay=False),
     help="Write the report as JSON, too; `-` prints it in place of the text.",
 )  # fmt: skip
-@click.option(
-    "--output",
-    "--out",
-    "-o",
-    "folder",
-    metavar="DIR",
-    type=click.Path(path_type=Path, file_okay=False),
-    help="Write recordings, their plans, a picture of all ways and the report to this folder.",
-)
+@output_folder("Write recordings, their plans, a picture of all ways and the report to this folder.")
 @click.option(
     "--record",
     "recorded",

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tltl_runtime.commands.learning import learning_for
+from tltl_runtime.commands.options import output_file, summary_format
+from tltl_runtime.commands.reading import read_each
 from tltlc.cli.report import Report
-from tltlc.diagnostics.diagnostic import TltlError
 
 if TYPE_CHECKING:
     from tltl_runtime.policies.policy import Policy
@@ -25,22 +26,8 @@ Examples:
 """
 )
 @click.argument("files", metavar="POLICY...", nargs=-1, required=True)
-@click.option(
-    "--output",
-    "--out",
-    "-o",
-    "path",
-    metavar="OUT.onnx",
-    type=click.Path(path_type=Path, dir_okay=False),
-    help="Write the policy as an ONNX model, and no summary.",
-)
-@click.option(
-    "--format",
-    type=click.Choice(("text", "json")),
-    default="text",
-    show_default=True,
-    help="Of the summary, and of messages.",
-)
+@output_file("OUT.onnx", "Write the policy as an ONNX model, and no summary.")
+@summary_format
 def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # noqa: A002
     """Show what policies were trained for, what they sense and choose, and how their training went.
 
@@ -55,12 +42,7 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
         from tltl_runtime.policies.file import read_policy
         from tltl_runtime.policies.summary import summary, summary_text
 
-        for name in files:
-            try:
-                policy = read_policy(_file(name))
-            except TltlError as error:
-                report.add(error.diagnostics)
-                continue
+        for name, policy in read_each(files, lambda name: read_policy(_file(name)), report):
             said = {"file": name, **summary(policy)}
             if path is not None:
                 _export(policy, path)

@@ -12,8 +12,9 @@ import click
 
 from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.notation import notation_option
+from tltl_runtime.commands.options import output_file, summary_format
+from tltl_runtime.commands.reading import read_each
 from tltlc.cli.report import Report
-from tltlc.diagnostics.diagnostic import TltlError
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
@@ -64,15 +65,7 @@ Examples:
 """
 )
 @click.argument("files", metavar="FILE...", nargs=-1, required=True)
-@click.option(
-    "--output",
-    "--out",
-    "-o",
-    "path",
-    metavar="OUT",
-    type=click.Path(path_type=Path),
-    help="Write a plan (.png), a film (.gif, .mp4) or the signals (.csv), and no summary.",
-)
+@output_file("OUT", "Write a plan (.png), a film (.gif, .mp4) or the signals (.csv), and no summary.")
 @click.option("--view", type=click.Choice(_VIEWS), help="Of a film (default: third_person).")
 @click.option(
     "--speed",
@@ -106,13 +99,7 @@ Examples:
 )
 @notation_option
 @click.option("--check", "checked", is_flag=True, help="Judge the episode again, and play it again.")
-@click.option(
-    "--format",
-    type=click.Choice(("text", "json")),
-    default="text",
-    show_default=True,
-    help="Of the summary, and of messages.",
-)
+@summary_format
 @click.pass_context
 def command(
     context: click.Context,
@@ -141,12 +128,7 @@ def command(
     film = Film(view or "third_person", speed or 1.0, rate, size or (640, 480), notation)
     summaries: list[dict[str, Any]] = []
     with Report(format, results=True) as report:
-        for name in files:
-            try:
-                episode = read_episode(name)
-            except TltlError as error:
-                report.add(error.diagnostics)
-                continue
+        for name, episode in read_each(files, read_episode, report):
             said = {"file": name, **summary(episode, notation)}
             if checked:
                 judged, played = check(episode), check_replay(episode)

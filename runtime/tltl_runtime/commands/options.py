@@ -1,0 +1,41 @@
+"""Options that several commands have alike, but for what they say of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+import click
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_OUTPUT: Final = ("--output", "--out", "-o")
+
+
+def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:
+    """``-o DIR``, which the command takes as ``folder``."""
+    path = click.Path(path_type=Path, file_okay=False)
+    shown = default is not None
+    return click.option(*_OUTPUT, "folder", metavar="DIR", type=path, default=default, show_default=shown, help=about)
+
+
+def output_file(metavar: str, about: str) -> Callable[[Function], Function]:
+    """``-o FILE``, which the command takes as ``path``."""
+    path = click.Path(path_type=Path, dir_okay=False)
+    return click.option(*_OUTPUT, "path", metavar=metavar, type=path, help=about)
+
+
+def seed_option(about: str) -> Callable[[Function], Function]:
+    """``--seed N``, by default 0."""
+    kind = click.IntRange(min=0)
+    return click.option("--seed", metavar="N", type=kind, default=0, show_default=True, help=about)
+
+
+summary_format = click.option(
+    "--format",
+    type=click.Choice(("text", "json")),
+    default="text",
+    show_default=True,
+    help="Of the summary, and of messages.",
+)
