@@ -170,7 +170,7 @@ def _broken_off(folder: Path) -> Iterator[None]:
 
 def _ended(run: Run, last: Trained) -> Iterator[str]:
     """How a training ended, what there is now, and what comes next."""
-    from tltl_runtime.commands.training_display import duration
+    from tltl_runtime.commands.training_text import duration
 
     window, folder = last.window, quote(str(run.folder))
     ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
