@@ -79,7 +79,7 @@ def _texts(card: Card) -> dict[str, str]:
     texts = {
         "inputs": _inputs(card),
         "actions": [{"name": name, "choices": choices} for name, choices in names],
-        "states": [state.label.ascii for state in card.fspa.states],
+        "states": [{"label": each.label.ascii, "english": each.label.english} for each in card.fspa.states],
         # How it was trained is for those who train, and they have the policy's file.
         "card": card_json(replace(card, training={})),
     }

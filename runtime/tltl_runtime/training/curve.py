@@ -43,6 +43,6 @@ def curve_figure(title: str, curve: Sequence[Mapping[str, Any]]) -> Figure:
     if shown:
         figure.legend(loc="outside lower center", ncols=2, frameon=False)
     else:
-        middle = {"ha": "center", "va": "center", "transform": axes.transAxes}
-        axes.text(0.5, 0.5, "no episode has ended", color=_INK, **middle)
+        said = "no episode has ended"
+        axes.text(0.5, 0.5, said, color=_INK, ha="center", va="center", transform=axes.transAxes)
     return figure

@@ -12,7 +12,7 @@ from typing import Any, Final
 from torch.utils.tensorboard import SummaryWriter
 
 from tltl_runtime.training.report import Report, Window
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, State
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reading_error, reason
 from tltlc.writing import write_file
@@ -72,12 +72,14 @@ def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
         "episodes": len(iteration.finished),
         "window": window.count,
         **(dict.fromkeys(_OF_THE_WINDOW) if not window.count else means(window)),
-        "states": [
-            {"state": state, "label": fspa.states[state].label.ascii, "share": round(share, 6)}
-            for state, share in sorted(window.states.items())
-        ],
+        "states": [_ended(fspa.states[state], share) for state, share in sorted(window.states.items())],
         "losses": {name: round(loss, 6) for name, loss in iteration.losses.items()},
     }
+
+
+def _ended(state: State, share: float) -> dict[str, Any]:
+    label = state.label
+    return {"state": state.id, "label": label.ascii, "english": label.english, "share": round(share, 6)}
 
 
 def means(window: Window) -> dict[str, float]:

@@ -70,7 +70,8 @@ def test_it_says_what_its_numbers_are(policy: Policy, model: bytes) -> None:
     assert list(inputs) == list(shapes)
     assert inputs["entities"][:4] == ["s1.x", "s1.y", "s1.z", "s2.x"]
     assert [len(each["choices"]) for each in actions] == list(policy.card.branches)
-    assert json.loads(texts["states"])[-1] == policy.card.fspa.states[-1].label.ascii
+    label = policy.card.fspa.states[-1].label
+    assert json.loads(texts["states"])[-1] == {"label": label.ascii, "english": label.english}
     fspa = read_artefact(SourceFile("card", json.dumps(json.loads(texts["card"])["artefact"])))
     assert fspa == policy.card.fspa
     assert texts["spec_hash"] == spec_hash(fspa)

@@ -49,8 +49,8 @@ def test_a_line_an_iteration(tmp_path: Path, fspa: Fspa) -> None:
         "reward": 0.65,
         "episode_steps": 130.0,
         "states": [
-            {"state": 2, "label": "false", "share": 0.2},
-            {"state": 4, "label": "G alive", "share": 0.8},
+            {"state": 2, "label": "false", "english": "The spec is violated.", "share": 0.2},
+            {"state": 4, "label": "G alive", "english": "Keep alive throughout.", "share": 0.8},
         ],
         "losses": {"value": 0.25, "entropy": 3.5},
     }
