@@ -66,7 +66,7 @@ class _Lines:
     def __init__(self, run: Run) -> None:
         self._run = run
         self._next = 0.0
-        self._begun = self._is_trained = False
+        self._has_begun = self._has_trained = False
 
     def searched(self, searched: Searched) -> None:
         self._begin()
@@ -74,16 +74,16 @@ class _Lines:
 
     def trained(self, report: Report) -> None:
         self._begin()
-        first, self._is_trained = not self._is_trained, True
+        first, self._has_trained = not self._has_trained, True
         if first and report.searched:
             self._print(found_line(report.searched), always=True)
         self._print(line(report, self._run.settings.stop), always=first or report.stop is not None)
 
     def _begin(self) -> None:
         """Say what is trained, once it is sure that it can be."""
-        if self._begun:
+        if self._has_begun:
             return
-        self._begun, run = True, self._run
+        self._has_begun, run = True, self._run
         place = f"{Path(run.level).stem} {run.variant}"
         self._print(f"training {run.fspa.name} on {place}, seed {run.seed}, in {run.folder}", always=True)
         again = f"tltlc train --resume {quote(str(run.folder))}"

@@ -1,4 +1,4 @@
-"""The picture of a training that goes on, as a terminal shows it, in all of whose lines 80 x 24 characters suffice."""
+"""The picture of a training that goes on, for which a terminal of 80 x 24 characters has room."""
 
 from __future__ import annotations
 
