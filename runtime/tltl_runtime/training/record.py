@@ -14,7 +14,7 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.curve import draw_curve
-from tltl_runtime.training.metrics import METRICS, Metrics, means, read_metrics
+from tltl_runtime.training.metrics import METRICS, means, read_metrics
 from tltl_runtime.training.report import Report
 from tltl_runtime.training.run import POLICY, Run
 from tltl_runtime.training.versions import versions
@@ -38,12 +38,7 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     Raises:
         TltlError: TLT0005, a file cannot be written; and what is wrong with the policy's.
     """
-    measured = read_metrics(run.folder / METRICS)
-    if measured and measured[-1]["iteration"] > last.iteration.number:
-        # A training that is over as soon as it is resumed has measured nothing anew.
-        Metrics(run.folder, run.fspa, after=last.iteration.number, steps=last.steps).close()
-        measured = read_metrics(run.folder / METRICS)
-    made = training_record(run, last, measured)
+    made = training_record(run, last, read_metrics(run.folder / METRICS))
     policy = read_policy(run.folder / POLICY)
     write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.actor))
     text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"

@@ -114,22 +114,18 @@ class _Training:
 
     def reports(self) -> Generator[Report]:
         """Train to the end."""
-        if self._state.iteration and (reason := self._reason()):
-            if self._own.rank == 0 and not (self._run.folder / POLICY).exists():
-                # A limit that is lower now ends it before any policy was the best.
-                self._write_policy()
-            iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
-            yield self._report(iteration, reason, checkpointed=False)
-            return
-        if self._state.iteration == 0:
-            # Whoever is killed soon need not search again.
-            self._write_checkpoint()
         metrics = None
         try:
             if self._own.rank == 0:
                 metrics = Metrics(
                     self._run.folder, self._run.fspa, after=self._state.iteration, steps=self._state.steps
                 )
+            if self._state.iteration and (reason := self._reason()):
+                yield self._over(reason)
+                return
+            if self._state.iteration == 0:
+                # Whoever is killed soon need not search again.
+                self._write_checkpoint()
             for iteration in self._runner.iterations():
                 yield (report := self._after(iteration, metrics))
                 if report.stop:
@@ -140,6 +136,14 @@ class _Training:
             finally:
                 if metrics:
                     metrics.close()
+
+    def _over(self, reason: StopReason) -> Report:
+        """The report of a training that is over as soon as it is resumed."""
+        if self._own.rank == 0 and not (self._run.folder / POLICY).exists():
+            # A limit that is lower now ends it before any policy was the best.
+            self._write_policy()
+        iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
+        return self._report(iteration, reason, checkpointed=False)
 
     def _after(self, iteration: Iteration, metrics: Metrics | None) -> Report:
         """Take up what an iteration gave, and write what is due."""
