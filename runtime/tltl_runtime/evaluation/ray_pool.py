@@ -58,6 +58,10 @@ def _ready(ray: Any, workers: list[RayWorker], waiting: Callable[[float], None],
         title = f"no core of the Ray cluster, which has {cores}, became free within {patience:g} s"
         help_ = "`ray status` tells what is in use: wait until that is over, or play here with `--workers 0`"
         raise TltlError([Diagnostic("TLT0852", title, help=help_)])
+    for reference, worker in asked.items():
+        if reference not in there:
+            # It would take a core later, and do nothing there.
+            worker.close()
     return [asked[reference] for reference in there]
 
 
