@@ -10,8 +10,7 @@ from typing import Any, Final
 
 from tltl_runtime.evaluation.player import Player, Result, Setup, Task
 from tltl_runtime.evaluation.spread import LostError
-from tltl_runtime.vector.cluster import cluster, free_cores
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltl_runtime.vector.cluster import cluster, free_cores, no_core
 
 PATIENCE_S: Final = 120.0
 """How long a cluster whose cores are busy may take to give one."""
@@ -54,14 +53,7 @@ def _ready(ray: Any, workers: list[RayWorker], waiting: Callable[[float], None],
             waiting(left)
         there = found
     if not there:
-        cores = int(ray.cluster_resources().get("CPU", 0))
-        title = f"no core of the Ray cluster, which has {cores}, became free within {patience:g} s"
-        help_ = "`ray status` tells what is in use: wait until that is over, or play here with `--workers 0`"
-        raise TltlError([Diagnostic("TLT0852", title, help=help_)])
-    for reference, worker in asked.items():
-        if reference not in there:
-            # It would take a core later, and do nothing there.
-            worker.close()
+        raise no_core(ray, patience)
     return [asked[reference] for reference in there]
 
 

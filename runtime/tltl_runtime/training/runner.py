@@ -12,10 +12,12 @@ from typing import Any
 import torch
 from rsl_rl.runners import OnPolicyRunner
 from rsl_rl.utils import check_nan
+from torch import Tensor
 
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.environment import Finished, TrainingEnv
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
 
 
@@ -96,7 +98,16 @@ class Runner(OnPolicyRunner):
     def _step(self, observation: Any) -> Any:
         actions = self.alg.act(observation)
         observation, rewards, dones, extras = self.env.step(actions)
-        check_nan(observation, rewards, dones)
+        self._check(observation, rewards, dones)
         observation, rewards, dones = (each.to(self.device) for each in (observation, rewards, dones))
         self.alg.process_env_step(observation, rewards, dones, extras)
         return observation
+
+    def _check(self, observation: Any, rewards: Tensor, dones: Tensor) -> None:
+        """Raise TltlError, TLT0854, where the environment gave values that are no numbers."""
+        try:
+            check_nan(observation, rewards, dones)
+        except ValueError as error:
+            title = f"iteration {self.current_learning_iteration + 1}: {error}"
+            help_ = "mend the environment, or the sensor or signal that gives them"
+            raise TltlError([Diagnostic("TLT0854", title, help=help_)]) from None

@@ -56,9 +56,10 @@ def train(
     first alone writes.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; TLT0862, there is no such device or class; TLT0864, the
-            checkpoint cannot be resumed from; TLT0865, another process trains in the folder; TLT0866, a loss is no
-            number any more; TLT0867, the folder holds a training and ``resume`` is false.
+        TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are no numbers; TLT0862,
+            there is no such device or class; TLT0864, the checkpoint cannot be resumed from; TLT0865, another process
+            trains in the folder; TLT0866, a loss is no number any more; TLT0867, the folder holds a training and
+            ``resume`` is false.
         WorkerError: a process that plays was lost.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)

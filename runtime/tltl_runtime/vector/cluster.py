@@ -53,6 +53,14 @@ def free_cores(ray: Any) -> int:
     return max(1, int(ray.available_resources().get("CPU", 1)))
 
 
+def no_core(ray: Any, waited_s: float) -> TltlError:
+    """TLT0852: no core became free within so many seconds."""
+    cores = int(ray.cluster_resources().get("CPU", 0))
+    title = f"no core of the Ray cluster, which has {cores}, became free within {waited_s:g} s"
+    help_ = "`ray status` tells what is in use: wait until that is over, or play here with `--workers 0`"
+    return TltlError([Diagnostic("TLT0852", title, help=help_)])
+
+
 def _call(address: str) -> None:
     """Raise OSError where nobody answers at HOST:PORT: Ray would try for minutes."""
     host, _, port = address.removeprefix("ray://").rpartition(":")

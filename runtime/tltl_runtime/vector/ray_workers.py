@@ -11,7 +11,7 @@ from typing import Any
 from gymnasium.vector import AutoresetMode
 from numpy.typing import DTypeLike, NDArray
 
-from tltl_runtime.vector.cluster import cluster, free_cores
+from tltl_runtime.vector.cluster import cluster, free_cores, no_core
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import EnvFunction, Share
@@ -53,15 +53,22 @@ class RayWorkers:
         return None
 
     def start(self, workers: Sequence[int]) -> list[Loss]:
-        """Start these, wait until their environments are made, and tell which did not come so far."""
+        """Start these, wait until their environments are made, and tell which did not come so far.
+
+        Raises TltlError: TLT0852, the cluster has no free core for one of them.
+        """
+        patience = max(self._timeout, TO_START_S)
         for worker in workers:
             share = self.shares[worker]
             # Ray would restart an actor and go on, silently, with environments at their beginning.
             actor = self._ray.remote(num_cpus=1, max_restarts=0)(_Actor)
             arguments = (len(self._functions), dict(self._rows.spaces), dict(self._info), self._autoreset)
             self._actors[worker] = actor.remote(list(self._functions[share]), share, *arguments)
+        placed = [self._actors[worker].__ray_ready__.remote() for worker in workers]
+        if self._ray.wait(placed, num_returns=len(placed), timeout=patience)[1]:
+            raise no_core(self._ray, patience)
+        for worker in workers:
             self._asked[self._actors[worker].is_made.remote()] = worker
-        patience = max(self._timeout, TO_START_S)
         return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:

@@ -14,6 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import torch
+
 from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.supply.offer import params
@@ -77,6 +79,16 @@ class Growing(Runner):
         for iteration in super().iterations(most):
             next(self.alg.actor.parameters()).data.view(-1)[0] = 1e5
             yield iteration
+
+
+class Failing(Runner):
+    """A runner whose environment gives, from its second iteration on, an observation that has no number."""
+
+    def _step(self, observation: Any) -> Any:
+        if self.current_learning_iteration == 1:
+            self.env.get_observations()["entities"][0, 0] = math.nan
+            self.env.step = lambda actions: (self.env.get_observations(), torch.zeros(4), torch.zeros(4), {})
+        return super()._step(observation)
 
 
 class Weighing(Runner):

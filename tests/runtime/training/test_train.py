@@ -328,6 +328,16 @@ def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) 
     assert _checkpoint(run).iteration == 1
 
 
+def test_an_environment_that_gives_no_numbers_ends_the_training(folder: Path) -> None:
+    run = run_in(folder / "failing", classes__runner="tests.runtime.training.runs:Failing")
+    with pytest.raises(TltlError) as caught:
+        list(train(run))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TLT0854"
+    assert diagnostic.title.startswith("iteration 2: The observation group 'entities'")
+    assert _checkpoint(run).iteration == 1
+
+
 def test_a_policy_whose_weights_are_too_large_is_refused(folder: Path) -> None:
     run = run_in(folder / "large", classes__runner="tests.runtime.training.runs:Growing")
     with pytest.raises(TltlError) as caught:

@@ -12,6 +12,7 @@ import pytest
 from tests.runtime.vector.envs import EXIT, GO, HANG, RAISE, Fragile
 from tests.runtime.vector.test_vector import COUNT, SPEC, played, same
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv, make_vec
+from tltlc.diagnostics.diagnostic import TltlError
 
 pytestmark = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install 'tltlc[ray]'")
 
@@ -52,6 +53,17 @@ def test_another_takes_the_place_of_one_that_ended() -> None:
         *_, truncated, infos = env.step(np.array([GO, GO]))
         assert not truncated.any()
     env.close()
+
+
+def test_a_cluster_without_a_free_core_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    import ray
+
+    monkeypatch.setattr("tltl_runtime.vector.ray_workers.TO_START_S", 2.0)
+    busy = ray.remote(num_cpus=ray.cluster_resources()["CPU"])(Fragile).remote()
+    ray.get(busy.__ray_ready__.remote())
+    with pytest.raises(TltlError, match=r"no core of the Ray cluster, which has \d+, became free within 2 s"):
+        WorkerVectorEnv([Fragile], "ray", timeout=2.0)
+    ray.kill(busy)
 
 
 def test_an_environment_that_cannot_be_made() -> None:
