@@ -46,7 +46,8 @@ class Workers:
         self._autoreset, self._timeout = autoreset, timeout
         self._processes: dict[int, SpawnProcess] = {}
         self._connections: dict[int, Connection] = {}
-        self._asked: dict[int, Any] = {}
+        self._asked: set[int] = set()
+        """Workers whose answers are waited for; no other is watched by the selector."""
         self._selector = selectors.DefaultSelector()
 
     @property
@@ -73,9 +74,7 @@ class Workers:
             process.start()
             theirs.close()
             self._processes[worker], self._connections[worker] = process, ours
-            for file in (ours.fileno(), process.sentinel):
-                self._selector.register(file, selectors.EVENT_READ, worker)
-            self._asked[worker] = None
+            self._watch(worker)
         patience = max(self._timeout, TO_START_S)
         return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
 
@@ -87,7 +86,7 @@ class Workers:
 
     def tell(self, worker: int, command: str, arguments: tuple[Any, ...]) -> None:
         """Tell one worker to do something; ``answers`` has its answer."""
-        self._asked[worker] = None
+        self._watch(worker)
         # Where the other end is gone, the answer is the loss.
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):
             self._connections[worker].send((command, arguments))
@@ -99,13 +98,8 @@ class Workers:
         found: dict[int, Any] = {}
         while self._asked:
             ready = self._ready(deadline)
-            for worker in ready & self._asked.keys():
-                found[worker] = self._answer(worker)
-                del self._asked[worker]
-            if not ready:
-                for worker in list(self._asked):
-                    found[worker] = self._lost(worker, silent=patience)
-                    del self._asked[worker]
+            for worker in ready or tuple(self._asked):
+                found[worker] = self._answer(worker) if ready else self._lost(worker, silent=patience)
         return [found[worker] for worker in sorted(found)]
 
     def close(self) -> None:
@@ -120,8 +114,21 @@ class Workers:
         self._asked.clear()
         self._selector.close()
 
+    def _watch(self, worker: int) -> None:
+        """Wait for an answer of this one, or for its end."""
+        self._asked.add(worker)
+        for file in (self._connections[worker].fileno(), self._processes[worker].sentinel):
+            self._selector.register(file, selectors.EVENT_READ, worker)
+
+    def _unwatch(self, worker: int) -> None:
+        for file in (self._connections[worker].fileno(), self._processes[worker].sentinel):
+            # It is watched by one of them alone where a Ctrl-C came between the two, and by none where it is idle.
+            with contextlib.suppress(KeyError):
+                self._selector.unregister(file)
+        self._asked.discard(worker)
+
     def _ready(self, deadline: float) -> set[int]:
-        """Workers that answered or ended; none once the deadline is over."""
+        """Of those that were asked, who answered or ended; none once the deadline is over."""
         left = max(0.0, deadline - time.monotonic())
         return {key.data for key, _ in self._selector.select(left)}
 
@@ -131,6 +138,7 @@ class Workers:
             # Of one that ended the last words count, where there are any.
             if connection.poll():
                 outcome, answer = connection.recv()
+                self._unwatch(worker)
                 return self._lost(worker, traceback=answer) if outcome == FAILED else answer
         except (EOFError, OSError):
             pass
@@ -146,9 +154,8 @@ class Workers:
 
     def _end(self, worker: int) -> None:
         """Make sure that a worker is gone, and forget it."""
+        self._unwatch(worker)
         process, connection = self._processes.pop(worker), self._connections.pop(worker)
-        for file in (connection.fileno(), process.sentinel):
-            self._selector.unregister(file)
         connection.close()
         if process.is_alive():
             process.kill()

@@ -66,6 +66,17 @@ class Preparing(Fragile):
         return self.left > 0
 
 
+class Ending(Fragile):
+    """Ends its process after its first step, as soon as that is answered."""
+
+    count = 0
+
+    def prepare(self) -> bool:
+        if self.count > 0:
+            os._exit(7)
+        return False
+
+
 class Unmade(gymnasium.Env[Any, Any]):
     """Is made in the first process and in no other."""
 

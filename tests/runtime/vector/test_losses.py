@@ -17,7 +17,7 @@ import pytest
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 
 from tests.docs.blocks import ROOT
-from tests.runtime.vector.envs import EXIT, GO, HANG, RAISE, SLEEP, Fragile, Unmade, leaves_its_level
+from tests.runtime.vector.envs import EXIT, GO, HANG, RAISE, SLEEP, Ending, Fragile, Unmade, leaves_its_level
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv
 
 
@@ -88,6 +88,15 @@ def test_one_that_is_silent() -> None:
     error = lost(fragile(2, timeout=2.0), [GO, HANG])
     assert str(error).startswith("worker 1 was silent for 2 s, and was killed; it had\n  env 1: Fragile, seed 41")
     assert time.monotonic() - begun < 10.0
+
+
+def test_one_that_answers_and_ends_does_not_keep_the_silent_from_being_found() -> None:
+    begun = time.monotonic()
+    env = WorkerVectorEnv([Fragile, Ending], 2, timeout=2.0)
+    env.reset(seed=40)
+    error = lost(env, [HANG, GO])
+    assert str(error).startswith("worker 0 was silent for 2 s, and was killed")
+    assert time.monotonic() - begun < 15.0
 
 
 def test_a_body_that_leaves_its_level() -> None:
