@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -10,13 +9,10 @@ from typing import Any, Final
 
 from tltl_runtime.evaluation.player import Player, Result, Setup, Task
 from tltl_runtime.evaluation.spread import LostError
-from tltl_runtime.vector.cluster import cluster, free_cores, no_core
+from tltl_runtime.vector.cluster import cluster, free_cores, there
 
 PATIENCE_S: Final = 120.0
 """How long a cluster whose cores are busy may take to give one."""
-_AFTER_THE_FIRST_S: Final = 30.0
-"""How long the others may take once there is a worker."""
-_TOLD_EVERY_S: Final = 10.0
 
 
 @contextmanager
@@ -34,27 +30,11 @@ def ray_workers(
         shared = ray.put(setup)
         workers = [RayWorker(ray, shared) for _ in range(min(most, free_cores(ray)))]
         try:
-            yield _ready(ray, workers, waiting, patience)
+            came = there(ray, [worker.actor for worker in workers], patience, waiting)
+            yield [workers[place] for place in came]
         finally:
             for worker in workers:
                 worker.close()
-
-
-def _ready(ray: Any, workers: list[RayWorker], waiting: Callable[[float], None], patience: float) -> list[RayWorker]:
-    """Those that have a core, all of them unless somebody else was quicker."""
-    deadline = time.monotonic() + patience
-    asked = {worker.is_there(): worker for worker in workers}
-    there: list[Any] = []
-    while len(there) < len(asked) and (left := deadline - time.monotonic()) > 0:
-        found, _ = ray.wait(list(asked), num_returns=len(there) + 1, timeout=min(left, _TOLD_EVERY_S))
-        if found and not there:
-            deadline = min(deadline, time.monotonic() + _AFTER_THE_FIRST_S)
-        elif not found:
-            waiting(left)
-        there = found
-    if not there:
-        raise no_core(ray, patience)
-    return [asked[reference] for reference in there]
 
 
 class RayWorker:
@@ -63,22 +43,18 @@ class RayWorker:
     def __init__(self, ray: Any, setup: Any) -> None:
         self._ray, self._setup = ray, setup
         # Ray would restart an actor and play again, silently, what has killed it.
-        self._actor = ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote()
-
-    def is_there(self) -> Any:
-        """A reference to something that is there as soon as the actor is."""
-        return self._actor.__ray_ready__.remote()
+        self.actor = ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote()
 
     def play(self, task: Task) -> Future[Result]:
         """Begin an episode."""
         future: Future[Result] = Future()
-        playing = self._actor.play.remote(self._setup, task).future()
+        playing = self.actor.play.remote(self._setup, task).future()
         playing.add_done_callback(lambda done: self._pass_on(done, future))
         return future
 
     def close(self) -> None:
         """End the actor."""
-        self._ray.kill(self._actor)
+        self._ray.kill(self.actor)
 
     def _pass_on(self, done: Future[Result], future: Future[Result]) -> None:
         error = done.exception()

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import torch
 from torch import distributed
 
-from tltl_runtime.vector.env import cores as usable_cores
+from tltl_runtime.vector.cores import cores as usable_cores
 from tltlc.record import record
 
 T = TypeVar("T")

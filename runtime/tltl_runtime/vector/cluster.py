@@ -5,7 +5,8 @@ from __future__ import annotations
 import logging
 import os
 import socket
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
@@ -13,6 +14,9 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _TO_ANSWER_S: Final = 10.0
 """How long a cluster may take to answer."""
+_AFTER_THE_FIRST_S: Final = 30.0
+"""How long other actors may take to have a core once one has."""
+_TOLD_EVERY_S: Final = 10.0
 
 
 @contextmanager
@@ -49,8 +53,31 @@ def cluster() -> Iterator[Any]:
 
 
 def free_cores(ray: Any) -> int:
-    """How many cores of the cluster nobody uses, at least one."""
-    return max(1, int(ray.available_resources().get("CPU", 1)))
+    """How many cores of the cluster nobody uses, at least one; where torchrun started several processes, for each."""
+    return max(1, int(ray.available_resources().get("CPU", 1)) // int(os.environ.get("WORLD_SIZE", "1")))
+
+
+def there(
+    ray: Any, actors: Sequence[Any], patience: float, waiting: Callable[[float], None] = lambda left: None
+) -> list[int]:
+    """The places, in order, of those actors that have a core: all of them unless somebody else was quicker.
+
+    The first may take ``patience`` seconds, of which ``waiting`` is told now and then how many are left; the others may
+    take a while more.  Raises TltlError, TLT0852, where none comes.
+    """
+    deadline = time.monotonic() + patience
+    asked = [actor.__ray_ready__.remote() for actor in actors]
+    found: list[Any] = []
+    while len(found) < len(asked) and (left := deadline - time.monotonic()) > 0:
+        now, _ = ray.wait(asked, num_returns=len(found) + 1, timeout=min(left, _TOLD_EVERY_S))
+        if now and not found:
+            deadline = min(deadline, time.monotonic() + _AFTER_THE_FIRST_S)
+        elif not now:
+            waiting(left)
+        found = now
+    if not found:
+        raise no_core(ray, patience)
+    return [place for place, reference in enumerate(asked) if reference in found]
 
 
 def no_core(ray: Any, waited_s: float) -> TltlError:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import multiprocessing
-import os
 import weakref
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn
@@ -18,6 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from tltl_runtime.vector.actions import check_batch
 from tltl_runtime.vector.arguments import check_arguments, split_mask
+from tltl_runtime.vector.cores import cores
 from tltl_runtime.vector.errors import Loss, Playing, WorkerError, report
 from tltl_runtime.vector.memory import Rows, read, write_batch
 from tltl_runtime.vector.worker import EnvFunction
@@ -47,7 +47,8 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     A worker steps its share one after the other; observations, actions and numbers are in memory that all share.
     ``workers`` is by default as many as there are cores, and never more than environments.  Same seeds and actions
     give the same episodes, bit for bit, for any number of workers and in this process.  With ``workers="ray"`` they are
-    actors of a Ray cluster, one on each of its free cores (:func:`~tltl_runtime.vector.cluster.cluster` says which).
+    actors of a Ray cluster, one on each of its free cores (:func:`~tltl_runtime.vector.cluster.cluster` says which),
+    which processes of torchrun share.
 
     ``autoreset`` is ``SAME_STEP`` (the observation is the new episode's, ``final_obs`` and ``final_info`` are the
     old one's) or ``NEXT_STEP``, as Gymnasium defines them.  ``infos`` has the keys ``info`` at every step, an array
@@ -299,11 +300,6 @@ class WorkerVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
             )
             for row in range(share.start, share.stop)
         )
-
-
-def cores() -> int:
-    """How many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _has_spec(env: gymnasium.Env[Any, Any]) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 from gymnasium.vector import AutoresetMode
 from numpy.typing import DTypeLike, NDArray
 
-from tltl_runtime.vector.cluster import cluster, free_cores, no_core
+from tltl_runtime.vector.cluster import cluster, free_cores, there
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import EnvFunction, Share
@@ -24,6 +24,8 @@ class RayWorkers:
 
     They share no memory: actions go with what is asked, and the answer brings the rows back to ``rows``.  All else is
     as with processes; ``info`` are the further columns of ``rows``.
+
+    Raises TltlError: TLT0730 and TLT0852, there is no Ray, no cluster, or no free core.
     """
 
     def __init__(
@@ -34,14 +36,20 @@ class RayWorkers:
         autoreset: AutoresetMode,
         timeout: float,
     ) -> None:
-        self._stack = ExitStack()
-        self._ray = self._stack.enter_context(cluster())
-        self.shares = tuple(shared_out(len(functions), min(free_cores(self._ray), len(functions))))
         self._functions, self._rows, self._info = functions, rows, info
         self._autoreset, self._timeout = autoreset, timeout
         self._actors: dict[int, Any] = {}
         self._asked: dict[Any, int] = {}
         """Workers by references to their answers."""
+        self._stack = ExitStack()
+        self._ray = self._stack.enter_context(cluster())
+        try:
+            self._idle = self._placed(min(free_cores(self._ray), len(functions)))
+            """Actors that have a core and nothing to do yet."""
+        except BaseException:
+            self._stack.close()
+            raise
+        self.shares = tuple(shared_out(len(functions), len(self._idle)))
 
     @property
     def is_waiting(self) -> bool:
@@ -57,19 +65,13 @@ class RayWorkers:
 
         Raises TltlError: TLT0852, the cluster has no free core for one of them.
         """
-        patience = max(self._timeout, TO_START_S)
         for worker in workers:
+            actor = self._actors[worker] = self._idle.pop() if self._idle else self._placed(1)[0]
             share = self.shares[worker]
-            # Ray would restart an actor and go on, silently, with environments at their beginning.
-            actor = self._ray.remote(num_cpus=1, max_restarts=0)(_Actor)
             arguments = (len(self._functions), dict(self._rows.spaces), dict(self._info), self._autoreset)
-            self._actors[worker] = actor.remote(list(self._functions[share]), share, *arguments)
-        placed = [self._actors[worker].__ray_ready__.remote() for worker in workers]
-        if self._ray.wait(placed, num_returns=len(placed), timeout=patience)[1]:
-            raise no_core(self._ray, patience)
-        for worker in workers:
-            self._asked[self._actors[worker].is_made.remote()] = worker
-        return [replace(answer, starting=True) for answer in self.answers(patience) if isinstance(answer, Loss)]
+            self._asked[actor.begin.remote(list(self._functions[share]), share, *arguments)] = worker
+        answers = self.answers(max(self._timeout, TO_START_S))
+        return [replace(answer, starting=True) for answer in answers if isinstance(answer, Loss)]
 
     def ask(self, command: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         """Tell all workers to do something, each with its own arguments, and wait for the answers."""
@@ -102,11 +104,24 @@ class RayWorkers:
 
     def close(self) -> None:
         """End all."""
-        for actor in self._actors.values():
+        for actor in (*self._actors.values(), *self._idle):
             self._ray.kill(actor)
         self._actors.clear()
         self._asked.clear()
         self._stack.close()
+
+    def _placed(self, most: int) -> list[Any]:
+        """Up to ``most`` new actors, as many as find a core; the others are ended."""
+        # Ray would restart an actor and go on, silently, with environments at their beginning.
+        actors = [self._ray.remote(num_cpus=1, max_restarts=0)(_Actor).remote() for _ in range(most)]
+        placed: list[Any] = []
+        try:
+            placed = [actors[place] for place in there(self._ray, actors, max(self._timeout, TO_START_S))]
+        finally:
+            for actor in actors:
+                if actor not in placed:
+                    self._ray.kill(actor)
+        return placed
 
     def _answer(self, worker: int, reference: Any) -> Any:
         try:
@@ -122,7 +137,7 @@ class RayWorkers:
 class _Actor:
     """A share of the environments, somewhere in the cluster."""
 
-    def __init__(
+    def begin(
         self,
         functions: Sequence[EnvFunction],
         share: slice,
@@ -130,14 +145,12 @@ class _Actor:
         spaces: Mapping[str, Any],
         info: Mapping[str, DTypeLike],
         autoreset: AutoresetMode,
-    ) -> None:
+    ) -> tuple[None, None]:
+        """Make the environments."""
         context = multiprocessing.get_context("spawn")
         rows = Rows(context, count, spaces["observation_space"], spaces["action_space"], info)
         self._table = rows.table[share]
         self._share = Share(functions, rows, share.start, autoreset)
-
-    def is_made(self) -> tuple[None, None]:
-        """Answer as soon as the environments are made."""
         return None, None
 
     def do(self, command: str, arguments: tuple[Any, ...], actions: NDArray[Any]) -> tuple[Any, NDArray[Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import closing
 from functools import partial
 from importlib.util import find_spec
 
@@ -64,6 +65,29 @@ def test_a_cluster_without_a_free_core_is_told(monkeypatch: pytest.MonkeyPatch) 
     with pytest.raises(TltlError, match=r"no core of the Ray cluster, which has \d+, became free within 2 s"):
         WorkerVectorEnv([Fragile], "ray", timeout=2.0)
     ray.kill(busy)
+
+
+def test_processes_of_torchrun_share_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    import ray
+
+    cores = int(ray.cluster_resources()["CPU"])
+    monkeypatch.setenv("WORLD_SIZE", str(cores))
+    with closing(WorkerVectorEnv([Fragile] * (2 * cores), "ray")) as env:
+        assert len(env.worker_pids) == 1
+        env.reset(seed=1)
+        assert list(env.step(np.full(2 * cores, GO))[1]) == [1.0] * (2 * cores)
+
+
+def test_environments_are_shared_out_over_the_cores_that_are_really_free(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.vector.cluster._AFTER_THE_FIRST_S", 1.0)
+    import ray
+
+    cores = int(ray.cluster_resources()["CPU"])
+    monkeypatch.setattr("tltl_runtime.vector.ray_workers.free_cores", lambda _: cores + 1)
+    with closing(WorkerVectorEnv([Fragile] * (2 * cores + 2), "ray")) as env:
+        assert len(env.worker_pids) == cores
+        env.reset(seed=1)
+        assert list(env.step(np.full(2 * cores + 2, GO))[1]) == [1.0] * (2 * cores + 2)
 
 
 def test_an_environment_that_cannot_be_made() -> None:
