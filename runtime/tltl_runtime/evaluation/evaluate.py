@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Literal
 
-from tltl_runtime.evaluation.local import Here, Process
+from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import Played
-from tltl_runtime.evaluation.player import Recorded, Result, Setup, Task
+from tltl_runtime.evaluation.player import Player, Recorded, Result, Setup, Task
 from tltl_runtime.evaluation.spread import Worker, spread
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
@@ -18,7 +18,7 @@ from tltl_runtime.stealth.env import check_fit
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.supply.offer import params as level_params
 from tltl_runtime.task import load_task
-from tltl_runtime.vector.env import cores
+from tltl_runtime.vector.cores import cores
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
@@ -100,6 +100,11 @@ def results(
             cluster, or no core of it becomes free; what the making of an environment raises.
         ValueError: a number of workers below 0.
     """
+    if workers == 1:
+        with closing(Player(setup)) as player:
+            for task in tasks:
+                yield player.play(task)
+        return
     with ExitStack() as stack:
         yield from spread(_team(setup, workers, len(tasks), stack, waiting), tasks, setup.seed)
 
@@ -114,6 +119,6 @@ def _team(setup: Setup, workers: Pool, most: int, stack: ExitStack, waiting: Cal
         raise ValueError(f"there are no {workers} workers")
     team: list[Worker] = []
     for _ in range(min(workers or cores(), most)):
-        team.append(Here(setup) if workers == 1 else Process(setup))
+        team.append(Process(setup))
         stack.callback(team[-1].close)
     return team

@@ -1,4 +1,4 @@
-"""Workers of this machine: this process itself, or others."""
+"""Workers of this machine."""
 
 from __future__ import annotations
 
@@ -12,26 +12,6 @@ from typing import Final
 
 from tltl_runtime.evaluation.player import Player, Result, Setup, Task
 from tltl_runtime.evaluation.spread import LostError
-
-
-class Here:
-    """The process that asks: an episode is over when :meth:`play` returns."""
-
-    def __init__(self, setup: Setup) -> None:
-        self._player = Player(setup)
-
-    def play(self, task: Task) -> Future[Result]:
-        """Play an episode now."""
-        future: Future[Result] = Future()
-        try:
-            future.set_result(self._player.play(task))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-    def close(self) -> None:
-        """Free the game."""
-        self._player.close()
 
 
 class Process:

@@ -28,6 +28,9 @@ class Worker(Protocol):
 def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int) -> Iterator[Result]:
     """Have the workers play, each the next task as soon as it is free; results in the order of the tasks.
 
+    Where a task fails, the results that are there already come before the error, and those of others may be missing
+    among them.
+
     Raises:
         TltlError: TLT0850, a worker was lost; it says which episode of the evaluation's ``seed`` it played.
     """
@@ -39,12 +42,14 @@ def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int) -> Itera
     for wanted in range(len(tasks)):
         while wanted not in found:
             done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
-                worker, place = running.pop(future)
-                try:
-                    found[place] = future.result()
-                except LostError as error:
-                    raise _lost(error, tasks[place], seed) from error
+            ended = [(future, *running.pop(future)) for future in done]
+            found |= {place: future.result() for future, _, place in ended if future.exception() is None}
+            for future, worker, place in ended:
+                if (error := future.exception()) is not None:
+                    yield from (found[each] for each in sorted(found))
+                    if isinstance(error, LostError):
+                        raise _lost(error, tasks[place], seed) from error
+                    raise error
                 for next_place, task in left:
                     running[worker.play(task)] = worker, next_place
                     break

@@ -8,6 +8,7 @@ import re
 import signal
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import closing
 from importlib.util import find_spec
 from multiprocessing import active_children
@@ -20,8 +21,8 @@ from tltl_runtime.evaluation import ray_pool
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, set_up
 from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import Played, episode_seed
-from tltl_runtime.evaluation.player import Setup, Task
-from tltl_runtime.evaluation.spread import LostError
+from tltl_runtime.evaluation.player import Player, Result, Setup, Task
+from tltl_runtime.evaluation.spread import LostError, spread
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.episodes.file import from_bytes
 from tltl_runtime.stealth.levels.file import load_level
@@ -123,6 +124,38 @@ def test_what_keeps_a_worker_from_beginning_comes_as_it_is(policy: Policy, worke
         list(results(setup, [Task(0)], workers))
 
 
+def test_a_result_is_told_before_the_next_episode_begins(policy: Policy, monkeypatch: pytest.MonkeyPatch) -> None:
+    began: list[Task] = []
+    play = Player.play
+    monkeypatch.setattr(Player, "play", lambda self, task: began.append(task) or play(self, task))
+    with closing(results(set_up(policy, None, None, None, 3), [Task(0), Task(1)])) as played:
+        assert next(played).task == Task(0)
+        assert began == [Task(0)]
+
+
+class Prompt:
+    """A worker that is done at once; it is lost in episode 1, and has no end in episode 0."""
+
+    def play(self, task: Task) -> Future[Result]:
+        future: Future[Result] = Future()
+        if task.index == 1:
+            future.set_exception(LostError("gone"))
+        elif task.index != 0:
+            future.set_result(Result(task, None))  # type: ignore[arg-type]
+        return future
+
+    def close(self) -> None:
+        pass
+
+
+def test_what_was_played_when_a_worker_is_lost_is_told_first() -> None:
+    tasks = [Task(index) for index in (2, 0, 3, 1)]
+    told: list[int] = []
+    with pytest.raises(TltlError, match="episode 1 of seed 5"):
+        told.extend(result.task.index for result in spread([Prompt(), Prompt(), Prompt()], tasks, 5))
+    assert told == [2, 3]
+
+
 def test_a_process_that_ended_between_two_episodes_is_lost_all_the_same(policy: Policy) -> None:
     worker = Process(set_up(policy, None, None, None, 3))
     try:
@@ -172,7 +205,7 @@ def test_a_core_that_becomes_free_meanwhile_is_taken(
         ray.kill(busy)
 
     told: list[float] = []
-    monkeypatch.setattr(ray_pool, "_TOLD_EVERY_S", 0.5)
+    monkeypatch.setattr("tltl_runtime.vector.cluster._TOLD_EVERY_S", 0.5)
     played = results(set_up(policy, None, None, None, 3), [Task(0)], "ray", waiting)
     assert [each.played for each in played] == [expected[0]]
     assert told[0] == pytest.approx(ray_pool.PATIENCE_S, abs=5)
