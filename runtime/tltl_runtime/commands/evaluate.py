@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import sys
 from collections import Counter
@@ -91,11 +92,15 @@ def command(
         from tltl_runtime.commands.evaluation_files import EvaluationFiles
         from tltl_runtime.evaluation.evaluate import results, set_up
         from tltl_runtime.evaluation.player import Task
-        from tltl_runtime.policies.file import read_policy
+        from tltl_runtime.policies.file import MAX_BYTES, from_bytes
+        from tltlc.files import read_bytes
 
         path, name, variant = _chosen(policy, level)
-        setup = set_up(read_policy(path), name, variant, spec, seed, (recorded or "failures") if folder else None)
-        files = EvaluationFiles(setup, path, first, folder, json_file)
+        # A training that goes on may write another one there meanwhile.
+        data = read_bytes(path, str(path), MAX_BYTES)
+        trained, kept = from_bytes(data, str(path)), (recorded or "failures") if folder else None
+        setup = set_up(trained, name, variant, spec, seed, kept)
+        files = EvaluationFiles(setup, path, hashlib.sha256(data).hexdigest(), first, folder, json_file)
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:
             with closing(results(setup, tasks, workers, _waiting)) as playing:

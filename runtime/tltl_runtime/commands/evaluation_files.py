@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
@@ -28,15 +27,18 @@ CHOICES: Final = {True: "sampled", False: "arg-max"}
 class EvaluationFiles:
     """The results of an evaluation as they come, and where they go.
 
-    ``path`` is the policy's file and ``first`` the index of the first episode.  ``folder`` gets recordings and
-    pictures, ``json_file`` the report for programs; both are optional, and folders are made where they are missing.
+    ``path`` is the policy's file, ``sha256`` that of its bytes, in hexadecimal, and ``first`` the index of the first
+    episode.  ``folder`` gets recordings and pictures, ``json_file`` the report for programs; both are optional, and
+    folders are made where they are missing.
 
     Raises:
         TltlError: TLT0005, nothing can be written there; of ``add`` and ``write`` too.
     """
 
-    def __init__(self, setup: Setup, path: Path, first: int, folder: Path | None, json_file: Path | None) -> None:
-        self._setup, self._path, self._first, self._folder = setup, path, first, folder
+    def __init__(
+        self, setup: Setup, path: Path, sha256: str, first: int, folder: Path | None, json_file: Path | None
+    ) -> None:
+        self._setup, self._path, self._sha256, self._first, self._folder = setup, path, sha256, first, folder
         self._json = None if str(json_file) == "-" else json_file
         self._level = load_level(setup.level, setup.variant)
         self._played: dict[bool, list[Played]] = {True: [], False: []}
@@ -90,7 +92,7 @@ class EvaluationFiles:
             "complete": complete,
             "policy": {
                 "file": self._path.name,
-                "sha256": hashlib.sha256(self._path.read_bytes()).hexdigest(),
+                "sha256": self._sha256,
                 "level": card.level,
                 "variant": card.variant,
                 "level_hash": card.level_hash,

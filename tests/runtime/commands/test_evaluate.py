@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import shutil
@@ -17,6 +18,7 @@ from PIL import Image
 import tltl_runtime
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.evaluation.untrained import SOON, untrained
+from tltl_runtime.evaluation.player import Player
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.episodes.file import read_episode
@@ -68,6 +70,20 @@ def test_the_report_for_programs(tltlc: Run, policy: Path) -> None:  # noqa: F81
 
     again = json.loads(tltlc("evaluate", policy, "--episodes", "2", "--first", "2", "--seed", "5", "--json", "-").out)
     assert again["episodes"] == said["episodes"][2:]
+
+
+def test_a_policy_that_is_replaced_meanwhile(
+    tltlc: Run,  # noqa: F811
+    policy: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    mine, play = tmp_path / "mine.safetensors", Player.play
+    shutil.copy(policy, mine)
+    monkeypatch.setattr(Player, "play", lambda self, task: mine.unlink(missing_ok=True) or play(self, task))
+    found = tltlc("evaluate", mine, "--episodes", "1", "--json", "-")
+    assert found.status == 0, found.err
+    assert json.loads(found.out)["policy"]["sha256"] == hashlib.sha256(policy.read_bytes()).hexdigest()
 
 
 def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> None:  # noqa: F811
