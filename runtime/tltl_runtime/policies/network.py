@@ -1,7 +1,8 @@
 """The network of a policy: Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, section V.
 
 One-hot automaton state, progress, entities and variables join the convolved semantic map; two fully connected layers
-follow.
+follow.  Progress among the inputs, a channel of the map for each type, where the paper's cells hold a number, and two
+convolutions in place of one are not the paper's.
 """
 
 from __future__ import annotations
@@ -16,8 +17,10 @@ Shapes = Mapping[str, tuple[int, ...]]
 
 Activation = Literal["elu", "selu", "relu", "lrelu", "tanh", "sigmoid", "softplus", "gelu", "swish", "mish"]
 
-_LAYERS: Final = 16
-_WIDTH: Final = 16_384
+MAX_LAYERS: Final = 16
+MAX_WIDTH: Final = 16_384
+MAX_KERNEL: Final = 15
+MAX_STRIDE: Final = 8
 
 
 @record
@@ -39,9 +42,9 @@ class Network:
     def __post_init__(self) -> None:
         for name in ("hidden", "channels"):
             widths = getattr(self, name)
-            if not (1 <= len(widths) <= _LAYERS and all(1 <= width <= _WIDTH for width in widths)):
-                raise ValueError(f"{name} are 1 to {_LAYERS} layers, each 1 to {_WIDTH} wide, not {widths!r:.60}")
-        for name, most in (("kernel", 15), ("stride", 8)):
+            if not (1 <= len(widths) <= MAX_LAYERS and all(1 <= width <= MAX_WIDTH for width in widths)):
+                raise ValueError(f"{name} are 1 to {MAX_LAYERS} layers, each 1 to {MAX_WIDTH} wide, not {widths!r:.60}")
+        for name, most in (("kernel", MAX_KERNEL), ("stride", MAX_STRIDE)):
             if not 1 <= getattr(self, name) <= most:
                 raise ValueError(f"{name} is from 1 to {most} cells, not {getattr(self, name)!r:.40}")
         if self.activation not in get_args(Activation):

@@ -18,20 +18,12 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import card_json
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.stealth.snapshot import BRANCHES
+from tltl_runtime.stealth.snapshot import BRANCHES, CHOICES
 from tltlc.record import replace
 
 SUFFIX: Final = ".onnx"
 
 _OPSET: Final = 18
-_ACTIONS: Final = {
-    "x": ("stay", "greater", "smaller"),
-    "y": ("stay", "greater", "smaller"),
-    "jump": ("no", "yes"),
-    "crouch": ("no", "yes"),
-    "sprint": ("no", "yes"),
-}
-"""The branches of the game's actions, and what their choices are called."""
 
 
 def to_onnx(policy: Policy) -> bytes:
@@ -75,7 +67,7 @@ class _Player(nn.Module):
 
 def _texts(card: Card) -> dict[str, str]:
     """What the model says of itself; all but ``spec_hash`` is JSON."""
-    names = list(_ACTIONS.items()) if card.branches == BRANCHES else []
+    names = list(CHOICES.items()) if card.branches == BRANCHES else []
     texts = {
         "inputs": _inputs(card),
         "actions": [{"name": name, "choices": choices} for name, choices in names],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import product
 from typing import Final
 
@@ -10,8 +11,17 @@ from tltl_runtime.stealth.level import Box, Level, Point, fixed_places
 from tltl_runtime.stealth.world.player import PlayerState
 from tltlc.record import record
 
-BRANCHES: Final = (3, 3, 2, 2, 2)
-"""Of an action: x and y (0 stay, 1 towards greater, 2 towards smaller values), jump, crouch, sprint."""
+CHOICES: Final[Mapping[str, tuple[str, ...]]] = {
+    "x": ("stay", "greater", "smaller"),
+    "y": ("stay", "greater", "smaller"),
+    "jump": ("no", "yes"),
+    "crouch": ("no", "yes"),
+    "sprint": ("no", "yes"),
+}
+"""The branches of an action by name, and what their choices are called; greater: towards greater values."""
+
+BRANCHES: Final = tuple(map(len, CHOICES.values()))
+"""How many choices each branch has: (3, 3, 2, 2, 2)."""
 
 ACTIONS: Final = frozenset(product(*map(range, BRANCHES)))
 """All that there are."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any, Final, get_args
 
-from tltl_runtime.policies.network import Activation
+from tltl_runtime.policies.network import MAX_KERNEL, MAX_LAYERS, MAX_STRIDE, MAX_WIDTH, Activation
 from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -124,11 +124,11 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "pool": OneOf(("processes", "ray")),
     },
     "network": {
-        "hidden": Wholes(Whole(1, 16_384), 16),
+        "hidden": Wholes(Whole(1, MAX_WIDTH), MAX_LAYERS),
         "activation": OneOf(get_args(Activation)),
-        "channels": Wholes(Whole(1, 16_384), 16),
-        "kernel": Whole(1, 15),
-        "stride": Whole(1, 8),
+        "channels": Wholes(Whole(1, MAX_WIDTH), MAX_LAYERS),
+        "kernel": Whole(1, MAX_KERNEL),
+        "stride": Whole(1, MAX_STRIDE),
     },
     "exploration": {"ways": Whole(0, 1_000), "steps": Whole(1, 10**9), "parts": Whole(1, 1_000)},
     "reward": {
