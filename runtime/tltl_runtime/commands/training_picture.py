@@ -12,7 +12,14 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from tltl_runtime.commands.training_text import duration, found_line, in_a_row, rate, search_line, seconds_left
+from tltl_runtime.commands.training_text import (
+    confirmation_line,
+    duration,
+    found_line,
+    rate,
+    search_line,
+    seconds_left,
+)
 from tltl_runtime.training.report import Report, Window
 from tltl_runtime.training.run import CHECKPOINT, Run
 from tltl_runtime.training.search import Searched
@@ -38,7 +45,7 @@ class Picture:
         self._run, self._console = run, console
         self._last: Report | None = None
         self._searched: Searched | None = None
-        self._in_a_row = 0
+        self._confirmation = ""
         self._at = time.monotonic()
         self._checkpoint: float | None = None
         self._resumed = (run.folder / CHECKPOINT).exists()
@@ -50,7 +57,8 @@ class Picture:
     def trained(self, report: Report) -> None:
         """Take up how far the training is."""
         self._last, self._at = report, time.monotonic()
-        self._in_a_row = in_a_row(report, self._in_a_row)
+        if report.confirmation:
+            self._confirmation = confirmation_line(report.iteration.number, report.confirmation)
         if report.checkpointed:
             self._checkpoint = self._at
 
@@ -87,10 +95,12 @@ class Picture:
         """What there is to see after an iteration, in ``room`` lines: where there are few, of fewer states."""
         now, run, window, stop = time.monotonic(), self._run, report.window, self._run.settings.stop
         space = [Text()] if room >= _SPACED else []
-        others = [*_figures(report, stop, 0.0 if report.stop else now - self._at), self._kept(now, report)]
+        since = 0.0 if report.stop else now - self._at
+        said = [self._confirmation] if self._confirmation else []
+        others = [*_figures(report, stop, since), *said, self._kept(now, report)]
         count = max(1, min(_MOST_STATES, room - len(others) - 2 * len(space) - 4))
         return Group(
-            _success(window, stop, self._in_a_row, bar),
+            _success(report, stop, bar),
             *space,
             Text(_ended(window, count, len(run.fspa.states)), "dim", no_wrap=True, overflow="ellipsis"),
             _states(window, run.fspa.states, count, bar),
@@ -106,14 +116,13 @@ class Picture:
         return kept if report.stop else f"{kept}; Ctrl-C stops it, and --resume goes on"
 
 
-def _success(window: Window, stop: Stop, in_a_row: int, bar: int) -> Table:
+def _success(report: Report, stop: Stop, bar: int) -> Table:
     """How often the spec is met, and how much of the rule is fulfilled by which training stops."""
-    wanted = stop.windows * stop.episodes
-    row = min(in_a_row, wanted)
+    window, row, wanted = report.window, report.unbroken, stop.windows * stop.episodes
     table = _grid(bar)
     rate_of = f"of {window.count} episodes"
     table.add_row("spec met", _bar(window.pass_rate, "green", bar), f"{window.pass_rate:4.0%}", rate_of)
-    ends = f"of {wanted}, with which training ends"
+    ends = f"of {wanted}, then the policy is confirmed"
     table.add_row("met in a row", _bar(row / wanted, "green", bar), f"{row:4}", ends)
     table.add_row("progress", _bar(window.progress, "blue", bar), f"{window.progress:4.2f}")
     return table

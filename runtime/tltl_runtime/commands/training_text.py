@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tltl_runtime.training.report import Report
+from tltl_runtime.training.report import Confirmation, Report
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Stop
 
@@ -17,6 +17,8 @@ def line(report: Report, stop: Stop) -> str:
             f"progress {window.progress:.2f}",
             f"reward {window.reward:.2f}",
         ]
+    if report.confirmation:
+        parts.append(confirmation_line(report.iteration.number, report.confirmation))
     if report.iteration.steps:
         parts.append(f"{rate(report):,.0f} steps/s")
     if not report.stop:
@@ -42,12 +44,11 @@ def found_line(searched: Searched) -> str:
     return f"search: {found} way{'s' * (found > 1)} found in {took}, the shortest of {min(searched.lengths)} steps"
 
 
-def in_a_row(report: Report, before: int) -> int:
-    """How many episodes without a failure the last ones are, of which there were ``before`` at the last report."""
-    if report.window.successes == report.window.count:
-        return report.window.count
-    ends = [episode.success for episode in report.iteration.finished]
-    return before + len(ends) if all(ends) else ends[::-1].index(False)
+def confirmation_line(number: int, confirmation: Confirmation) -> str:
+    """What a confirmation after iteration ``number`` came to, in a line of 72 characters at the most."""
+    if confirmation.passed:
+        return f"confirmed: the policy met it in {confirmation.of} fresh episodes, too"
+    return f"not confirmed after iteration {number}: fresh episode {confirmation.met + 1} of {confirmation.of} failed"
 
 
 def seconds_left(report: Report, stop: Stop) -> float:

@@ -20,7 +20,7 @@ from tltlc.files import reading_error, reason
 from tltlc.record import record
 
 FORMAT: Final = "tltl-checkpoint"
-VERSION: Final = 1
+VERSION: Final = 2
 
 
 @record
@@ -38,9 +38,9 @@ class Checkpoint:
     ``run`` is :func:`~tltl_runtime.training.run.identity` of what is trained, ``searched`` what the search before it
     found, ``replayed`` the decisions that were played again.  ``algorithm`` is what rsl-rl's algorithm saves;
     ``processes`` holds what each process has for itself: the states of torch's generators of random numbers by device,
-    and that of its :class:`~tltl_runtime.training.restarts.Restarts`; ``window`` is the state of
-    :class:`~tltl_runtime.training.windows.Windows`, and ``met`` says whether the best policy has met the
-    spec in them and in fresh episodes.
+    and that of its :class:`~tltl_runtime.training.restarts.Restarts`; ``window`` and
+    ``unbroken`` are those of :class:`~tltl_runtime.training.windows.Windows`, and ``met`` says whether the best policy
+    has met the spec in them and in fresh episodes.
     """
 
     run: str
@@ -53,6 +53,7 @@ class Checkpoint:
     algorithm: Mapping[str, Any]
     processes: tuple[Mapping[str, Tensor], ...]
     window: tuple[tuple[Any, ...], ...]
+    unbroken: int
     best: Best | None
     met: bool
 

@@ -22,14 +22,10 @@ from tltlc.record import record
 
 @record
 class Finished:
-    """An episode that ended in training: ``steps`` long, in ``state`` of the automaton.
-
-    ``reward`` is the sum of its rewards as the training counts them, ``progress`` is in [0, 1].
-    """
+    """An episode that ended in training: ``steps`` long, in ``state`` of the automaton; ``progress`` is in [0, 1]."""
 
     success: bool
     progress: float
-    reward: float
     steps: int
     state: int
 
@@ -113,10 +109,6 @@ class TrainingEnv(VecEnv):
         ended, self._finished = tuple(self._finished), []
         return ended
 
-    def close(self) -> None:
-        """Close the environments."""
-        self.env.close()
-
     def _tensors(self, observation: Mapping[str, NDArray[Any]]) -> TensorDict:
         tensors = {key: torch.from_numpy(each).to(self.device, torch.float32) for key, each in observation.items()}
         return TensorDict(tensors, batch_size=[self.num_envs], device=self.device)
@@ -141,7 +133,6 @@ def _finished(infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, Fi
         int(row): Finished(
             success=bool(infos["success"][row]),
             progress=float(infos["progress"][row]),
-            reward=float(episode["r"][row]),
             steps=int(episode["l"][row]),
             state=int(infos["state"][row]),
         )

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from torch.utils.tensorboard import SummaryWriter
 
+from tltl_runtime.record_json import to_json
 from tltl_runtime.training.report import Report, Window
 from tltlc.automaton.fspa import Fspa, State
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -72,6 +73,7 @@ def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
         "episodes": len(iteration.finished),
         "window": window.count,
         **(dict.fromkeys(_OF_THE_WINDOW) if not window.count else means(window)),
+        "confirmation": report.confirmation and to_json(report.confirmation),
         "states": [_ended(fspa.states[state], share) for state, share in sorted(window.states.items())],
         "losses": {name: round(loss, 6) for name, loss in iteration.losses.items()},
     }

@@ -16,14 +16,10 @@ from tltl_runtime.training.versions import versions
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
-def policy_of(run: Run, env: TrainingEnv, weights: Mapping[str, Tensor]) -> Policy:
-    """The actor of these ``weights`` with the card of what ``run`` trains for in ``env``; it has no record yet.
-
-    Raises:
-        TltlError: TLT0866, a weight is no finite number in half precision.
-    """
+def card_of(run: Run, env: TrainingEnv) -> Card:
+    """What a policy says that is trained by ``run`` in ``env``, on the level as its file is now; without a record."""
     level = load_level(run.level, run.variant)
-    card = Card(
+    return Card(
         level=level.name,
         variant=level.variant,
         level_hash=level_hash(level),
@@ -37,6 +33,14 @@ def policy_of(run: Run, env: TrainingEnv, weights: Mapping[str, Tensor]) -> Poli
         versions=versions(),
         training={},
     )
+
+
+def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
+    """The actor of these ``weights`` with its card.
+
+    Raises:
+        TltlError: TLT0866, a weight is no finite number in half precision.
+    """
     actor = actor_of(card, {name: each.cpu() for name, each in weights.items()})
     try:
         return Policy(card, actor)

@@ -8,21 +8,18 @@ import platform
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import read_policy, write_policy
-from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.record_json import to_json
-from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.curve import draw_curve
 from tltl_runtime.training.metrics import METRICS, means, read_metrics
 from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import POLICY, Run
+from tltl_runtime.training.run import CURVE, POLICY, RECORD, Run
 from tltl_runtime.training.versions import versions
 from tltlc.record import replace
 from tltlc.writing import write_files
-
-RECORD: Final = "record.json"
-CURVE: Final = "curve.png"
 
 _VERSION: Final = 1
 _MOST_POINTS: Final = 200
@@ -38,8 +35,8 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     Raises:
         TltlError: TLT0005, a file cannot be written; and what is wrong with the policy's.
     """
-    made = training_record(run, last, read_metrics(run.folder / METRICS))
     policy = read_policy(run.folder / POLICY)
+    made = training_record(run, policy.card, last, read_metrics(run.folder / METRICS))
     write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.actor))
     text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
     title = f"{run.fspa.name} on {made['level']} {run.variant}, seed {run.seed}"
@@ -47,17 +44,19 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     return made
 
 
-def training_record(run: Run, last: Report, measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """The record, JSON data as ``docs/training.md`` describes it; ``measured`` are the lines of ``metrics.jsonl``."""
-    level = load_level(run.level, run.variant)
+def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The record, JSON data as ``docs/training.md`` describes it, of a training that made a policy with this ``card``.
+
+    ``measured`` are the lines of ``metrics.jsonl``.
+    """
     return {
         "format": "tltl-training",
         "version": _VERSION,
         "spec": run.fspa.name,
         "spec_hash": spec_hash(run.fspa),
-        "level": level.name,
-        "variant": run.variant,
-        "level_hash": level_hash(level),
+        "level": card.level,
+        "variant": card.variant,
+        "level_hash": card.level_hash,
         "seed": run.seed,
         "end": last.stop,
         "iterations": last.iteration.number,

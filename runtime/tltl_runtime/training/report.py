@@ -35,20 +35,38 @@ class Window:
 
 
 @record
+class Confirmation:
+    """What a policy that had met the spec throughout the windows did then: it met it in ``met`` fresh episodes, and
+    failed in the next one unless these are all ``of`` them.
+    """
+
+    met: int
+    of: int
+
+    @property
+    def passed(self) -> bool:
+        """Whether there was no failure."""
+        return self.met == self.of
+
+
+@record
 class Report:
     """An iteration, and where the training stands after it.
 
     ``steps`` are all decisions so far, of all environments and processes; ``seconds`` the training time so far, over
-    resumptions.  ``best_pass_rate`` is that of the policy that is kept, None as long as there is none.  ``stop`` says
-    why the training ends here, None where it goes on; ``checkpointed`` whether a checkpoint of this iteration was
-    written.  ``searched`` is what the search before it found, None where there was none, its decisions not among the
-    ``steps``; nor are those that were ``replayed`` to begin where others had been.
+    resumptions.  ``unbroken`` is how many of the last episodes met the spec in a row, counted anew after a
+    ``confirmation`` that failed; None where none was due.  ``best_pass_rate`` is that of the policy that is kept, None
+    as long as there is none.  ``stop`` says why the training ends here, None where it goes on; ``checkpointed`` whether
+    a checkpoint of this iteration was written.  ``searched`` is what the search before it found, None where there was
+    none, its decisions not among the ``steps``; nor are those that were ``replayed`` to begin where others had been.
     """
 
     iteration: Iteration
     steps: int
     seconds: float
     window: Window
+    unbroken: int
+    confirmation: Confirmation | None
     best_pass_rate: float | None
     stop: StopReason | None
     checkpointed: bool

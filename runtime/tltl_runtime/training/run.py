@@ -1,4 +1,7 @@
-"""A training as it was asked for, and the file in its folder that keeps this: ``run.json``."""
+"""A training as it was asked for, and the file in its folder that keeps this: ``run.json``.
+
+The names of the folder's other files stand here, too.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from pathlib import Path
 from shlex import quote
 from typing import Any, Final
 
+from tltl_runtime.policies.card import OBSERVATION
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.level import Sensors
@@ -26,6 +30,8 @@ from tltlc.writing import write_files
 RUN: Final = "run.json"
 CHECKPOINT: Final = "checkpoint.pt"
 POLICY: Final = "policy.safetensors"
+RECORD: Final = "record.json"
+CURVE: Final = "curve.png"
 
 _FORMAT: Final = "tltl-run"
 _VERSION: Final = 1
@@ -138,6 +144,7 @@ def identity(run: Run) -> str:
     settings = run.settings
     counts = {
         "spec": spec_hash(run.fspa),
+        "observation": OBSERVATION,
         "level": level_hash(load_level(run.level, run.variant)),
         "seed": run.seed,
         "params": dict(run.params),

@@ -80,13 +80,6 @@ class Runner(OnPolicyRunner):
                 learn_s=time.perf_counter() - collected,
             )
 
-    def learn(self, num_learning_iterations: int, init_at_random_ep_len: bool = False) -> None:
-        """Run all of the iterations, as rsl-rl's own does; raises ValueError for ``init_at_random_ep_len``."""
-        if init_at_random_ep_len:
-            raise ValueError("an episode's length is its automaton's business: it begins at its beginning")
-        for _ in self.iterations(num_learning_iterations):
-            pass
-
     def _configure_multi_gpu(self) -> None:
         """What rsl-rl's own does, but for any device, and for a group of processes that is there already."""
         own = peers()

@@ -47,8 +47,9 @@ class Rollout:
 
 @record
 class Stop:
-    """Training ends when the spec was met throughout ``windows`` successive windows of ``episodes`` each, or after
-    ``steps`` decisions of all environments, or after ``minutes`` of training (0: no such limit).
+    """Training ends when the spec was met throughout ``windows`` successive windows of ``episodes`` each, and then by
+    the policy in as many fresh episodes as these are; or after ``steps`` decisions of all environments, or after
+    ``minutes`` of training (0: no such limit).
     """
 
     windows: int

@@ -14,21 +14,33 @@ Score = tuple[float, float, float]
 
 
 class Windows:
-    """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's, None where it has none."""
+    """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's, None where it has none.
+
+    ``unbroken`` is how many of them, up to the last one, met the spec without a failure in between, of the policy in a
+    confirmation neither.
+    """
 
     def __init__(self, windows: int, episodes: int, limit_steps: int | None) -> None:
         self._episodes = episodes
         self._limit_steps = limit_steps
-        self._last: deque[Finished] = deque(maxlen=windows * episodes)
+        self._count = windows * episodes
+        self._last: deque[Finished] = deque(maxlen=self._count)
+        self.unbroken = 0
 
     def add(self, finished: Iterable[Finished]) -> None:
         """Take episodes in the order of their ends."""
-        self._last.extend(finished)
+        for each in finished:
+            self._last.append(each)
+            self.unbroken = min(self.unbroken + 1, self._count) if each.success else 0
+
+    def refuse(self) -> None:
+        """Begin to count anew: the policy has failed in its confirmation."""
+        self.unbroken = 0
 
     @property
     def met(self) -> bool:
         """Whether the spec was met throughout all of the windows."""
-        return len(self._last) == self._last.maxlen and all(each.success for each in self._last)
+        return self.unbroken == self._count
 
     @property
     def window(self) -> Window:
@@ -45,11 +57,12 @@ class Windows:
 
     def state(self) -> list[tuple[Any, ...]]:
         """The episodes as plain values, for :meth:`load`."""
-        return [(each.success, each.progress, each.reward, each.steps, each.state) for each in self._last]
+        return [(each.success, each.progress, each.steps, each.state) for each in self._last]
 
-    def load(self, state: Iterable[Sequence[Any]]) -> None:
+    def load(self, state: Iterable[Sequence[Any]], unbroken: int) -> None:
         """Take up what :meth:`state` gave."""
         self._last.extend(Finished(*each) for each in state)
+        self.unbroken = unbroken
 
     def _window(self, episodes: tuple[Finished, ...]) -> Window:
         count = len(episodes)

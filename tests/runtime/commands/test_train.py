@@ -174,6 +174,7 @@ def test_a_training_goes_into_no_folder_of_other_files(tltlc: TltlcFunction, her
         (["soon.tltl", "--device", "gpu"], 2, '`gpu` is not a device: "cpu", "cuda" or "cuda:0"'),
         (["soon.tltl", "--device", "cuda:31"], 1, "there is no device `cuda:31` here"),
         (["soon.tltl", "--entities", "s9"], 2, "the level `cover_and_hide` has no entity `s9`"),
+        (["soon.tltl", "--config", "large.toml"], 1, "`network` gives a policy of 70 MiB, and a file of one has 64"),
         (["soon.tltl", "--config", "gone.toml"], 3, "cannot read `gone.toml`"),
         (["--resume", "gone"], 3, "cannot read `gone/run.json`"),
         (["--resume", "gone", "--out", "there"], 2, "--resume goes on in its own folder"),
@@ -187,12 +188,24 @@ def test_what_cannot_be_trained(
     status: int,
     said: str,
 ) -> None:
+    (here / "large.toml").write_text("[network]\nhidden = [8192, 4096]\n")
     (here / "hide.tltl").write_text("signal mood: bool\nspec hide { limit 9 steps\n keep mood }\n")
     (here / "endless.tltl").write_text("import stealth\nspec endless { level navigation\n reach seen }\n")
     found = tltlc("train", *arguments)
     assert (found.status, found.out) == (status, ""), found.err
     assert said in found.err
     assert not (here / "training").exists()
+
+
+def test_a_file_of_settings_changes_what_it_says_and_nothing_else(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    begun = ("--config", "small.toml", "--out", "it", "--steps", "64", "--workers", "2", "--minutes", "60")
+    assert tltlc("train", EXAMPLE, *begun).status == 1
+    settings = json.loads(Path("it/run.json").read_text())["settings"]
+    Path("more.toml").write_text("checkpoint_s = 5\n[stop]\nsteps = 128\n")
+    on = tltlc("train", "--resume", "it", "--config", "more.toml")
+    assert on.status == 1, on.err
+    settings["checkpoint_s"], settings["stop"]["steps"] = 5.0, 128
+    assert json.loads(Path("it/run.json").read_text())["settings"] == settings
 
 
 def test_what_nobody_can_do_is_said_before_it_is_tried(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -250,7 +263,7 @@ def test_a_terminal_shows_a_picture(here: Path) -> None:
     assert process.returncode == 1
     assert "playing the first steps" in shown
     last = shown[shown.rindex("cover_and_hide on cover_and_hide v0, seed 0") :]
-    for said in ("spec met", "met in a row", "of 2, with which training ends", "state 2", "The spec is violated."):
+    for said in ("spec met", "met in a row", "of 2, then the policy is confirmed", "state 2", "The spec is violated."):
         assert said in last
     assert "128 of at most 128 steps" in last
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from tests.runtime.training.reports import a_report, an_episode
-from tltl_runtime.commands.training_text import duration, found_line, in_a_row, line, search_line, seconds_left
+from tests.runtime.training.reports import a_report
+from tltl_runtime.commands.training_text import confirmation_line, duration, found_line, line, search_line, seconds_left
+from tltl_runtime.training.report import Confirmation
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Stop, read_settings
 from tltlc.record import replace
-
-MET, FAILED = an_episode(True), an_episode(False)
 
 
 @pytest.fixture(scope="module")
@@ -55,19 +54,10 @@ def test_the_nearer_limit_counts(stop: Stop) -> None:
     assert seconds_left(report, replace(stop, steps=1, minutes=9.0)) == 0.0
 
 
-@pytest.mark.parametrize(
-    ("finished", "window", "before", "after"),
-    [
-        ((), (50, 40), 3, 3),
-        ((MET, MET), (50, 40), 3, 5),
-        ((FAILED, MET, MET), (50, 40), 3, 2),
-        ((MET, FAILED), (50, 40), 3, 0),
-        ((), (30, 30), 0, 30),  # after a training was resumed
-    ],
-)
-def test_episodes_in_a_row(finished: tuple[object, ...], window: tuple[int, int], before: int, after: int) -> None:
-    report = a_report(count=window[0], successes=window[1], finished=finished)  # type: ignore[arg-type]
-    assert in_a_row(report, before) == after
+def test_a_line_of_a_confirmation(stop: Stop) -> None:
+    assert confirmation_line(92, Confirmation(100, 100)) == "confirmed: the policy met it in 100 fresh episodes, too"
+    refused = a_report(92, confirmation=Confirmation(12, 100))
+    assert ", not confirmed after iteration 92: fresh episode 13 of 100 failed, 2,048" in line(refused, stop)
 
 
 @pytest.mark.parametrize(

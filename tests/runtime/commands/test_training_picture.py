@@ -45,7 +45,7 @@ def test_it_fits_and_no_figure_is_cut(tmp_path: Path, report: Report, columns: i
     text = "\n".join(shown)
     for said in (
         "cover_and_hide on cover_and_hide v0, seed 3",
-        "of 100, with which training ends",
+        "of 100, then the policy is confirmed",
         "reward 0.65, 130 steps an episode; best so far: met in 80%",
         "8,192,000 of at most 12,000,000 steps, 2,048 a second (25% learning)",
         "1 h 6 min so far, at most 3",

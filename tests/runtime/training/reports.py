@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tltl_runtime.training.environment import Finished
-from tltl_runtime.training.report import Report, StopReason, Window
+from tltl_runtime.training.report import Confirmation, Report, StopReason, Window
 from tltl_runtime.training.runner import Iteration
 
 
@@ -17,6 +17,7 @@ def a_report(
     states: Mapping[int, float] | None = None,
     finished: tuple[Finished, ...] = (),
     stop: StopReason | None = None,
+    confirmation: Confirmation | None = None,
     checkpointed: bool = False,
 ) -> Report:
     """The report of an iteration of 4096 steps, of which there were 2048 a second."""
@@ -28,6 +29,8 @@ def a_report(
         window=Window(
             count, successes, progress, progress - 0.25, 130.0, states or ({4: 0.8, 2: 0.2} if count else {})
         ),
+        unbroken=successes if successes == count else 0,
+        confirmation=confirmation,
         best_pass_rate=successes / count if count else None,
         stop=stop,
         checkpointed=checkpointed,
@@ -35,4 +38,4 @@ def a_report(
 
 
 def an_episode(success: bool) -> Finished:
-    return Finished(success, 1.0 if success else 0.4, 0.8 if success else -0.6, 100, 4 if success else 2)
+    return Finished(success, 1.0 if success else 0.4, 100, 4 if success else 2)

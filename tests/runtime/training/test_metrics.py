@@ -12,6 +12,7 @@ from tests.docs.blocks import DOCS
 from tests.runtime.training.reports import a_report, an_episode
 from tltl_runtime.task import read_spec
 from tltl_runtime.training.metrics import METRICS, Metrics, read_metrics
+from tltl_runtime.training.report import Confirmation
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -31,10 +32,10 @@ def _measure(folder: Path, fspa: Fspa, numbers: range, after: int = 0) -> None:
 def test_a_line_an_iteration(tmp_path: Path, fspa: Fspa) -> None:
     metrics = Metrics(tmp_path, fspa)
     metrics.add(a_report(1, count=0, successes=0))
-    metrics.add(a_report(2, finished=(an_episode(True), an_episode(False))))
+    metrics.add(a_report(2, finished=(an_episode(True), an_episode(False)), confirmation=Confirmation(12, 100)))
     first, second = read_metrics(tmp_path / METRICS)  # each is there before the files are closed
     metrics.close()
-    assert (first["window"], first["pass_rate"], first["reward"], first["states"]) == (0, None, None, [])
+    assert (first["window"], first["pass_rate"], first["confirmation"], first["states"]) == (0, None, None, [])
     assert second == {
         "iteration": 2,
         "steps": 8192,
@@ -48,6 +49,7 @@ def test_a_line_an_iteration(tmp_path: Path, fspa: Fspa) -> None:
         "progress": 0.9,
         "reward": 0.65,
         "episode_steps": 130.0,
+        "confirmation": {"met": 12, "of": 100},
         "states": [
             {"state": 2, "label": "false", "english": "The spec is violated.", "share": 0.2},
             {"state": 4, "label": "G alive", "english": "Keep alive throughout.", "share": 0.8},

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from tltl_runtime.training.environment import Finished
 from tltl_runtime.training.windows import Windows
 
-SUCCESS = Finished(True, 1.0, 0.9, 40, 4)
-FAILURE = Finished(False, 0.6, -0.7, 25, 2)
+SUCCESS = Finished(True, 1.0, 40, 4)
+FAILURE = Finished(False, 0.6, 25, 2)
 
 
 def _windows(episodes: list[bool]) -> Windows:
@@ -22,6 +22,15 @@ def _windows(episodes: list[bool]) -> Windows:
 @given(st.lists(st.booleans(), max_size=20))
 def test_the_spec_is_met_after_a_run_of_two_windows(episodes: list[bool]) -> None:
     assert _windows(episodes).met == (len(episodes) >= 6 and all(episodes[-6:]))
+
+
+def test_after_a_refusal_all_is_counted_anew() -> None:
+    windows = _windows([True] * 6)
+    windows.refuse()
+    windows.add([SUCCESS] * 5)
+    assert (windows.met, windows.unbroken, windows.window.successes) == (False, 5, 6)
+    windows.add([SUCCESS])
+    assert windows.met
 
 
 @given(st.lists(st.booleans(), max_size=20))
@@ -50,6 +59,7 @@ def test_a_window_without_episodes_says_nothing() -> None:
 @given(st.lists(st.booleans(), max_size=12), st.lists(st.booleans(), max_size=12))
 def test_the_state_goes_on_where_it_was(before: list[bool], after: list[bool]) -> None:
     windows = Windows(2, 3, 100)
-    windows.load(_windows(before).state())
+    windows.load(_windows(before).state(), _windows(before).unbroken)
     windows.add(SUCCESS if each else FAILURE for each in after)
-    assert windows.state() == _windows(before + after).state()
+    whole = _windows(before + after)
+    assert (windows.state(), windows.unbroken) == (whole.state(), whole.unbroken)

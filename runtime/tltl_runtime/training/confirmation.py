@@ -1,0 +1,41 @@
+"""The last word on a policy: whether it meets the spec in fresh episodes, too.
+
+The windows that seem to end a training were played by the policies of several iterations, and chance, too, makes
+windows without a failure.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tltl_runtime.evaluation.evaluate import evaluate
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.training.report import Confirmation
+from tltl_runtime.training.run import Run
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+
+def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
+    """Have a policy play as many fresh episodes as the windows have, up to the first one that fails.
+
+    Raises:
+        TltlError: TLT0868, the level is another now than the one that was trained on.
+    """
+    _check_level(run, policy)
+    seed, stop = int(stream.generate_state(1)[0]), run.settings.stop
+    count = stop.windows * stop.episodes
+    met = 0
+    for played in evaluate(policy, run.level, run.variant, episodes=count, seed=seed):
+        if not played.success:
+            break
+        met += 1
+    return Confirmation(met, count)
+
+
+def _check_level(run: Run, policy: Policy) -> None:
+    if level_hash(load_level(run.level, run.variant)) != policy.card.level_hash:
+        title = f"the level `{run.level}` has changed since the training began, so the policy cannot be confirmed on it"
+        help_ = f"put it back and go on by `tltlc train --resume {run.folder}`, or train anew on the level as it is now"
+        raise TltlError([Diagnostic("TLT0868", title, help=help_)])
