@@ -10,6 +10,7 @@ from typing import Any, Final, Literal, TypeVar
 import click
 
 from tltl_runtime.evaluation.evaluate import check_limit
+from tltl_runtime.policies.file import check_size
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.env import check_fit, spec_of
@@ -20,8 +21,9 @@ from tltl_runtime.task import load_task, read_spec
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.run import RUN, Run, read_run
 from tltl_runtime.training.settings import Settings, read_settings
+from tltl_runtime.training.settings_file import read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reading_error
+from tltlc.files import read_source, reading_error
 from tltlc.record import record, replace
 from tltlc.spec_file import split
 
@@ -73,6 +75,8 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     check_fit(level, task.fspa, spec)
     check_limit(task.fspa)
     seed = asked.seed or 0
+    sensors = chosen(level, asked.sensors or None)
+    check_size(settings.network, task.fspa, sensors)
     folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}"
     _check_folder(folder)
     return Run(
@@ -81,19 +85,19 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
         params=task.params,
         level=path,
         variant=level.variant,
-        sensors=chosen(level, asked.sensors or None),
+        sensors=sensors,
         settings=settings,
         seed=seed,
     )
 
 
 def resumed_run(asked: Asked, folder: Path) -> Run:
-    """The training in ``folder``, with those settings that are asked for and may change.
+    """The training in ``folder``, with those settings that are asked for and may change; all others stay.
 
     Raises TltlError for a folder that cannot be read, TLT0870 where anything else is asked for than it was begun with.
     """
     run = read_run(folder)
-    settings = run.settings if asked.config is None else read_settings(asked.config)
+    settings = run.settings if asked.config is None else _with_file(run.settings, asked.config)
     different = list(_differences(run, asked, settings))
     if different:
         help_ = f"leave it out to go on with `{folder}`, or begin another training with --out"
@@ -126,6 +130,14 @@ def _check_folder(folder: Path) -> None:
 
 def _usage(message: str) -> click.UsageError:
     return click.UsageError(message, click.get_current_context())
+
+
+def _with_file(settings: Settings, path: Path) -> Settings:
+    """The settings with what a file says; errors as of :func:`read_settings`."""
+    for table, values in read_values(read_source(path)).items():
+        changed = {table: replace(getattr(settings, table), **values)} if table else values
+        settings = replace(settings, **changed)
+    return settings
 
 
 def _with_limits(settings: Settings, asked: Asked) -> Settings:

@@ -14,11 +14,15 @@ from safetensors.torch import load, save
 from torch import Tensor
 
 from tltl_runtime.policies.card import Card
-from tltl_runtime.policies.policy import Policy, actor_of, blank_actor
+from tltl_runtime.policies.network import Network
+from tltl_runtime.policies.policy import Policy, actor_of, blank_actor, weight_count
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.refusals import Refusals
+from tltl_runtime.stealth.level import Sensors
+from tltl_runtime.stealth.snapshot import BRANCHES
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
 from tltlc.pipeline import read_artefact
 from tltlc.source import SourceFile
@@ -29,6 +33,8 @@ FORMAT: Final = "tltl-policy"
 VERSION: Final = 1
 MAX_BYTES: Final = 1 << 26
 """Greatest size of a file, thirty million weights: 64 MiB."""
+_RECORD_BYTES: Final = 1 << 20
+"""What is enough for all in a card but the artefact."""
 
 _PREFIX: Final = "actor."
 _KEY: Final = "card"
@@ -42,7 +48,7 @@ def write_policy(path: str | os.PathLike[str], policy: Policy) -> None:
     """Write a policy to a file, which is there as a whole or not at all; equal policies give equal bytes.
 
     Raises:
-        TltlError: TLT0005 where the system refuses.
+        TltlError: TLT0005 where the system refuses; TLT0862, it is larger than :data:`MAX_BYTES`.
         ValueError: the record of the training is not JSON data.
     """
     write_file(Path(path), to_bytes(policy))
@@ -63,7 +69,21 @@ def to_bytes(policy: Policy) -> bytes:
     """What :func:`write_policy` writes."""
     text = json.dumps(card_json(policy.card), ensure_ascii=False, allow_nan=False)
     weights = {f"{_PREFIX}{name}": each.contiguous() for name, each in policy.weights().items()}
-    return save(weights, {_KEY: text})
+    data = save(weights, {_KEY: text})
+    if len(data) > MAX_BYTES:
+        raise _too_large(len(data))
+    return data
+
+
+def check_size(network: Network, fspa: Fspa, sensors: Sensors) -> None:
+    """Raise TltlError, TLT0862, where a file cannot hold a policy of the game with such a network."""
+    (artefact,) = emit("json", fspa).values()
+    # It is a text within a text.
+    text = json.dumps(json.dumps(json.loads(artefact), ensure_ascii=False), ensure_ascii=False)
+    weights = 2 * weight_count(network, _observed(fspa, sensors), BRANCHES)
+    size = weights + len(text.encode()) + _RECORD_BYTES
+    if size > MAX_BYTES:
+        raise _too_large(size)
 
 
 def card_json(card: Card) -> dict[str, Any]:
@@ -82,6 +102,12 @@ def from_bytes(data: bytes, name: str) -> Policy:
     card = _card(header, name)
     _check_tensors(header, card, name)
     return Policy(card, actor_of(card, _weights(data, name)))
+
+
+def _too_large(size: int) -> TltlError:
+    title = f"`network` gives a policy of {-(-size >> 20)} MiB, and a file of one has {MAX_BYTES >> 20} MiB at the most"
+    help_ = "give smaller `hidden` or `channels`, or a greater `stride`"
+    return TltlError([Diagnostic("TLT0862", title, help=help_)])
 
 
 # --- reading what nobody vouches for ----------------------------------------------------------------
@@ -126,17 +152,17 @@ def _fspa(document: object, name: str) -> Fspa:
 def _fault(card: Card) -> str | None:
     """What is wrong with a card whose parts are of the right types."""
     shapes = dict(card.shapes)
-    if len(shapes) < len(card.shapes) or shapes != _observed(card) or max(map(prod, shapes.values())) > MAX_BYTES:
+    seen = _observed(card.fspa, card.sensors)
+    if len(shapes) < len(card.shapes) or shapes != seen or max(map(prod, shapes.values())) > MAX_BYTES:
         return "`card.shapes` are not those of its spec and its sensors"
     if not card.branches or min(card.branches) < 1 or sum(card.branches) > 1 << 16:
         return "`card.branches` are none of an action"
     return None if _HASH.match(card.level_hash) else "`card.level_hash` is no hash"
 
 
-def _observed(card: Card) -> dict[str, tuple[int, ...]]:
-    """The shapes of what an agent with such a card sees."""
-    sensors = card.sensors
-    shapes: dict[str, tuple[int, ...]] = {"automaton": (len(card.fspa.states),), "progress": (1,)}
+def _observed(fspa: Fspa, sensors: Sensors) -> dict[str, tuple[int, ...]]:
+    """The shapes of what an agent sees with such a spec and such sensors."""
+    shapes: dict[str, tuple[int, ...]] = {"automaton": (len(fspa.states),), "progress": (1,)}
     if sensors.entities:
         shapes["entities"] = (3 * len(sensors.entities),)
     if sensors.variables:

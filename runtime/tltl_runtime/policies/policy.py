@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.policies.card import Card
-from tltl_runtime.policies.network import model_config
+from tltl_runtime.policies.network import Network, Shapes, model_config
 
 
 class NoNumbersError(ValueError):
@@ -79,17 +79,19 @@ def _no_numbers(observation: Mapping[str, NDArray[Any]]) -> str:
 
 def new_actor(card: Card) -> MLPModel:
     """An actor as the card describes it, its weights as they are drawn; raises ValueError for what is no network."""
-    shapes = dict(card.shapes)
-    model, arguments = resolve_class(model_config(card.network, shapes, card.branches))
-    blank = TensorDict({key: torch.zeros(1, *shape) for key, shape in shapes.items()}, batch_size=[1])
-    actor: MLPModel = model(blank, {"actor": list(shapes)}, "actor", len(card.branches), **arguments)
-    return actor
+    return _actor(card.network, dict(card.shapes), card.branches)
 
 
 def blank_actor(card: Card) -> MLPModel:
     """An actor as the card describes it that has no weights yet but their names and shapes; nothing is drawn."""
     with torch.device("meta"):
         return new_actor(card)
+
+
+def weight_count(network: Network, shapes: Shapes, branches: Sequence[int]) -> int:
+    """How many weights an actor has; none is made."""
+    with torch.device("meta"):
+        return sum(each.numel() for each in _actor(network, shapes, branches).state_dict().values())
 
 
 def actor_of(card: Card, weights: Mapping[str, Tensor]) -> MLPModel:
@@ -100,3 +102,10 @@ def actor_of(card: Card, weights: Mapping[str, Tensor]) -> MLPModel:
     except RuntimeError as error:
         raise ValueError(f"the weights are of another network than the card describes: {error}") from None
     return actor.requires_grad_(False).eval()
+
+
+def _actor(network: Network, shapes: Shapes, branches: Sequence[int]) -> MLPModel:
+    model, arguments = resolve_class(model_config(network, shapes, branches))
+    blank = TensorDict({key: torch.zeros(1, *shape) for key, shape in shapes.items()}, batch_size=[1])
+    actor: MLPModel = model(blank, {"actor": list(shapes)}, "actor", len(branches), **arguments)
+    return actor

@@ -19,7 +19,7 @@ from safetensors import safe_open
 from safetensors.torch import load, save
 
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
-from tltl_runtime.policies.file import MAX_BYTES, from_bytes, read_policy, to_bytes, write_policy
+from tltl_runtime.policies.file import MAX_BYTES, check_size, from_bytes, read_policy, to_bytes, write_policy
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.policy import Policy, new_actor
 from tltlc.diagnostics.diagnostic import TltlError
@@ -54,6 +54,22 @@ def test_a_policy_comes_back_and_plays_alike(
     for _ in range(5):
         seen = observation_of(policy.card, rng)
         assert again.logits(seen).tobytes() == policy.logits(seen).tobytes()
+
+
+def test_no_file_is_written_that_is_too_large_to_be_read(
+    policy: Policy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, card = tmp_path / "policy.safetensors", policy.card
+    size = len(to_bytes(policy))
+    monkeypatch.setattr("tltl_runtime.policies.file.MAX_BYTES", size - 1)
+    with pytest.raises(TltlError, match="TLT0862: `network` gives a policy of 1 MiB"):
+        write_policy(path, policy)
+    assert not path.exists()
+    monkeypatch.setattr("tltl_runtime.policies.file._RECORD_BYTES", 10_000)
+    with pytest.raises(TltlError, match="TLT0862"):
+        check_size(card.network, card.fspa, card.sensors)
+    monkeypatch.setattr("tltl_runtime.policies.file.MAX_BYTES", size + 10_000)
+    check_size(card.network, card.fspa, card.sensors)
 
 
 def test_the_weights_are_those_of_the_moment_rounded_to_half_precision(policy: Policy) -> None:
