@@ -71,12 +71,13 @@ def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize("status", [1, 2])
 @pytest.mark.parametrize("left, how", [("checkpoint.pt", "--resume"), ("run.json", "--level")])
 def test_a_training_goes_on_from_its_checkpoint_or_begins_anew(
-    left: str, how: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    left: str, how: str, status: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ran: list[object] = []
-    monkeypatch.setattr(training, "_tltlc", lambda *arguments: ran.append(arguments[1]) or 2)
+    monkeypatch.setattr(training, "_tltlc", lambda *arguments: ran.append(arguments[1]) or status)
     cell = training.Cell(tmp_path / "cell", "navigation", 1, training.FULL)
     cell.folder.mkdir()
     (cell.folder / left).touch()
@@ -88,9 +89,15 @@ def test_a_training_goes_on_from_its_checkpoint_or_begins_anew(
 def test_what_is_missed_is_named() -> None:
     records = {"navigation 1": trained(1.0, 12.0), "branching 2": trained(0.95, 30.1, "minutes")}
     first, speed, share = training_report.goals(records)
-    assert first[1:] == ("1 of 2, longest 30 minutes; not: branching 2 0.95 after 30 minutes", "**missed**")
-    assert speed[1:] == ("slowest 1,600", "met")
-    assert share[1:] == ("most 0.40", "met")
+    assert first[1] == "1 of 9, longest 30 minutes; not: branching 2 0.95 after 30 minutes; 7 not measured"
+    assert speed[1] == "slowest 1,600 of the 2 measured"
+    assert share[1] == "most 0.40 of the 2 measured"
+    assert {row[2] for row in (first, speed, share)} == {"**missed**"}
+    cells = [f"{level} {seed}" for level in training.FULL.levels for seed in training.FULL.seeds]
+    told = [row[1:] for row in training_report.goals({name: trained(1.0, 12.0) for name in cells})]
+    assert told == [("9 of 9, longest 12 minutes", "met"), ("slowest 1,600", "met"), ("most 0.40", "met")]
+    (none,) = training_report.goals({"navigation 1": {"failed": "tltlc train"}})
+    assert none[1:] == ("0 of 9; 9 not measured", "**missed**")
     assert list(training_report.goals({"cuda": {"left_out": "no GPU is at hand"}})) == []
 
 
