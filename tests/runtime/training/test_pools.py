@@ -1,0 +1,49 @@
+"""A training comes to the same policy, whoever plays."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.runtime.training.runs import run_in
+from tltl_runtime.task import load_task
+from tltl_runtime.training.run import POLICY
+from tltl_runtime.training.train import train
+from tltlc.record import replace
+
+needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install 'tltlc[ray]'")
+
+SPEC = "import stealth\nspec crouch { level cover_and_hide\n limit 20 steps\n reach sneaking }\n"
+"""A spec that is met by chance now and then, so that there are ways to begin on."""
+
+
+def _trained(folder: Path, **settings: Any) -> bytes:
+    """The policy of two iterations after a search that finds ways."""
+    spec = folder.with_suffix(".tltl")
+    spec.write_text(SPEC, encoding="utf-8")
+    task = load_task(spec)
+    limits = {"exploration__ways": 2, "exploration__steps": 400, "stop__steps": 128}
+    run = replace(run_in(folder, **limits, **settings), fspa=task.fspa, params=task.params)
+    reports = list(train(run))
+    assert reports[-1].searched is not None
+    assert reports[-1].searched.lengths
+    assert reports[-1].replayed > 0
+    return (folder / POLICY).read_bytes()
+
+
+@pytest.fixture(name="alone", scope="module")
+def _alone(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The policy that one process has played for."""
+    return _trained(tmp_path_factory.mktemp("trainings") / "alone")
+
+
+def test_with_two_processes(alone: bytes, tmp_path: Path) -> None:
+    assert _trained(tmp_path / "two", rollout__workers=2) == alone
+
+
+@needs_ray
+def test_on_a_ray_cluster(alone: bytes, tmp_path: Path) -> None:
+    assert _trained(tmp_path / "ray", rollout__pool="ray") == alone
