@@ -18,6 +18,7 @@ from PIL import Image
 import tltl_runtime
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.evaluation.untrained import SOON, untrained
+from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.evaluation.player import Player
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.shipped import shipped_policy
@@ -28,6 +29,7 @@ from tltl_runtime.training.settings import read_settings
 
 Run = Callable[..., Outcome]
 STARTER = Path(tltl_runtime.__file__).with_name("starter")
+LEVELS = ("navigation", "cover_and_hide", "branching")
 FIGURES = ["pass_rate", "pass_interval", "progress", "reward", "steps", "ended", "episodes"]
 
 
@@ -185,9 +187,17 @@ def test_refused(
     assert found.err.lower().startswith(said.lower())
 
 
-@pytest.mark.parametrize("level", ["navigation", "cover_and_hide", "branching"])
-def test_the_policy_that_comes_with_a_level(tltlc: Run, level: str) -> None:  # noqa: F811
-    if shipped_policy(level) is None:
-        pytest.skip(f"no policy comes with {level} yet")
-    found = tltlc("evaluate", "--level", level, "--episodes", "2", "--json", "-")
-    assert json.loads(found.out)["level"] == level
+def test_the_policy_that_comes_with_a_level(tltlc: Run) -> None:  # noqa: F811
+    found = tltlc("evaluate", "--level", "cover_and_hide", "--episodes", "10", "--json", "-")
+    said = json.loads(found.out)
+    assert (said["level"], said["spec"]) == ("cover_and_hide", "cover_and_hide")
+    assert said["argmax"]["pass_rate"] >= 0.9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", LEVELS)
+def test_the_policies_that_come_with_levels(level: str) -> None:
+    path = shipped_policy(level)
+    assert path is not None
+    played = list(evaluate(path, episodes=50, seed=11, sampled=False))
+    assert sum(each.success for each in played) >= 45
