@@ -7,7 +7,7 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 .PHONY: demo test lint format generate bench clean
 
 # Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
-demo: $(VENV)/.installed-game
+demo: $(VENV)/.installed-rl
 	$(BIN)/tltlc compile examples/cover_and_hide.tltl -o demo -t json,dot,python,svg
 	$(BIN)/python demo/cover_and_hide_monitor.py examples/cover_and_hide.csv > demo/cover_and_hide_run.csv
 	@echo "The last step of the recorded trace, as the generated monitor saw it:"
@@ -17,7 +17,10 @@ demo: $(VENV)/.installed-game
 	@echo "the monitor demo/cover_and_hide_monitor.py and every step of the trace, demo/cover_and_hide_run.csv."
 	@if $(BIN)/python -c "import pybullet" 2> /dev/null; then \
 		echo "The scripted expert plays the level; its recording, and beside it the plan of its way (.png):"; \
-		$(BIN)/tltlc demonstrate cover_and_hide -o demo; \
+		$(BIN)/tltlc demonstrate cover_and_hide -o demo && \
+		echo "The policy that was trained for the level plays four episodes, with actions sampled and with the likeliest:" && \
+		$(BIN)/tltlc evaluate --level cover_and_hide --episodes 4 --out demo && \
+		echo "Written: demo/evaluation.json, and the ways of these episodes, demo/ways-sampled.png and demo/ways-arg-max.png."; \
 	else \
 		echo "The game is not played: its physics, pybullet, needs Python 3.10 or 3.11 (make demo PYTHON=python3.11)."; \
 	fi
@@ -57,13 +60,13 @@ $(VENV)/.installed: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(PIP) install -c constraints.txt -e .
 	@touch $@
 
-$(VENV)/.installed-game: pyproject.toml constraints.txt | $(VENV)/bin/python
-	$(PIP) install -c constraints.txt -e '.[game]'
+$(VENV)/.installed-rl: pyproject.toml constraints.txt | $(VENV)/bin/python
+	$(PIP) install -c constraints.txt -e '.[rl]'
 	@touch $@ $(VENV)/.installed
 
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(VENV)/bin/python
 	$(PIP) install -c constraints.txt -e '.[dev,ray]'
-	@touch $@ $(VENV)/.installed $(VENV)/.installed-game
+	@touch $@ $(VENV)/.installed $(VENV)/.installed-rl
 
 $(VENV)/.installed-bench: benchmarks/requirements.txt | $(VENV)/.installed-dev
 	$(PIP) install -c constraints.txt -r benchmarks/requirements.txt
