@@ -12,7 +12,7 @@ import torch
 from rsl_rl.algorithms import PPO
 from torch import Tensor
 
-from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.file import check_size, write_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.available import class_of, device_of
@@ -52,13 +52,15 @@ def train(
 
     Raises:
         TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are no numbers; TLT0862,
-            there is no such device or class; TLT0864, the checkpoint cannot be resumed from; TLT0865, another process
-            trains in the folder; TLT0866, a loss is no number any more; TLT0867, the folder holds a training and
-            ``resume`` is false; TLT0868, the level has changed meanwhile.
+            there is no such device or class, or the network is too large for the file of a policy; TLT0864, the
+            checkpoint cannot be resumed from; TLT0865, another process trains in the folder; TLT0866, a loss is no
+            number any more; TLT0867, the folder holds a training and ``resume`` is false; TLT0868, the level has
+            changed meanwhile.
         WorkerError: a process that plays was lost.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
     class_of("algorithm", run.settings.classes.algorithm, PPO)
+    check_size(run.settings.network, run.fspa, run.sensors)
     with ExitStack() as stack:
         own, device = stack.enter_context(joined(device_of(run.settings.device)))
         checkpoint = None
