@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import closing, nullcontext
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -113,6 +114,7 @@ def command(
 
 def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, str | None]:
     """The file of the policy, and the level and the variant where it plays; None: where it was trained."""
+    from tltl_runtime.commands.level_argument import check_there
     from tltl_runtime.commands.policy_path import policy_path
     from tltl_runtime.training.run import RUN, read_place
 
@@ -124,6 +126,7 @@ def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, s
     if name is None and (policy / RUN).is_file():
         # The card has the level's name alone, and here is the path of its file.
         name, variant = read_place(policy)
+        check_there(name, variant, f"tltlc evaluate {quote(str(policy))}")
     return path, name, variant
 
 

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
-from typing import Final
 
 from tltl_runtime.training.metrics import METRICS, read_metrics
-from tltl_runtime.training.run import POLICY, RUN
+from tltl_runtime.training.run import POLICY, RUN, named_trainings
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-
-_MOST_NAMED: Final = 8
-"""Of the trainings in a folder, as many are named."""
 
 
 def policy_path(path: Path) -> Path:
@@ -27,10 +23,8 @@ def policy_path(path: Path) -> Path:
     if (path / RUN).exists():
         title = f"the training in `{path}` has no policy yet: {progress(path)}"
         help_ = f"`tltlc train --resume {quote(str(path))}` goes on until it has one; one that is going on has it soon"
-    elif trainings := _trainings(path):
-        named = ", ".join(f"`{each}`" for each in trainings[:_MOST_NAMED])
-        more = f" and {len(trainings) - _MOST_NAMED} more" if len(trainings) > _MOST_NAMED else ""
-        title, help_ = f"`{path}` holds trainings, and is none itself", f"name one of them: {named}{more}"
+    elif named := named_trainings(path):
+        title, help_ = f"`{path}` holds trainings, and is none itself", named
     else:
         title = f"there is neither a training nor a policy in `{path}`"
         help_ = "name a .safetensors file, or the folder that `tltlc train` named when it ended"
@@ -44,8 +38,3 @@ def progress(folder: Path) -> str:
         return "its first iteration is not over"
     episodes = sum(each["episodes"] for each in measured)
     return f"after {measured[-1]['steps']:,} steps, {episodes or 'no'} episode{'s' * (episodes != 1)} ended"
-
-
-def _trainings(folder: Path) -> list[Path]:
-    """The folders of trainings in a folder, by name."""
-    return sorted(path.parent for path in folder.glob(f"*/{RUN}"))

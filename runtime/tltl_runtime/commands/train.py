@@ -70,7 +70,7 @@ Watching, from another terminal:
     "--config",
     metavar="FILE.toml",
     type=click.Path(path_type=Path),
-    help="Settings in place of the defaults, which --print-config shows.",
+    help="Settings in place of the defaults; --print-config shows all of them.",
 )
 @click.option("--steps", metavar="N", type=click.IntRange(min=1), help="End after so many steps of all environments.")
 @click.option(
@@ -88,7 +88,7 @@ Watching, from another terminal:
 )
 @click.option("--device", metavar="cpu|cuda|cuda:N", callback=_device, help="Where the network learns.")
 @senses_options
-@click.option("--print-config", is_flag=True, help="Print the default settings, as a file for --config, and exit.")
+@click.option("--print-config", is_flag=True, help="Print the settings, as a file for --config, and exit.")
 def command(
     spec: str | None,
     folder: Path | None,
@@ -110,18 +110,23 @@ def command(
     if resume is not None and folder is not None:
         raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())
     with Report() as report, learning_for("`tltlc train`"), requests_heard():
-        from tltl_runtime.commands.training_run import Asked, new_run, resumed_run
+        from tltl_runtime.commands.training_run import Asked, new_run, new_settings, resumed_run
         from tltl_runtime.stealth.levels.file import load_level
         from tltl_runtime.stealth.supply.feasible import reach_warnings
         from tltl_runtime.training.distributed import peers
-        from tltl_runtime.training.record import write_record
-        from tltl_runtime.training.settings import default_text
+        from tltl_runtime.training.record import ended_as, write_record
+        from tltl_runtime.training.settings import settings_text
 
-        if print_config:
-            click.echo(default_text(), nl=False)
-            return exits.CLEAN
         asked = Asked(spec=spec, sensors=sensors, **options)
+        if print_config:
+            settings = new_settings(asked) if resume is None else resumed_run(asked, resume).settings
+            click.echo(settings_text(settings), nl=False)
+            return exits.CLEAN
         run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
+        if resume is not None and (record := ended_as(run)):
+            if peers().rank == 0:
+                click.echo(_over(run, record))
+            return exits.CLEAN if record["end"] == "met" else exits.FINDINGS
         report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
         last = _train(run, resume=resume is not None)
         if peers().rank > 0:
@@ -181,6 +186,21 @@ def _ended(run: Run, last: Trained) -> Iterator[str]:
     yield f"to evaluate it: tltlc evaluate {folder}"
     if last.stop != "met":
         yield f"to go on, with a higher limit: {_resume(run.folder)} --{last.stop} N"
+
+
+def _over(run: Run, record: Mapping[str, Any]) -> str:
+    """What there is to say of a training that is resumed and has ended."""
+    from tltl_runtime.commands.training_text import duration
+
+    over, stop = f"the training in `{run.folder}` is over", run.settings.stop
+    if record["end"] == "met":
+        return f"{over}, and stays as it is: the spec was met after {record['steps']:,} steps"
+    if record["end"] == "steps":
+        took, limit = f"{record['steps']:,} steps", f"{stop.steps:,}"
+    else:
+        took, limit = duration(record["seconds"]), f"{stop.minutes:g} minutes"
+    again = f"{_resume(run.folder)} --{record['end']} N"
+    return f"{over}, and stays as it is: it took {took}, and its limit is {limit}; to go on, with a higher one: {again}"
 
 
 def _resume(folder: Path) -> str:

@@ -9,17 +9,19 @@ from typing import Any, Final, Literal, TypeVar
 
 import click
 
+from tltl_runtime.commands.level_argument import check_there, names_level
 from tltl_runtime.evaluation.evaluate import check_limit
 from tltl_runtime.policies.file import check_size
-from tltl_runtime.policies.identity import spec_hash
+from tltl_runtime.policies.fit import differences
+from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.env import check_fit, spec_of
-from tltl_runtime.stealth.levels.file import level_path, load_level
+from tltl_runtime.stealth.levels.file import level_names, level_path, load_level
 from tltl_runtime.stealth.senses.sensors import chosen
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
 from tltl_runtime.training.distributed import peers
-from tltl_runtime.training.run import RUN, Run, read_run
+from tltl_runtime.training.run import RUN, Run, read_level_hash, read_run
 from tltl_runtime.training.settings import Settings, read_settings
 from tltl_runtime.training.settings_file import read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -62,13 +64,15 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     Raises TltlError for all that is wrong with its spec, level, senses and settings, TLT0873 for a folder that has
     files of something else.
     """
+    if asked.level is None and asked.spec is not None and names_level(asked.spec):
+        asked = replace(asked, level=asked.spec, spec=None)
     if asked.level is not None:
         path, variant = split(asked.level)
     elif asked.spec is not None:
         path, variant = _own_level(asked.spec), None
     else:
         raise _usage("say what to train for: a spec, a level, or both")
-    settings = _with_limits(read_settings(asked.config), asked)
+    settings = new_settings(asked)
     level = load_level(path, variant or "v0")
     spec = asked.spec or spec_of(level)
     task = load_task(spec, offered=params(level))
@@ -91,12 +95,19 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     )
 
 
-def resumed_run(asked: Asked, folder: Path) -> Run:
-    """The training in ``folder``, with those settings that are asked for and may change; all others stay.
+def new_settings(asked: Asked) -> Settings:
+    """The settings that a new training would have; errors as of :func:`read_settings`."""
+    return _with_limits(read_settings(asked.config), asked)
 
-    Raises TltlError for a folder that cannot be read, TLT0870 where anything else is asked for than it was begun with.
+
+def resumed_run(asked: Asked, folder: Path) -> Run:
+    """The training in ``folder``, with those settings that are asked for and may change; all others stay, and so does
+    the level, whose file may lie elsewhere now.
+
+    Raises TltlError for a folder that cannot be read, TLT0001 for a level that is not where it was, TLT0870 where
+    anything else is asked for than it was begun with.
     """
-    run = read_run(folder)
+    run = _at_its_level(read_run(folder), asked)
     settings = run.settings if asked.config is None else _with_file(run.settings, asked.config)
     different = list(_differences(run, asked, settings))
     if different:
@@ -105,13 +116,29 @@ def resumed_run(asked: Asked, folder: Path) -> Run:
     return replace(run, settings=_with_limits(settings, asked))
 
 
+def _at_its_level(run: Run, asked: Asked) -> Run:
+    """The training with the file of its level where it is now."""
+    if asked.level is None:
+        check_there(run.level, run.variant, f"tltlc train --resume {quote(str(run.folder))}")
+        return run
+    path, variant = split(asked.level)
+    if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
+        return run
+    return replace(run, level=path, variant=variant or "v0")
+
+
 def _own_level(spec: str) -> str:
     """The level that a spec is about by its own word: a file beside it, or one that comes with the package."""
     fspa, _ = read_spec(spec)
     if fspa.level is None:
         raise _usage(f"`{fspa.name}` does not say which level it is about: name one with --level")
     beside = Path(split(spec)[0]).parent / f"{fspa.level}.toml"
-    return str(beside) if beside.is_file() else fspa.level
+    if beside.is_file():
+        return str(beside)
+    if fspa.level not in level_names():
+        title = f"there is no level `{fspa.level}`: `{beside}` is not there, and none of that name comes with tltlc"
+        raise TltlError([Diagnostic("TLT0800", title, help="name its file with --level")])
+    return fspa.level
 
 
 def _check_folder(folder: Path) -> None:
@@ -168,7 +195,10 @@ def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
             yield f"{where} is on the level `{run.level}:{run.variant}`, not on `{path}:{variant or 'v0'}`"
     if asked.spec is not None:
         fspa, _ = read_spec(asked.spec)
-        if spec_hash(fspa) != spec_hash(run.fspa):
+        if spec_hash(fspa) != spec_hash(run.fspa) and fspa.name == run.fspa.name:
+            what = differences(run.fspa, fspa)
+            yield f"{where} is for another spec `{fspa.name}` than that of `{asked.spec}`: {what}"
+        elif spec_hash(fspa) != spec_hash(run.fspa):
             yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{asked.spec}`"
     if asked.seed is not None and asked.seed != run.seed:
         yield f"{where} has the seed {run.seed}, not {asked.seed}"

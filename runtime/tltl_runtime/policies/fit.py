@@ -37,8 +37,13 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
         title = f"the policy senses {_listed(missing)}, which the level `{level.name}` does not have"
         raise _unfit(title, f"let it play `{card.level}`, where it was trained, or train one for `{level.name}`")
     if fspa is not None and spec_hash(fspa) != spec_hash(card.fspa):
-        title = f"the policy was trained for another spec than `{fspa.name}`: {_listed([*_differences(card, fspa)])}"
+        title = f"the policy was trained for another spec than `{fspa.name}`: {differences(card.fspa, fspa)}"
         raise _unfit(title, "let it play its own spec, or train one for this spec")
+
+
+def differences(own: Fspa, fspa: Fspa) -> str:
+    """In what the spec ``fspa`` differs from ``own``, as which it does not judge; what the designer wrote first."""
+    return _listed([*_differences(own, fspa)])
 
 
 def _missing(card: Card, level: Level) -> Iterator[str]:
@@ -47,9 +52,7 @@ def _missing(card: Card, level: Level) -> Iterator[str]:
     yield from (f"the signal `{name}`" for name in card.sensors.variables if name not in signals)
 
 
-def _differences(card: Card, fspa: Fspa) -> Iterator[str]:
-    """In what two specs differ that do not judge alike, what the designer wrote first."""
-    own = card.fspa
+def _differences(own: Fspa, fspa: Fspa) -> Iterator[str]:
     if own.judge != fspa.judge:
         yield f"it is judged at the {fspa.judge}, and was at the {own.judge}"
     if own.limit_steps != fspa.limit_steps:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
+from shlex import quote
 from typing import Any, Final
 
 import torch
@@ -43,7 +44,7 @@ class Checkpoint:
     has met the spec in them and in fresh episodes.
     """
 
-    run: str
+    run: Mapping[str, str]
     iteration: int
     losses: Mapping[str, float]
     steps: int
@@ -89,12 +90,14 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
             temporary.unlink(missing_ok=True)
 
 
-def read_checkpoint(path: Path, run: str) -> Checkpoint | None:
+def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpoint | None:
     """The checkpoint in a file, None where there is no such file; nothing in it is executed.
+
+    ``run`` is the identity of the training that it must be of, None: of any.
 
     Raises:
         TltlError: TLT0001 it cannot be read; TLT0864 it is none, is damaged, is of another version, or of another
-            training than ``run``.
+            training than ``run``; TLT0868, of ``run`` on another level.
     """
     try:
         data = path.read_bytes()
@@ -104,15 +107,16 @@ def read_checkpoint(path: Path, run: str) -> Checkpoint | None:
         raise reading_error(str(path), error) from None
     content = _content(data, path)
     if content.get("version") != VERSION:
-        raise _refused(path, f"it has version {content.get('version')!r:.20}, and only version {VERSION} can be read")
-    if content.get("run") != run:
-        raise _refused(path, "it is of another training: another spec, level, seed, network, or other settings")
+        raise _other_version(path, content.get("version"))
     try:
         fields = {name: content[name] for name in _FIELDS}
         made = {name: fields[name] and kind(**fields[name]) for name, kind in _RECORDS.items()}
-        return Checkpoint(**{**fields, **made})
+        checkpoint = Checkpoint(**{**fields, **made})
     except (KeyError, TypeError) as error:
         raise _refused(path, f"it lacks a part: {error}") from None
+    if run is not None:
+        _check_run(path, checkpoint.run, run)
+    return checkpoint
 
 
 def copied(value: Any) -> Any:
@@ -138,6 +142,37 @@ def _content(data: bytes, path: Path) -> Mapping[str, Any]:
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise _refused(path, "it is no checkpoint of a training")
     return content
+
+
+def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) -> None:
+    """TLT0864 where a checkpoint is of another training, and what differs; TLT0868 where the level alone does."""
+    other = [name for name in wanted if found.get(name) != wanted[name]]
+    if other == ["level"]:
+        raise _other_level(path.parent)
+    if other:
+        raise _refused(path, f"it is of another training: another {' and another '.join(map(_called, other))}")
+
+
+def _other_level(folder: Path) -> TltlError:
+    name = quote(str(folder))
+    help_ = (
+        f"put it back and go on by `tltlc train --resume {name}`, or train anew on the level as it is now; "
+        f"`tltlc evaluate {name}` plays what was learned"
+    )
+    title = f"the level has changed since the training in `{folder}` began"
+    return TltlError([Diagnostic("TLT0868", title, help=help_)])
+
+
+def _called(part: str) -> str:
+    return "network, senses or settings" if part == "settings" else part
+
+
+def _other_version(path: Path, version: object) -> TltlError:
+    folder = quote(str(path.parent))
+    title = f"`{path}` cannot be resumed from: it was written by another version of tltlc"
+    title += f" (its own is {version!r:.20}, and only {VERSION} can be read)"
+    help_ = f"go on with that version, or train anew; `tltlc evaluate {folder}` plays what was learned"
+    return TltlError([Diagnostic("TLT0864", title, help=help_)])
 
 
 def _refused(path: Path, why: str) -> TltlError:

@@ -77,6 +77,24 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
     }
 
 
+def ended_as(run: Run) -> dict[str, Any] | None:
+    """The record of a training that has ended and would end at once if it went on, None of any other.
+
+    Its ``end`` is the limit of ``run`` that it has reached, whichever it ended by.
+    """
+    try:
+        made = json.loads((run.folder / RECORD).read_text(encoding="utf-8"))
+        stop, steps, seconds = run.settings.stop, int(made["steps"]), float(made["seconds"])
+        if made["end"] == "met":
+            return {**made}
+    except (OSError, ValueError, KeyError, TypeError):
+        # It is written anew.
+        return None
+    if steps >= stop.steps:
+        return {**made, "end": "steps"}
+    return {**made, "end": "minutes"} if 0 < stop.minutes * 60 <= seconds else None
+
+
 def _thinned(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """At most ``_MOST_POINTS`` of the lines at equal distances, the last among them."""
     stride = -(-len(lines) // _MOST_POINTS) or 1

@@ -35,6 +35,8 @@ CURVE: Final = "curve.png"
 
 _FORMAT: Final = "tltl-run"
 _VERSION: Final = 1
+_MOST_NAMED: Final = 8
+"""Of the trainings in a folder, as many are named."""
 
 
 @record
@@ -76,13 +78,20 @@ def write_run(run: Run) -> None:
         "version": _VERSION,
         **{name: to_json(getattr(run, name)) for name in _PLAIN},
         "level": level,
+        "level_hash": level_hash(load_level(run.level, run.variant)),
         "artefact": json.loads(artefact),
     }
     write_files(run.folder, {RUN: json.dumps(document, indent=1, ensure_ascii=False) + "\n"}, "name another --out")
 
 
 def read_run(folder: Path) -> Run:
-    """The training in a folder; raises TltlError: TLT0001 where there is none, TLT0863 where its file is no such."""
+    """The training in a folder.
+
+    Raises:
+        TltlError: TLT0001, its file cannot be read; TLT0863, there is none, or its file is no such.
+    """
+    if not (folder / RUN).exists():
+        raise _no_training(folder)
     source, document = _document(folder)
     _check_settings(source, document)
     values = _values(source, document, tuple(_PLAIN))
@@ -96,6 +105,12 @@ def read_place(folder: Path) -> tuple[str, str]:
     """Level and variant of the training in a folder, whatever else has changed since; errors as of :func:`read_run`."""
     values = _values(*_document(folder), ("level", "variant"))
     return values["level"], values["variant"]
+
+
+def read_level_hash(folder: Path) -> str | None:
+    """The hash of the level that the training in a folder was begun on; errors as of :func:`read_run`."""
+    found = _document(folder)[1].get("level_hash")
+    return found if isinstance(found, str) else None
 
 
 def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
@@ -139,14 +154,13 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
         raise _unfit(source, str(error)) from None
 
 
-def identity(run: Run) -> str:
-    """SHA-256, in hexadecimal, of what a checkpoint depends on: all but limits, devices and processes."""
+def identity(run: Run) -> dict[str, str]:
+    """What a checkpoint depends on, all but limits, devices and processes, in parts that messages tell apart: the
+    hashes of ``level`` and ``spec``, the ``seed``, and a SHA-256, in hexadecimal, of all ``settings``.
+    """
     settings = run.settings
     counts = {
-        "spec": spec_hash(run.fspa),
         "observation": OBSERVATION,
-        "level": level_hash(load_level(run.level, run.variant)),
-        "seed": run.seed,
         "params": dict(run.params),
         "sensors": to_json(run.sensors),
         "ppo": to_json(settings.ppo),
@@ -157,7 +171,26 @@ def identity(run: Run) -> str:
         "rollout": [settings.rollout.envs, settings.rollout.steps],
         "windows": [settings.stop.windows, settings.stop.episodes],
     }
-    return hashlib.sha256(json.dumps(counts, sort_keys=True).encode()).hexdigest()
+    return {
+        "level": level_hash(load_level(run.level, run.variant)),
+        "spec": spec_hash(run.fspa),
+        "seed": str(run.seed),
+        "settings": hashlib.sha256(json.dumps(counts, sort_keys=True).encode()).hexdigest(),
+    }
+
+
+def named_trainings(folder: Path) -> str:
+    """The trainings that a folder holds, as advice; empty where there is none."""
+    found = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
+    named = ", ".join(f"`{each}`" for each in found[:_MOST_NAMED])
+    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
+    return f"name one of them: {named}{more}" if found else ""
+
+
+def _no_training(folder: Path) -> TltlError:
+    title = f"`{folder}` cannot be resumed from: there is no training in it"
+    help_ = named_trainings(folder) or "name the folder of a training, as `tltlc train --out` did"
+    return TltlError([Diagnostic("TLT0863", title, help=help_)])
 
 
 def _unfit(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -15,6 +17,9 @@ from tltlc.monitor import RewardOptions
 from tltlc.record import record
 
 DEFAULTS: Final = Path(__file__).with_name("settings.toml")
+
+_HEADING: Final = re.compile(r"\[(\w+)\]")
+_SETTING: Final = re.compile(r"(?P<head>(?P<key>\w+) = [^#]*?)\s*(?P<comment>#.*)?$")
 
 
 @record
@@ -116,6 +121,29 @@ def read_settings(path: Path | None = None) -> Settings:
 def default_text() -> str:
     """The TOML text of the defaults, with comments: a file to begin one's own with."""
     return DEFAULTS.read_text(encoding="utf-8")
+
+
+def settings_text(settings: Settings) -> str:
+    """These settings as TOML text: that of the defaults, with other values where they differ."""
+    table, lines = "", []
+    defaults = read_settings()
+    for line in default_text().splitlines():
+        if heading := _HEADING.match(line):
+            table = heading[1]
+        if found := _SETTING.match(line):
+            value, default = (getattr(getattr(each, table, each), found["key"]) for each in (settings, defaults))
+            if value != default:
+                head = f"{found['key']} = {_toml(value)}"
+                line = f"{head:<{found.start('comment') - 1}} {found['comment'] or ''}".rstrip()
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def _toml(value: object) -> str:
+    """A value of a setting as TOML; texts have no signs that TOML would read otherwise than JSON."""
+    return (
+        json.dumps(value) if isinstance(value, (str, bool)) else str(list(value) if isinstance(value, tuple) else value)
+    )
 
 
 def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:

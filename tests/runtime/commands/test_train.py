@@ -20,7 +20,8 @@ from tests.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
 from tests.docs.blocks import DOCS
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.metrics import METRICS, read_metrics
-from tltl_runtime.training.settings import default_text
+from tltl_runtime.training.settings import default_text, read_settings
+from tltlc.record import replace
 
 TltlcFunction = Callable[..., Outcome]
 
@@ -94,6 +95,7 @@ def test_a_training_that_is_over_when_it_is_resumed(tltlc: TltlcFunction, here: 
     assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128, 192, 256]
     # As where it was killed after its second iteration, and is given a limit that it has reached then.
     (folder / "checkpoint.pt").write_bytes(before)
+    (folder / "record.json").unlink()
     found = tltlc("train", "--resume", "run", "--steps", "128")
     assert found.status == 1
     assert "steps/s" not in found.err
@@ -102,6 +104,48 @@ def test_a_training_that_is_over_when_it_is_resumed(tltlc: TltlcFunction, here: 
     events = EventAccumulator("run")
     events.Reload()
     assert [event.step for event in events.Scalars("time/episodes")] == [64, 128]
+
+
+def test_a_training_that_has_ended_stays_as_it_is(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    assert tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run").status == 1
+    times = {path: path.stat().st_mtime_ns for path in Path("run").iterdir() if path.name != ".lock"}
+    found = tltlc("train", "--resume", "run", "--steps", "100")
+    assert found == Outcome(
+        1,
+        "the training in `run` is over, and stays as it is: it took 128 steps, and its limit is 100; to go on, with a "
+        "higher one: tltlc train --resume run --steps N\n",
+        "",
+    )
+    assert {path: path.stat().st_mtime_ns for path in times} == times
+
+
+def test_a_level_whose_file_was_moved(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    assert tltlc("new", "mine", "--level", "vault").status == 0
+    asked = ("mine/vault.tltl", "--config", "small.toml", "--steps", "64", "--out", "run")
+    assert tltlc("train", *asked).status == 1
+    (here / "mine").rename(here / "yours")
+    gone = tltlc("train", "--resume", "run", "--steps", "128")
+    assert gone.status == 3
+    assert f"the level's file `{here / 'mine' / 'vault.toml'}` is not there any more" in gone.err
+    assert "`tltlc train --resume run --level FILE.toml`" in gone.err
+    assert "`tltlc evaluate run --level FILE.toml`" in tltlc("evaluate", "run").err
+    level = ("--level", "yours/vault.toml")
+    assert tltlc("evaluate", "run", *level, "--episodes", "1").status == 0
+    found = tltlc("train", "--resume", "run", "--steps", "128", *level)
+    assert found.status == 1, found.err
+    assert "ended by the limit of steps after 128 steps" in found.out
+    other = tltlc("train", "--resume", "run", "--steps", "256", "--level", "cover_and_hide")
+    assert "TLT0870" in other.err and "not on `cover_and_hide:v0`" in other.err
+
+
+def test_a_spec_of_the_same_name_is_told_apart(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    assert tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it").status == 0
+    Path("soon.tltl").write_text(SOON.replace("8 steps", "9 steps"))
+    found = tltlc("train", "soon.tltl", "--resume", "it")
+    assert found.err.startswith(
+        "error[TLT0870]: the training in `it` is for another spec `soon` than that of `soon.tltl`: "
+        "its limit is 9 steps, and was 8 steps\n"
+    )
 
 
 def test_until_the_spec_is_met(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -176,7 +220,8 @@ def test_a_training_goes_into_no_folder_of_other_files(tltlc: TltlcFunction, her
         (["soon.tltl", "--entities", "s9"], 2, "the level `cover_and_hide` has no entity `s9`"),
         (["soon.tltl", "--config", "large.toml"], 1, "`network` gives a policy of 70 MiB, and a file of one has 64"),
         (["soon.tltl", "--config", "gone.toml"], 3, "cannot read `gone.toml`"),
-        (["--resume", "gone"], 3, "cannot read `gone/run.json`"),
+        (["--resume", "gone"], 1, "`gone` cannot be resumed from: there is no training in it"),
+        (["vault.tltl"], 2, "there is no level `vault`: `vault.toml` is not there, and none of that name comes with"),
         (["--resume", "gone", "--out", "there"], 2, "--resume goes on in its own folder"),
         (["soon.tltl", "--out", "small.toml/run"], 3, "cannot write into `small.toml/run`"),
     ],
@@ -190,6 +235,7 @@ def test_what_cannot_be_trained(
 ) -> None:
     (here / "large.toml").write_text("[network]\nhidden = [8192, 4096]\n")
     (here / "hide.tltl").write_text("signal mood: bool\nspec hide { limit 9 steps\n keep mood }\n")
+    (here / "vault.tltl").write_text(SOON.replace("cover_and_hide", "vault"))
     (here / "endless.tltl").write_text("import stealth\nspec endless { level navigation\n reach seen }\n")
     found = tltlc("train", *arguments)
     assert (found.status, found.out) == (status, ""), found.err
@@ -221,8 +267,25 @@ def test_the_level_beside_the_spec_comes_first(tltlc: TltlcFunction, here: Path)
     assert Path("training/vault-v0-unseen-0/policy.safetensors").is_file()
 
 
+def test_a_level_is_named_where_a_spec_could_be(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    found = tltlc("train", "navigation:v1", "--config", "small.toml", "--steps", "64")
+    assert found.status == 1, found.err
+    assert Path("training/navigation-v1-navigation-0").is_dir()
+
+
 def test_the_defaults_can_be_had(tltlc: TltlcFunction) -> None:  # noqa: F811
     assert tltlc("train", "--print-config") == Outcome(0, default_text(), "")
+
+
+def test_the_settings_that_would_hold_can_be_had(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    found = tltlc("train", "--print-config", "--config", "small.toml", "--minutes", "0.5", "--device", "cuda")
+    assert found.status == 0, found.err
+    Path("all.toml").write_text(found.out)
+    wanted = read_settings(here / "small.toml")
+    wanted = replace(wanted, device="cuda", stop=replace(wanted.stop, minutes=0.5))
+    assert read_settings(here / "all.toml") == wanted
+    assert "envs = 4                # environments, of each process of torchrun" in found.out.splitlines()
+    assert len(found.out.splitlines()) == len(default_text().splitlines())
 
 
 @pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])

@@ -179,6 +179,9 @@ def test_a_policy_is_not_confirmed_on_a_level_that_has_changed(tmp_path: Path, m
     with pytest.raises(TltlError) as caught:
         list(reports)
     compare("TLT0868", caught.value)
+    with pytest.raises(TltlError) as caught:
+        next(train(run, resume=True))
+    compare("TLT0868_resumed", caught.value)
     Path("plan.toml").write_text(shipped)
     assert list(train(run, resume=True))[-1].stop == "met"
 

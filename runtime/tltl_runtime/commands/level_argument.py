@@ -1,0 +1,23 @@
+"""Levels that are named where something else could be, and levels whose file is gone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tltl_runtime.stealth.levels.file import level_names
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.spec_file import split
+
+
+def names_level(text: str) -> bool:
+    """Whether a text that could be a path is ``LEVEL`` or ``LEVEL:VARIANT`` of a level that comes with the package."""
+    return not Path(text).exists() and split(text)[0] in level_names()
+
+
+def check_there(level: str, variant: str, command: str) -> None:
+    """Raise TltlError, TLT0001, where a level's file is gone: ``command`` takes it from elsewhere with --level."""
+    if level.endswith(".toml") and not Path(level).exists():
+        other = "" if variant == "v0" else f":{variant}"
+        title = f"the level's file `{level}` is not there any more"
+        help_ = f"put it back, or say where it is now: `{command} --level FILE.toml{other}`"
+        raise TltlError([Diagnostic("TLT0001", title, help=help_)])
