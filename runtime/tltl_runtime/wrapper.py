@@ -111,6 +111,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
             **info,
             "verdict": start.verdict,
             "state": 0,
+            "unmet": 0,
             "label": start.label.ascii,
             "progress": 0.0,
             "success": False,
@@ -129,6 +130,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         """
         observation, env_reward, terminated, truncated, info = self.env.step(action)
         sample = self._sample(f"step {self._monitor.steps + 1}")
+        before = self._monitor.state
         self.taken = step = self._monitor.step(sample, last=terminated or truncated)
         for notice in self._monitor.notices:
             warnings.warn(f"{notice.code}: {notice.title}", stacklevel=2)
@@ -136,7 +138,7 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         settled = step.done and (self._monitor.success or step.verdict == "violated")
         terminated = terminated or settled
         truncated = truncated or (step.done and not terminated)
-        info = {**info, **self._said(step), "env_reward": env_reward}
+        info = {**info, **self._said(step, before), "env_reward": env_reward}
         return self._observed(observation), step.reward, terminated, truncated, info
 
     def _sample(self, when: str) -> Mapping[str, SupportsFloat]:
@@ -150,10 +152,12 @@ class TltlEnv(gymnasium.Wrapper[Observation, Any, Any, Any], RecordConstructorAr
         self.sample = given
         return given
 
-    def _said(self, step: Step) -> dict[str, Any]:
+    def _said(self, step: Step, before: int) -> dict[str, Any]:
+        """What ``info`` has of a step from the state ``before``."""
         return {
             "verdict": step.verdict,
             "state": step.state,
+            "unmet": before if step.verdict == "violated" else step.state,
             "label": step.label,
             "progress": step.progress,
             "success": self._monitor.success,

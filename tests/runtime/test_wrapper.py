@@ -145,6 +145,7 @@ def test_the_papers_numbers() -> None:
         "host": "step",
         "verdict": "holding",
         "state": 4,
+        "unmet": 4,
         "label": "G alive",
         "progress": 1.0,
         "success": True,
@@ -186,6 +187,7 @@ def test_a_violation_terminates_and_costs_the_unspent_steps() -> None:
     steps = episode(played([{**FAR, "distance(s1)": 0.0}, {**FAR, "health": 0.0}], cover_and_hide()))
     assert steps[-1][1:3] == (True, False)
     assert (steps[-1][3]["verdict"], steps[-1][3]["success"]) == ("violated", False)
+    assert (steps[-1][3]["unmet"], steps[-1][3]["state"]) == (steps[-2][3]["state"], 2)
     assert total(steps) == pytest.approx(1 / 3 - 1)
 
 

@@ -12,6 +12,7 @@ from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.notation import notation_option
 from tltl_runtime.commands.options import output_folder, seed_option
+from tltl_runtime.texts import number, share
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.spec_file import split
@@ -107,5 +108,5 @@ def _line(episode: Episode, path: Path) -> str:
 
     steps, seconds = len(episode.actions), episode.snapshots[-1].time
     ended = f"seed {episode.seed}: {episode.end} after {steps} steps, {seconds:.2f} s"
-    line = f"{ended}, progress {episode.progress[-1]:.2f}, return {episode.rewards.sum():.3f}: {path}"
+    line = f"{ended}, progress {share(episode.progress[-1])}, return {number(episode.rewards.sum(), 3)}: {path}"
     return line if episode.success else f"{line}\n  {cause(episode).text}"

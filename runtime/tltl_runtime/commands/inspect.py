@@ -43,7 +43,7 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
         from tltl_runtime.policies.summary import summary, summary_text
 
         for name, policy in read_each(files, lambda name: read_policy(_file(name)), report):
-            said = {"file": name, **summary(policy)}
+            said = {"file": name, **summary(policy), **_so_far(Path(name), policy)}
             if path is not None:
                 _export(policy, path)
                 report.say(f"wrote {path}")
@@ -61,6 +61,14 @@ def _file(name: str) -> Path:
 
     path = Path(name)
     return policy_path(path) if path.exists() else shipped_policy(name) or path
+
+
+def _so_far(path: Path, policy: Policy) -> dict[str, Any]:
+    """How the training in a folder goes that has a policy, but no record yet."""
+    from tltl_runtime.training.record import record_so_far
+    from tltl_runtime.training.run import RUN
+
+    return {"training": record_so_far(path)} if not policy.card.training and (path / RUN).exists() else {}
 
 
 def _still_going(path: Path, policy: Policy) -> str:

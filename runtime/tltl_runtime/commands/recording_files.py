@@ -12,6 +12,7 @@ import click
 from tltl_runtime.stealth.episodes.cause import cause
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import SUFFIX, new_path, write_episode
+from tltl_runtime.texts import share
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
 
@@ -76,4 +77,4 @@ def _refusal(folder: Path, make: bool) -> str:
 
 
 def _judged(episode: Episode) -> str:
-    return f"{cause(episode).text}; {episode.verdict}, progress {episode.progress[-1]:.2f}, seed {episode.seed}"
+    return f"{cause(episode).text}; {episode.verdict}, progress {share(episode.progress[-1])}, seed {episode.seed}"

@@ -16,6 +16,7 @@ from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.senses import senses_options
 from tltl_runtime.commands.workers import WorkersType
+from tltl_runtime.texts import share
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -179,7 +180,7 @@ def _ended(run: Run, last: Trained) -> Iterator[str]:
 
     window, folder = last.window, quote(str(run.folder))
     ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
-    met = f"met in {window.successes} of the last {window.count} episodes, progress {window.progress:.2f}"
+    met = f"met in {window.successes} of the last {window.count} episodes, progress {share(window.progress)}"
     took = f"after {last.steps:,} steps, {duration(last.seconds)}"
     yield f"{ended} {took}: {met if window.count else 'no episode has ended'}"
     yield f"{folder}: policy.safetensors, record.json, curve.png"

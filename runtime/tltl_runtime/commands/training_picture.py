@@ -20,6 +20,7 @@ from tltl_runtime.commands.training_text import (
     search_line,
     seconds_left,
 )
+from tltl_runtime.texts import number, percent, share
 from tltl_runtime.training.report import Report, Window
 from tltl_runtime.training.run import CHECKPOINT, Run
 from tltl_runtime.training.search import Searched
@@ -86,9 +87,9 @@ class Picture:
         table = _grid(bar)
         wanted = f"of at least {exploration.ways}"
         table.add_row("ways found", _bar(found / exploration.ways, "green", bar), f"{found:4}", wanted)
-        share = min(1.0, searched.steps / exploration.steps)
+        part = min(1.0, searched.steps / exploration.steps)
         most = f"of {exploration.steps:,} steps at the most"
-        table.add_row("searched", _bar(share, "blue", bar), f"{share:4.0%}", most)
+        table.add_row("searched", _bar(part, "blue", bar), f"{percent(part):>4}", most)
         return Group(table, Text(f"\n{search_line(searched)}"))
 
     def _body(self, report: Report, bar: int, room: int) -> RenderableType:
@@ -98,12 +99,14 @@ class Picture:
         since = 0.0 if report.stop else now - self._at
         said = [self._confirmation] if self._confirmation else []
         others = [*_figures(report, stop, since), *said, self._kept(now, report)]
+        # Of an episode that violated the spec it is told where it was before.
+        states = tuple(state for state in run.fspa.states if state.verdict != "violated")
         count = max(1, min(_MOST_STATES, room - len(others) - 2 * len(space) - 4))
         return Group(
             _success(report, stop, bar),
             *space,
-            Text(_ended(window, count, len(run.fspa.states)), "dim", no_wrap=True, overflow="ellipsis"),
-            _states(window, run.fspa.states, count, bar),
+            Text(_ended(window, count, len(states)), "dim", no_wrap=True, overflow="ellipsis"),
+            _states(window, states, count, bar),
             *space,
             *(Text(each, no_wrap=True, overflow="ellipsis") for each in others),
         )
@@ -121,10 +124,10 @@ def _success(report: Report, stop: Stop, bar: int) -> Table:
     window, row, wanted = report.window, report.unbroken, stop.windows * stop.episodes
     table = _grid(bar)
     rate_of = f"of {window.count} episodes"
-    table.add_row("spec met", _bar(window.pass_rate, "green", bar), f"{window.pass_rate:4.0%}", rate_of)
+    table.add_row("spec met", _bar(window.pass_rate, "green", bar), f"{percent(window.pass_rate):>4}", rate_of)
     ends = f"of {wanted}, then the policy is confirmed"
     table.add_row("met in a row", _bar(row / wanted, "green", bar), f"{row:4}", ends)
-    table.add_row("progress", _bar(window.progress, "blue", bar), f"{window.progress:4.2f}")
+    table.add_row("progress", _bar(window.progress, "blue", bar), share(window.progress))
     return table
 
 
@@ -140,23 +143,25 @@ def _states(window: Window, states: tuple[State, ...], count: int, bar: int) -> 
     shown = sorted(states, key=lambda state: -window.states.get(state.id, 0.0))[:count]
     table = _grid(bar)
     for state in sorted(shown, key=lambda state: state.id):
-        share = window.states.get(state.id, 0.0)
-        colour = "green" if state.accepting else "red" if state.distance is None else "cyan"
-        label = Text(state.label.english, "" if share else "dim")
-        table.add_row(f"state {state.id}", _bar(share, colour, bar), f"{share:4.0%}", label)
+        ended, violated = window.states.get(state.id, 0.0), window.violated.get(state.id, 0.0)
+        colour = "red" if violated > ended / 2 else "green" if state.accepting else "cyan"
+        label = Text(state.label.english, "" if ended else "dim")
+        if violated:
+            label = Text.assemble((f"{percent(violated)} violated: ", "red"), label)
+        table.add_row(f"state {state.id}", _bar(ended, colour, bar), f"{percent(ended):>4}", label)
     return table
 
 
 def _figures(report: Report, stop: Stop, since: float) -> list[str]:
     """Lines of numbers, ``since`` seconds after the report."""
     window, iteration = report.window, report.iteration
-    best = "" if report.best_pass_rate is None else f"; best so far: met in {report.best_pass_rate:.0%}"
+    best = "" if report.best_pass_rate is None else f"; best so far: met in {percent(report.best_pass_rate)}"
     learning = iteration.learn_s / ((iteration.learn_s + iteration.collect_s) or 1.0)
     speed = f", {rate(report):,.0f} a second ({learning:.0%} learning)" if iteration.steps else ""
     left = max(0.0, seconds_left(report, stop) - since)
     end = "ended" if report.stop else f"at most {duration(left)} left"
     return [
-        f"reward {window.reward:.2f}, {window.steps:.0f} steps an episode{best}",
+        f"reward {number(window.reward, 2)}, {window.steps:.0f} steps an episode{best}",
         f"{report.steps:,} of at most {stop.steps:,} steps{speed}",
         f"{duration(report.seconds + since)} so far, {end}",
         *([found_line(report.searched)] if report.searched else ()),

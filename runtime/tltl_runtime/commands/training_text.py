@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tltl_runtime.texts import number, share
 from tltl_runtime.training.report import Confirmation, Report
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Stop
@@ -14,8 +15,8 @@ def line(report: Report, stop: Stop) -> str:
     if window.count:
         parts += [
             f"met in {window.successes} of the last {window.count} episodes",
-            f"progress {window.progress:.2f}",
-            f"reward {window.reward:.2f}",
+            f"progress {share(window.progress)}",
+            f"reward {number(window.reward, 2)}",
         ]
     if report.confirmation:
         parts.append(confirmation_line(report.iteration.number, report.confirmation))

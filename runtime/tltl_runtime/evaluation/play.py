@@ -51,9 +51,8 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
     generator = np.random.default_rng(_stream(seed, index, _OF_ACTIONS)) if sampled else None
     reset_seed = episode_seed(seed, index)
     observation, info = env.reset(seed=reset_seed)
-    before, reward, steps, over = 0, 0.0, 0, False
+    reward, steps, over = 0.0, 0, False
     while not over:
-        before = info["state"]
         try:
             action = policy.choose(observation, generator)
         except NoNumbersError as error:
@@ -64,7 +63,6 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
         reward, steps, over = reward + float(gained), steps + 1, terminated or truncated
     violated = info["verdict"] == "violated"
     fspa = env.get_wrapper_attr("task").fspa
-    unmet = before if violated else info["state"]
     return Played(
         index=index,
         seed=reset_seed,
@@ -76,8 +74,8 @@ def play(policy: Policy, env: gymnasium.Env[Any, Any], seed: int, index: int, sa
         steps=steps,
         seconds=steps * env.get_wrapper_attr("tltl_clock_s"),
         state=info["state"],
-        unmet=unmet,
-        label=fspa.states[unmet].label.english,
+        unmet=info["unmet"],
+        label=fspa.states[info["unmet"]].label.english,
     )
 
 

@@ -8,6 +8,7 @@ from typing import Final
 from tltl_runtime.evaluation.figures import Ended, Figures
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.stealth.episodes.episode import End
+from tltl_runtime.texts import column, number, share
 
 _WIDTH: Final = 24
 """Of a column, in letters."""
@@ -25,9 +26,9 @@ def report_text(figures: Mapping[str, Figures]) -> str:
         _row("", figures),
         _row("episodes", [str(len(each.episodes)) for each in every]),
         _row("pass rate (95 %)", [_rate(each) for each in every]),
-        _row("progress", [_spread(each.progress, 2) for each in every]),
-        _row("reward", [_spread(each.reward, 2) for each in every]),
-        _row("steps", [_spread(each.steps, 0) for each in every]),
+        _row("progress", [f"{share(each.progress.mean)} ± {_std(each, each.progress, 2)}" for each in every]),
+        _row("reward", [f"{number(each.reward.mean, 2)} ± {_std(each, each.reward, 2)}" for each in every]),
+        _row("steps", [f"{each.steps.mean:.0f} ± {_std(each, each.steps, 0)}" for each in every]),
     ]
     for name, each in figures.items():
         failed = sum(ended.count for ended in each.ended)
@@ -43,14 +44,15 @@ def _row(name: str, cells: Mapping[str, Figures] | list[str]) -> str:
 
 def _rate(each: Figures) -> str:
     low, high = each.pass_interval
-    return f"{each.pass_rate:.2f} ({low:.2f} to {high:.2f})"
+    return f"{share(each.pass_rate)} ({share(low)} to {share(high)})"
 
 
-def _spread(spread: Spread, places: int) -> str:
-    return f"{spread.mean:.{places}f} ± {spread.std:.{places}f}"
+def _std(each: Figures, spread: Spread, places: int) -> str:
+    """A standard deviation, which a single episode does not have."""
+    return number(spread.std, places) if len(each.episodes) > 1 else "-"
 
 
 def _failures(ended: Ended) -> tuple[str, str]:
     listed = ", ".join(map(str, ended.episodes[:_MOST_LISTED])) + (", …" if ended.count > _MOST_LISTED else "")
-    what = f"  {ended.count} {_ENDS[ended.end]} in state {ended.state}, remaining: {ended.label}"
-    return what, f"    episode{'s' if ended.count > 1 else ''} {listed}"
+    what = column("  ", f"{ended.count} {_ENDS[ended.end]} in state {ended.state}, remaining: {ended.label}")
+    return what, column(f"    episode{'s' if ended.count > 1 else ''} ", listed)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.record_json import to_json
+from tltl_runtime.texts import column, share
 
 _ENDS: Final[Mapping[str, str]] = {
     "met": "the spec was met",
@@ -26,7 +27,8 @@ def summary(policy: Policy) -> dict[str, Any]:
         "level_hash": card.level_hash,
         "spec": card.fspa.name,
         "spec_hash": spec_hash(card.fspa),
-        "formula": card.fspa.formula.english,
+        "formula": card.fspa.formula.ascii,
+        "english": card.fspa.formula.english,
         "params": dict(card.params),
         "states": [state.label.english for state in card.fspa.states],
         "observation": dict(card.shapes),
@@ -49,17 +51,18 @@ def summary_text(said: Mapping[str, Any]) -> str:
         layers = f"convolution {' + '.join(map(str, network['channels']))}, then {layers}"
     rows = {
         "level": f"{said['level']} {said['variant']} (hash {said['level_hash'][:12]})",
-        "spec": f"{said['spec']} (hash {said['spec_hash'][:12]}): {said['formula']}",
+        "spec": f"{said['spec']} (hash {said['spec_hash'][:12]}): {said['english']}",
         "senses": ", ".join((*sensors["entities"], *sensors["variables"])) or "neither entities nor variables",
         "map": _map(map_) if map_ else "",
         "network": f"{layers} ({network['activation']}), {said['weights']:,} weights",
         "training": _training(said["training"]),
+        "kept": _kept(said["training"]),
         "ended": _ENDS.get(str(said["training"].get("end")), ""),
         "search": _search(said["training"]),
         "versions": ", ".join(f"{name} {version}" for name, version in said["versions"].items()),
     }
     shown = {name: "".join(sign if sign.isprintable() else "\ufffd" for sign in text) for name, text in rows.items()}
-    return "".join(f"  {name:9}{text}\n" for name, text in shown.items() if text)
+    return "".join(column(f"  {name:9}", text) + "\n" for name, text in shown.items() if text)
 
 
 def _map(sensor: Mapping[str, Any]) -> str:
@@ -71,13 +74,23 @@ def _training(record: Mapping[str, Any]) -> str:
     window = record.get("window")
     # Of no episodes there is no rate.
     values = {**(window if isinstance(window, dict) and window.get("episodes") else {}), **record}
-    wordings = (
-        ("seed", "seed {seed}"),
-        ("steps", "{steps:,} steps"),
-        ("seconds", "{seconds:,.0f} s"),
-        ("pass_rate", "pass rate {pass_rate:.2f} at the end"),
+    wordings: tuple[tuple[str, Callable[[Any], str]], ...] = (
+        ("seed", "seed {}".format),
+        ("steps", "{:,} steps".format),
+        ("seconds", "{:,.0f} s".format),
+        ("pass_rate", lambda rate: f"pass rate {share(rate)} in its last episodes"),
     )
-    return ", ".join(text.format(**values) for key, text in wordings if isinstance(values.get(key), (int, float)))
+    return ", ".join(said(values[key]) for key, said in wordings if isinstance(values.get(key), (int, float)))
+
+
+def _kept(record: Mapping[str, Any]) -> str:
+    """How good the policy was that the training kept, as far as its record tells."""
+    best = record.get("best")
+    if not isinstance(best, dict) or not isinstance(best.get("pass_rate"), (int, float)):
+        return ""
+    steps, confirmed = best.get("steps"), ", confirmed in fresh episodes" if best.get("confirmed") else ""
+    after = f", after {steps:,} steps" if isinstance(steps, int) else ""
+    return f"the best policy, pass rate {share(best['pass_rate'])} in its window{after}{confirmed}"
 
 
 def _search(record: Mapping[str, Any]) -> str:

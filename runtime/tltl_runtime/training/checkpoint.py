@@ -26,10 +26,11 @@ VERSION: Final = 2
 
 @record
 class Best:
-    """The policy that is kept: its score, and the actor's weights by name."""
+    """The policy that is kept: its score, the actor's weights by name, and the steps after which it had them."""
 
     score: Score
     actor: Mapping[str, Tensor]
+    steps: int | None = None
 
 
 @record

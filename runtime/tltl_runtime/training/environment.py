@@ -22,12 +22,16 @@ from tltlc.record import record
 
 @record
 class Finished:
-    """An episode that ended in training: ``steps`` long, in ``state`` of the automaton; ``progress`` is in [0, 1]."""
+    """An episode that ended in training: ``steps`` long, in ``state`` of the automaton; ``progress`` is in [0, 1].
+
+    Of one that was ``violated`` it is the state before.
+    """
 
     success: bool
     progress: float
     steps: int
     state: int
+    violated: bool
 
 
 class TrainingEnv(VecEnv):
@@ -134,7 +138,8 @@ def _finished(infos: Mapping[str, Any], rows: NDArray[np.int64]) -> dict[int, Fi
             success=bool(infos["success"][row]),
             progress=float(infos["progress"][row]),
             steps=int(episode["l"][row]),
-            state=int(infos["state"][row]),
+            state=int(infos["unmet"][row]),
+            violated=infos["verdict"][row] == "violated",
         )
         for row in rows
     }

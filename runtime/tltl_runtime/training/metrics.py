@@ -21,7 +21,8 @@ from tltlc.writing import write_file
 METRICS: Final = "metrics.jsonl"
 
 _ADVICE: Final = "see that there is room, and that you may write there"
-_OF_THE_WINDOW: Final = ("pass_rate", "progress", "reward", "episode_steps")
+OF_THE_WINDOW: Final = ("pass_rate", "progress", "reward", "episode_steps")
+"""The means over the last episodes."""
 _OF_THE_ITERATION: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
 
 
@@ -72,22 +73,23 @@ def measurements(report: Report, fspa: Fspa) -> dict[str, Any]:
         "learn_s": round(iteration.learn_s, 4),
         "episodes": len(iteration.finished),
         "window": window.count,
-        **(dict.fromkeys(_OF_THE_WINDOW) if not window.count else means(window)),
+        **(dict.fromkeys(OF_THE_WINDOW) if not window.count else means(window)),
         "confirmation": report.confirmation and to_json(report.confirmation),
-        "states": [_ended(fspa.states[state], share) for state, share in sorted(window.states.items())],
+        "states": [_ended(window, fspa.states[state]) for state in sorted(window.states)],
         "losses": {name: round(loss, 6) for name, loss in iteration.losses.items()},
     }
 
 
-def _ended(state: State, share: float) -> dict[str, Any]:
-    label = state.label
-    return {"state": state.id, "label": label.ascii, "english": label.english, "share": round(share, 6)}
+def _ended(window: Window, state: State) -> dict[str, Any]:
+    label, ended, violated = state.label, window.states[state.id], window.violated.get(state.id, 0.0)
+    shares = {"share": round(ended, 6), "violated": round(violated, 6)}
+    return {"state": state.id, "label": label.ascii, "english": label.english, **shares}
 
 
 def means(window: Window) -> dict[str, float]:
     """How the episodes of a window went."""
     values = (window.pass_rate, window.progress, window.reward, window.steps)
-    return {name: round(value, 6) for name, value in zip(_OF_THE_WINDOW, values, strict=True)}
+    return {name: round(value, 6) for name, value in zip(OF_THE_WINDOW, values, strict=True)}
 
 
 def read_metrics(path: Path) -> list[dict[str, Any]]:
@@ -136,9 +138,10 @@ def _append(path: Path, line: bytes) -> None:
 
 def _scalars(measured: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
     """The measurements as TensorBoard takes them, by tag."""
-    yield from ((f"train/{name}", measured[name]) for name in _OF_THE_WINDOW if measured["window"])
+    yield from ((f"train/{name}", measured[name]) for name in OF_THE_WINDOW if measured["window"])
     yield from ((f"time/{name}", measured[name]) for name in _OF_THE_ITERATION)
     yield from ((f"state/{each['state']}", each["share"]) for each in measured["states"])
+    yield from ((f"violated/{each['state']}", each["violated"]) for each in measured["states"])
     yield from ((f"loss/{name}", value) for name, value in measured["losses"].items())
 
 

@@ -6,6 +6,7 @@ import json
 import os
 import platform
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.policies.card import Card
@@ -13,10 +14,11 @@ from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.record_json import to_json
+from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.curve import draw_curve
-from tltl_runtime.training.metrics import METRICS, means, read_metrics
+from tltl_runtime.training.metrics import METRICS, OF_THE_WINDOW, means, read_metrics
 from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import CURVE, POLICY, RECORD, Run
+from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, Run, read_run
 from tltl_runtime.training.versions import versions
 from tltlc.record import replace
 from tltlc.writing import write_files
@@ -59,6 +61,7 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
         "level_hash": card.level_hash,
         "seed": run.seed,
         "end": last.stop,
+        "best": _best(last.best_pass_rate, last.best_steps, confirmed=last.stop == "met"),
         "iterations": last.iteration.number,
         "steps": last.steps,
         "replayed": last.replayed,
@@ -75,6 +78,30 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
         "settings": to_json(run.settings),
         "curve": [{name: line[name] for name in _POINT} for line in _thinned(measured)],
     }
+
+
+def record_so_far(folder: Path) -> dict[str, Any]:
+    """What there is yet of the record of a training that goes on, or was broken off, in a folder.
+
+    Raises:
+        TltlError: its files cannot be read.
+    """
+    made: dict[str, Any] = {"seed": read_run(folder).seed, "end": None}
+    if measured := read_metrics(folder / METRICS):
+        last = measured[-1]
+        made |= {name: last[name] for name in ("steps", "seconds") if name in last}
+        if last.get("window"):
+            made["window"] = {"episodes": last["window"], **{name: last[name] for name in OF_THE_WINDOW}}
+    if checkpoint := read_checkpoint(folder / CHECKPOINT):
+        best, searched = checkpoint.best, checkpoint.searched
+        made["best"] = _best(best.score[0], best.steps, confirmed=checkpoint.met) if best else None
+        made["search"] = None if searched is None else to_json(searched)
+    return made
+
+
+def _best(pass_rate: float | None, steps: int | None, *, confirmed: bool) -> dict[str, Any] | None:
+    """What is told of the policy that is kept; None where there is none."""
+    return None if pass_rate is None else {"pass_rate": round(pass_rate, 6), "steps": steps, "confirmed": confirmed}
 
 
 def ended_as(run: Run) -> dict[str, Any] | None:

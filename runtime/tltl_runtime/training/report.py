@@ -17,8 +17,9 @@ class Window:
     """The last episodes, ``count`` of them, ``successes`` among these.
 
     Means: ``progress`` in [0, 1], ``reward`` with the undiscounted terminal penalty whatever the training counts, and
-    length in ``steps``; all are 0 where there is no episode.  ``states`` has the share of episodes that ended in each
-    state of the automaton, in [0, 1], by the state's number; states where none ended are left out.
+    length in ``steps``; all are 0 where there is no episode.  ``states`` has the share of episodes, in [0, 1], by the
+    number of the automaton's state in which they ended, or were before they violated the spec; ``violated`` has that of
+    the latter alone.  States where none ended are left out.
     """
 
     count: int
@@ -27,6 +28,7 @@ class Window:
     reward: float
     steps: float
     states: Mapping[int, float]
+    violated: Mapping[int, float]
 
     @property
     def pass_rate(self) -> float:
@@ -56,9 +58,10 @@ class Report:
     ``steps`` are all decisions so far, of all environments and processes; ``seconds`` the training time so far, over
     resumptions.  ``unbroken`` is how many of the last episodes met the spec in a row, counted anew after a
     ``confirmation`` that failed; None where none was due.  ``best_pass_rate`` is that of the policy that is kept, None
-    as long as there is none.  ``stop`` says why the training ends here, None where it goes on; ``checkpointed`` whether
-    a checkpoint of this iteration was written.  ``searched`` is what the search before it found, None where there was
-    none, its decisions not among the ``steps``; nor are those that were ``replayed`` to begin where others had been.
+    as long as there is none, and ``best_steps`` the steps after which it had its weights.  ``stop`` says why the
+    training ends here, None where it goes on; ``checkpointed`` whether a checkpoint of this iteration was written.
+    ``searched`` is what the search before it found, None where there was none, its decisions not among the ``steps``;
+    nor are those that were ``replayed`` to begin where others had been.
     """
 
     iteration: Iteration
@@ -72,3 +75,4 @@ class Report:
     checkpointed: bool
     searched: Searched | None = None
     replayed: int = 0
+    best_steps: int | None = None

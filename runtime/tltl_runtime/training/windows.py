@@ -57,7 +57,7 @@ class Windows:
 
     def state(self) -> list[tuple[Any, ...]]:
         """The episodes as plain values, for :meth:`load`."""
-        return [(each.success, each.progress, each.steps, each.state) for each in self._last]
+        return [(each.success, each.progress, each.steps, each.state, each.violated) for each in self._last]
 
     def load(self, state: Iterable[Sequence[Any]], unbroken: int) -> None:
         """Take up what :meth:`state` gave."""
@@ -67,6 +67,7 @@ class Windows:
     def _window(self, episodes: tuple[Finished, ...]) -> Window:
         count = len(episodes)
         ends = Counter(each.state for each in episodes)
+        violated = Counter(each.state for each in episodes if each.violated)
         return Window(
             count=count,
             successes=sum(each.success for each in episodes),
@@ -74,6 +75,7 @@ class Windows:
             reward=sum(self._reward(each) for each in episodes) / max(count, 1),
             steps=sum(each.steps for each in episodes) / max(count, 1),
             states={state: ended / count for state, ended in sorted(ends.items())},
+            violated={state: ended / count for state, ended in sorted(violated.items())},
         )
 
     def _reward(self, episode: Finished) -> float:

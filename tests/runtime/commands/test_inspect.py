@@ -19,6 +19,7 @@ from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.summary import summary, summary_text
 from tltl_runtime.training.metrics import METRICS
 from tltl_runtime.training.run import POLICY, write_run
+from tltl_runtime.training.train import train
 from tltlc.record import replace
 
 TRAINING = {
@@ -27,6 +28,7 @@ TRAINING = {
     "steps": 412_000,
     "seconds": 512.25,
     "window": {"episodes": 100, "pass_rate": 0.98},
+    "best": {"pass_rate": 1.0, "steps": 408_000, "confirmed": True},
     "search": {"steps": 6400, "lengths": [90, 80]},
 }
 
@@ -49,9 +51,13 @@ def test_a_summary(tltlc, file: Path, policy: Policy) -> None:  # type: ignore[n
     assert lines[0] == str(file)
     assert lines[1] == f"  level    cover_and_hide v0 (hash {policy.card.level_hash[:12]})"
     assert lines[2].startswith(f"  spec     cover_and_hide (hash {spec_hash(policy.card.fspa)[:12]}): ")
-    assert lines[3].startswith("  senses   s1, s2, exit, ")
-    assert lines[4].startswith("  map      15 x 15 cells of ")
-    assert "  training seed 3, 412,000 steps, 512 s, pass rate 0.98 at the end" in lines
+    assert lines[3].startswith("           ")
+    assert lines[4].startswith("  senses   s1, s2, exit, ")
+    assert max(map(len, lines[1:])) <= 80
+    assert any(line.startswith("  map      15 x 15 cells of ") for line in lines)
+    assert "  training seed 3, 412,000 steps, 512 s, pass rate 0.98 in its last episodes" in lines
+    assert "  kept     the best policy, pass rate 1.00 in its window, after 408,000 steps," in lines
+    assert "           confirmed in fresh episodes" in lines
     assert "  ended    the spec was met" in lines
     assert "  search   2 ways to meet the spec, the shortest of 80 steps" in lines
     assert tltlc("inspect", str(file.parent)).out.splitlines()[1:] == lines[1:]
@@ -66,6 +72,7 @@ def test_a_summary_as_json_with_a_file_that_is_no_policy(tltlc, file: Path, poli
     (said,) = json.loads(found.out)
     assert (said["file"], said["level"], said["training"]) == (str(file), "cover_and_hide", TRAINING)
     assert said["branches"] == [3, 3, 2, 2, 2]
+    assert (said["formula"], said["english"]) == (policy.card.fspa.formula.ascii, policy.card.fspa.formula.english)
     assert said["observation"]["automaton"] == [len(said["states"])]
 
 
@@ -76,7 +83,7 @@ def test_a_summary_as_json_with_a_file_that_is_no_policy(tltlc, file: Path, poli
         {"seed": "x", "seconds": [], "window": 3},
         {"window": {"pass_rate": None}},
         {"window": {"episodes": 0, "pass_rate": 0.0}},
-        {"end": ["met"], "search": {"lengths": ["x"]}},
+        {"end": ["met"], "search": {"lengths": ["x"]}, "best": {"pass_rate": "x"}},
         {"search": None},
     ],
 )
@@ -85,7 +92,7 @@ def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_p
     write_policy(path, Policy(replace(policy.card, training=training), policy.actor))
     found: Outcome = tltlc("inspect", str(path))
     assert (found.status, found.err) == (0, "")
-    assert not any(f"  {row} " in found.out for row in ("training", "ended", "search"))
+    assert not any(f"  {row} " in found.out for row in ("training", "kept", "ended", "search"))
 
 
 @pytest.mark.parametrize(
@@ -107,6 +114,19 @@ def test_a_training_that_goes_on(tltlc, policy: Policy, tmp_path: Path) -> None:
     (tmp_path / METRICS).write_text(json.dumps(line) + "\n")
     found: Outcome = tltlc("inspect", str(tmp_path))
     assert "  ended    not yet: after 4,096 steps, 1 episode ended" in found.out.splitlines()
+    assert "  training seed 3, 4,096 steps" in found.out.splitlines()
+
+
+def test_how_far_a_training_is(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    run = run_in(tmp_path / "run", rollout__steps=512, stop__steps=10**6, stop__episodes=1)
+    reports = train(run)
+    last = next(report for report in reports if report.best_pass_rate is not None)
+    reports.close()
+    found: Outcome = tltlc("inspect", str(run.folder), "--format", "json")
+    said = json.loads(found.out)[0]["training"]
+    assert (said["seed"], said["end"], said["steps"], said["search"]) == (3, None, last.steps, None)
+    assert said["window"]["pass_rate"] == round(last.window.pass_rate, 6)
+    assert said["best"]["pass_rate"] == round(last.best_pass_rate, 6)
 
 
 def test_a_stranger_s_file_does_not_command_the_terminal(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811

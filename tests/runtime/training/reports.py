@@ -27,7 +27,13 @@ def a_report(
         steps=4096 * number,
         seconds=2.0 * number,
         window=Window(
-            count, successes, progress, progress - 0.25, 130.0, states or ({4: 0.8, 2: 0.2} if count else {})
+            count,
+            successes,
+            progress,
+            progress - 0.25,
+            130.0,
+            states or ({4: 0.8, 1: 0.2} if count else {}),
+            violated={1: 0.15} if count else {},
         ),
         unbroken=successes if successes == count else 0,
         confirmation=confirmation,
@@ -38,4 +44,4 @@ def a_report(
 
 
 def an_episode(success: bool) -> Finished:
-    return Finished(success, 1.0 if success else 0.4, 100, 4 if success else 2)
+    return Finished(success, 1.0 if success else 0.4, 100, 4 if success else 1, violated=not success)

@@ -16,6 +16,12 @@ from tltl_runtime.training.report import Confirmation
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import TltlError
 
+LEFT = {
+    "label": "F(near(s2) & X F near(exit)) & G alive",
+    "english": "Reach near(s2), then near(exit), and keep alive throughout.",
+}
+"""What remains in state 1."""
+
 
 @pytest.fixture(scope="module")
 def fspa() -> Fspa:
@@ -51,8 +57,8 @@ def test_a_line_an_iteration(tmp_path: Path, fspa: Fspa) -> None:
         "episode_steps": 130.0,
         "confirmation": {"met": 12, "of": 100},
         "states": [
-            {"state": 2, "label": "false", "english": "The spec is violated.", "share": 0.2},
-            {"state": 4, "label": "G alive", "english": "Keep alive throughout.", "share": 0.8},
+            {"state": 1, **LEFT, "share": 0.2, "violated": 0.15},
+            {"state": 4, "label": "G alive", "english": "Keep alive throughout.", "share": 0.8, "violated": 0.0},
         ],
         "losses": {"value": 0.25, "entropy": 3.5},
     }
@@ -79,7 +85,7 @@ def test_tensorboard_shows_each_step_once(tmp_path: Path, fspa: Fspa) -> None:
     _measure(tmp_path, fspa, range(4, 8), after=3)
     events = EventAccumulator(str(tmp_path))
     events.Reload()
-    for tag in ("train/pass_rate", "train/progress", "state/4", "time/steps_per_s", "loss/entropy"):
+    for tag in ("train/pass_rate", "train/progress", "state/4", "violated/1", "time/steps_per_s", "loss/entropy"):
         assert [event.step for event in events.Scalars(tag)] == [4096 * number for number in range(1, 8)], tag
     assert events.Scalars("train/pass_rate")[0].value == pytest.approx(0.8)
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from tltl_runtime.training.environment import Finished
 from tltl_runtime.training.windows import Windows
 
-SUCCESS = Finished(True, 1.0, 40, 4)
-FAILURE = Finished(False, 0.6, 25, 2)
+SUCCESS = Finished(True, 1.0, 40, 4, violated=False)
+FAILURE = Finished(False, 0.6, 25, 2, violated=True)
 
 
 def _windows(episodes: list[bool]) -> Windows:
@@ -49,11 +49,12 @@ def test_rewards_are_told_with_the_undiscounted_penalty() -> None:
     assert window.reward == pytest.approx((0.6 - 0.4) / 2)
     assert (window.count, window.successes, window.pass_rate) == (2, 1, 0.5)
     assert (window.progress, window.steps, window.states) == (0.8, 32.5, {2: 0.5, 4: 0.5})
+    assert window.violated == {2: 0.5}
 
 
 def test_a_window_without_episodes_says_nothing() -> None:
     window = _windows([]).window
-    assert (window.count, window.pass_rate, window.reward, window.states) == (0, 0.0, 0.0, {})
+    assert (window.count, window.pass_rate, window.reward, window.states, window.violated) == (0, 0.0, 0.0, {}, {})
 
 
 @given(st.lists(st.booleans(), max_size=12), st.lists(st.booleans(), max_size=12))

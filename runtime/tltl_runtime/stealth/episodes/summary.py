@@ -11,6 +11,7 @@ from typing import Any, Final, Literal
 from tltl_runtime.stealth.episodes.cause import cause
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.outcome import outcome
+from tltl_runtime.texts import column, number, share
 from tltlc.resolve.spec import ValueType
 
 Notation = Literal["english", "unicode", "ascii"]
@@ -66,16 +67,17 @@ def summary_text(said: dict[str, Any]) -> str:
     limit = "" if said["limit_steps"] is None else f" of {said['limit_steps']}"
     lines = [
         f"  level    {said['level']} {said['variant']}, spec {said['spec']}",
-        f"  player   {said['player']}, seed {said['seed']}",
+        column("  player   ", f"{said['player']}, seed {said['seed']}"),
         f"  end      {said['end']}, {said['verdict']}, after {said['steps']}{limit} steps, {said['seconds']:.2f} s",
-        *([] if said["success"] else [f"  why      {said['cause']['text']}"]),
-        f"  reward   {said['reward']:.3f}, progress {said['progress']:.3f}",
-        f"  health   {said['health']:.2f}, in sight of an enemy for {said['seen_steps']} steps",
+        *([] if said["success"] else [column("  why      ", said["cause"]["text"])]),
+        f"  reward   {number(said['reward'], 3)}, progress {share(said['progress'], 3)}",
+        f"  health   {share(said['health'])}, in sight of an enemy for {said['seen_steps']} steps",
         "",
         "    time  state  progress  what remains",
     ]
     lines += [
-        f"{each['time']:8.2f}  {each['state']:5}  {each['progress']:8.3f}  {each['label']}" for each in said["changes"]
+        column(f"{each['time']:8.2f}  {each['state']:5}  {share(each['progress'], 3):>8}  ", each["label"])
+        for each in said["changes"]
     ]
     return "\n".join(lines) + "\n"
 

@@ -1,0 +1,37 @@
+"""Numbers and lines for people."""
+
+from __future__ import annotations
+
+from textwrap import wrap
+from typing import Final
+
+WIDTH: Final = 80
+"""Of a terminal for which lines are broken, in characters."""
+
+
+def share(value: float, places: int = 2) -> str:
+    """A number in [0, 1] with so many places; 0 and 1 are written for nothing but themselves."""
+    text, least = f"{value:.{places}f}", 10.0**-places
+    if value < 1.0 <= float(text):
+        return f"{1.0 - least:.{places}f}"
+    return f"{least:.{places}f}" if float(text) == 0.0 < value else number(value, places)
+
+
+def percent(value: float) -> str:
+    """A number in [0, 1] in percent; 0% and 100% are written for nothing but themselves."""
+    return f"{100.0 * float(share(value)):.0f}%"
+
+
+def number(value: float, places: int) -> str:
+    """A number with so many places, none of them ``-0``."""
+    text = f"{value:.{places}f}"
+    return text.lstrip("-") if float(text) == 0.0 else text
+
+
+def column(head: str, text: str, *, width: int = WIDTH) -> str:
+    """``text`` behind ``head``, broken at words where a line is full, the others below its beginning.
+
+    A word that is longer than the room for it stays whole, since it may be copied.
+    """
+    lines = wrap(text, max(20, width - len(head)), break_long_words=False, break_on_hyphens=False) or [""]
+    return f"\n{' ' * len(head)}".join((head + lines[0], *lines[1:]))

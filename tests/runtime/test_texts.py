@@ -1,0 +1,34 @@
+"""Numbers and lines for people."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltl_runtime.texts import column, number, percent, share
+
+
+@pytest.mark.parametrize(
+    ("value", "said"), [(0.0, "0.00"), (0.001, "0.01"), (0.994, "0.99"), (0.996, "0.99"), (1.0, "1.00"), (0.5, "0.50")]
+)
+def test_shares(value: float, said: str) -> None:
+    assert share(value) == said
+    assert percent(value) == f"{round(100 * float(said))}%"
+
+
+@given(st.floats(0.0, 1.0), st.integers(1, 4))
+def test_the_ends_are_written_for_themselves_alone(value: float, places: int) -> None:
+    assert (float(share(value, places)) == 1.0) == (value == 1.0)
+    assert (float(share(value, places)) == 0.0) == (value == 0.0)
+    assert abs(float(share(value, places)) - value) <= 10.0**-places
+
+
+def test_there_is_no_minus_zero() -> None:
+    assert [number(each, 2) for each in (-0.0, -0.004, -0.006, 12.345)] == ["0.00", "0.00", "-0.01", "12.35"]
+
+
+def test_a_column() -> None:
+    assert column("  spec  ", "reach s1 and then the exit", width=30) == "  spec  reach s1 and then the\n        exit"
+    assert column("  file  ", "a/" + 40 * "b" + "-c", width=30) == "  file  a/" + 40 * "b" + "-c"
+    assert column("  map   ", "") == "  map   "
