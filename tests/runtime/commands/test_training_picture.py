@@ -33,7 +33,7 @@ def _lines(folder: Path, columns: int, lines: int, report: Report | Searched | N
 
 @pytest.fixture(name="report")
 def _report() -> Report:
-    return replace(a_report(2000, states={0: 0.5, 1: 0.2, 2: 0.2, 4: 0.1}), searched=SEARCHED, checkpointed=True)
+    return replace(a_report(2000, states={0: 0.5, 1: 0.2, 3: 0.1, 4: 0.2}), searched=SEARCHED, checkpointed=True)
 
 
 @pytest.mark.parametrize(("columns", "lines"), [(80, 24), (80, 18), (80, 15), (120, 40), (101, 24)])
@@ -59,8 +59,14 @@ def test_it_fits_and_no_figure_is_cut(tmp_path: Path, report: Report, columns: i
 
 def test_where_there_are_few_lines_it_shows_the_commonest_states(tmp_path: Path, report: Report) -> None:
     text = "\n".join(_lines(tmp_path, 80, 15, report))
-    assert "where the last 50 episodes ended (3 of 5 states)" in text
-    assert [number for number in range(5) if f"state {number}" in text] == [0, 1, 2]
+    assert "where the last 50 episodes ended (3 of 4 states)" in text
+    assert [number for number in range(5) if f"state {number}" in text] == [0, 1, 4]
+
+
+def test_violations_are_told_where_they_were(tmp_path: Path, report: Report) -> None:
+    text = "\n".join(_lines(tmp_path, 120, 40, report))
+    assert "20%   15% violated: Reach near(s2), then near(exit)" in text
+    assert "The spec is violated." not in text
 
 
 def test_before_the_first_iteration(tmp_path: Path) -> None:
