@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import closing, nullcontext
 from pathlib import Path
-from shlex import quote
+from shlex import join, quote
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -81,7 +81,8 @@ def command(
 ) -> int:
     """Have a trained policy play, and report how often it meets the spec.
 
-    POLICY is a .safetensors file or the folder of a training; without it the policy that comes with the level plays.
+    POLICY is a .safetensors file, the folder of a training, or the name of a level for the policy that comes with it;
+    without one that of --level plays.
     Every episode is played twice, with actions sampled as in training and with the likeliest ones.  The exit status
     is 0 whatever the pass rate; after Ctrl-C the report is on what was played.
     """
@@ -94,31 +95,43 @@ def command(
         from tltl_runtime.evaluation.evaluate import results, set_up
         from tltl_runtime.evaluation.player import Task
         from tltl_runtime.policies.file import MAX_BYTES, from_bytes
+        from tltl_runtime.stealth.levels.file import load_level
+        from tltl_runtime.stealth.supply.feasible import reach_warnings
         from tltlc.files import read_bytes
+        from tltlc.record import replace
 
         path, name, variant = _chosen(policy, level)
         # A training that goes on may write another one there meanwhile.
         data = read_bytes(path, str(path), MAX_BYTES)
         trained, kept = from_bytes(data, str(path)), (recorded or "failures") if folder else None
+        sha256 = hashlib.sha256(data).hexdigest()
+        if name is None:
+            _check_known(trained.card.level, path)
         setup = set_up(trained, name, variant, spec, seed, kept)
-        files = EvaluationFiles(setup, path, hashlib.sha256(data).hexdigest(), first, folder, json_file)
+        setup = replace(setup, player=f"policy {trained.card.level} {trained.card.fspa.name} {sha256[:8]}")
+        report.add(reach_warnings(load_level(setup.level, setup.variant), setup.fspa))
+        again = _command(policy, level, spec, seed)
+        files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:
             with closing(results(setup, tasks, workers, _waiting)) as playing:
                 for result in _counted(playing, len(tasks)):
                     files.add(result)
         finally:
-            _tell(files, json_file, episodes)
+            _tell(files, json_file, folder, episodes)
     return report.status
 
 
 def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, str | None]:
     """The file of the policy, and the level and the variant where it plays; None: where it was trained."""
-    from tltl_runtime.commands.level_argument import check_there
+    from tltl_runtime.commands.level_argument import check_there, names_level
     from tltl_runtime.commands.policy_path import policy_path
     from tltl_runtime.training.run import RUN, read_place
 
     name, variant = (None, None) if level is None else split(level)
+    if policy is not None and names_level(str(policy)):
+        named, its = split(str(policy))
+        return _shipped(named), name or named, variant if name else its
     if policy is None:
         assert name is not None
         return _shipped(name), name, variant
@@ -128,6 +141,23 @@ def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, s
         name, variant = read_place(policy)
         check_there(name, variant, f"tltlc evaluate {quote(str(policy))}")
     return path, name, variant
+
+
+def _check_known(level: str, policy: Path) -> None:
+    """TLT0800 where a policy, of whose training there is its file alone, was trained on a level of one's own."""
+    from tltl_runtime.stealth.levels.file import level_names
+
+    if level not in level_names():
+        title = f"there is no level `{level}`: the policy was trained on a level of your own"
+        help_ = f"name its file: `tltlc evaluate {quote(str(policy))} --level {level}.toml`"
+        raise TltlError([Diagnostic("TLT0800", title, help=help_)])
+
+
+def _command(policy: Path | None, level: str | None, spec: str | None, seed: int) -> str:
+    """What plays episodes of the same evaluation again, to be pasted."""
+    words = ["tltlc", "evaluate", *([] if policy is None else [str(policy)])]
+    words += [word for name, given in (("--level", level), ("--spec", spec)) if given for word in (name, given)]
+    return join([*words, "--seed", str(seed)])
 
 
 def _shipped(level: str) -> Path:
@@ -145,7 +175,7 @@ def _shipped(level: str) -> Path:
 
 def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
     """The results; standard error says how far they are, with a bar on a terminal, else with a line each tenth."""
-    from tltl_runtime.commands.evaluation_files import CHOICES
+    from tltl_runtime.evaluation.player import CHOICES
 
     played, passed = Counter[bool](), Counter[bool]()
     with _bar(count) as bar:
@@ -177,7 +207,7 @@ def _bar(count: int) -> Any:
     return bar
 
 
-def _tell(files: EvaluationFiles, json_file: Path | None, wanted: int) -> None:
+def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, wanted: int) -> None:
     """Report on what was played, which is not all of the ``wanted`` episodes of each kind where it was broken off."""
     played = files.played
     if not any(played.values()):
@@ -191,4 +221,7 @@ def _tell(files: EvaluationFiles, json_file: Path | None, wanted: int) -> None:
         click.echo(files.text(), nl=False)
     else:
         click.echo(text, nl=False)
-    files.write(text)
+    if files.removed:
+        click.echo(f"removed {files.removed} files of an earlier evaluation of the level from {folder}", err=True)
+    if wrote := files.write(text):
+        click.echo(f"wrote {wrote}", err=True)

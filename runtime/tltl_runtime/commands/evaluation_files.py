@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.evaluation.play import Played
-from tltl_runtime.evaluation.player import Result, Setup
+from tltl_runtime.evaluation.player import CHOICES, Result, Setup
 from tltl_runtime.evaluation.text import report_text
+from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.episodes.file import SUFFIX, from_bytes, new_path
 from tltl_runtime.stealth.episodes.trajectory import Trajectory
@@ -18,34 +21,46 @@ from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.pictures.plan import draw_episode
 from tltl_runtime.stealth.pictures.trajectories import draw_trajectories
 from tltl_runtime.stealth.recording import writable_folder
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.writing import write_file, write_files
 
-CHOICES: Final = {True: "sampled", False: "arg-max"}
-"""What the ways to choose actions are called."""
+_REPORT: Final = "evaluation.json"
 
 
 class EvaluationFiles:
     """The results of an evaluation as they come, and where they go.
 
     ``path`` is the policy's file, ``sha256`` that of its bytes, in hexadecimal, and ``first`` the index of the first
-    episode.  ``folder`` gets recordings and pictures, ``json_file`` the report for programs; both are optional, and
-    folders are made where they are missing.
+    episode; ``command`` evaluates the same episodes again.  ``folder``, which is made where it is missing, gets
+    recordings and pictures, ``json_file`` the report for programs; both are optional.  What an earlier evaluation of
+    the level left in the folder is removed with the first result: ``removed`` of its files.
 
     Raises:
         TltlError: TLT0005, nothing can be written there; of ``add`` and ``write`` too.
     """
 
     def __init__(
-        self, setup: Setup, path: Path, sha256: str, first: int, folder: Path | None, json_file: Path | None
+        self,
+        setup: Setup,
+        path: Path,
+        sha256: str,
+        first: int,
+        command: str,
+        folder: Path | None,
+        json_file: Path | None,
     ) -> None:
         self._setup, self._path, self._sha256, self._first, self._folder = setup, path, sha256, first, folder
+        self._command = command
         self._json = None if str(json_file) == "-" else json_file
         self._level = load_level(setup.level, setup.variant)
         self._played: dict[bool, list[Played]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
-        for place in (folder, self._json and self._json.parent):
-            if place is not None:
-                writable_folder(place)
+        self._recorded: list[str] = []
+        self.removed = 0
+        if folder is not None:
+            writable_folder(folder)
+        if self._json is not None:
+            _check_parent(self._json)
 
     @property
     def played(self) -> dict[str, int]:
@@ -55,6 +70,8 @@ class EvaluationFiles:
     def add(self, result: Result) -> None:
         """Take the next result, and write its recording where there is one."""
         sampled = result.task.sampled
+        if self._folder is not None and not any(self._played.values()):
+            self.removed = self._remove_older(self._folder)
         self._played[sampled].append(result.played)
         if result.trajectory is not None:
             self._trajectories[sampled].append(result.trajectory)
@@ -64,16 +81,18 @@ class EvaluationFiles:
             plan = draw_episode(from_bytes(result.recording, path.name))
             files = {path.name: result.recording, f"{path.name.removesuffix(SUFFIX)}.png": plan}
             write_files(self._folder, files)
+            self._recorded.append(path.name)
 
     def text(self) -> str:
         """The report for people."""
         setup = self._setup
         head = f"{self._level.name} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
-        text = f"{head}\n\n{report_text({CHOICES[sampled]: each for sampled, each in self._figures().items()})}"
+        figures = {CHOICES[sampled]: each for sampled, each in self._figures().items()}
+        text = f"{head}\n{self._note()}\n{report_text(figures)}"
         failed = [each.index for episodes in self._played.values() for each in episodes if not each.success]
         if failed and self._folder is None:
-            again = f"--seed {setup.seed} --first {failed[0]} --episodes 1 --out DIR"
-            text += f"\n`{again}` records one of them, for `tltlc replay`.\n"
+            again = f"{self._command} --first {failed[0]} --episodes 1 --out evaluation"
+            text += f"\nTo record one of them, for `tltlc replay`:\n  {again}\n"
         return text
 
     def document(self, complete: bool) -> dict[str, Any]:
@@ -86,6 +105,7 @@ class EvaluationFiles:
         return {
             "level": self._level.name,
             "variant": self._level.variant,
+            "level_hash": level_hash(self._level),
             "spec": setup.fspa.name,
             "seed": setup.seed,
             "first": self._first,
@@ -102,12 +122,14 @@ class EvaluationFiles:
             "argmax": to_json(figures[False]) if False in figures else None,
         }
 
-    def write(self, text: str) -> None:
-        """Write the report for programs, and pictures of the ways where there is a folder for them."""
+    def write(self, text: str) -> str:
+        """Write the report for programs, and pictures of the ways where there is a folder for them; what there is in
+        it then, for people, empty without a folder.
+        """
         if self._json is not None:
             write_file(self._json, text, "name another place with --json")
         if self._folder is None:
-            return
+            return ""
         pictures: dict[str, str | bytes] = {}
         for sampled, trajectories in self._trajectories.items():
             if trajectories:
@@ -115,7 +137,31 @@ class EvaluationFiles:
                 pictures[f"ways-{CHOICES[sampled]}.png"] = draw_trajectories(
                     self._level, self._setup.fspa, trajectories, title
                 )
-        write_files(self._folder, {"evaluation.json": text, **pictures})
+        write_files(self._folder, {_REPORT: text, **pictures})
+        count = len(self._recorded)
+        recorded = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * (count > 0)}"
+        look_at = f"; look at {next(iter(pictures))} first" if pictures else ""
+        return f"{self._folder}: {recorded}, {', '.join((*pictures, _REPORT))}{look_at}"
+
+    def _note(self) -> str:
+        """A line for people where the level is not the one that the policy was trained on."""
+        card, level = self._setup.policy.card, self._level
+        if level_hash(level) == card.level_hash:
+            return ""
+        if (level.name, level.variant) == (card.level, card.variant):
+            return "note: the level has changed since the policy was trained on it\n"
+        return f"note: the policy was trained on another level, {card.level} {card.variant}\n"
+
+    def _remove_older(self, folder: Path) -> int:
+        """Remove what an earlier evaluation of this level wrote; how many files it was."""
+        choices, endings = "|".join(CHOICES.values()), f"{re.escape(SUFFIX)}|[.]png"
+        own = re.compile(rf"{re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?({endings})|ways-({choices})[.]png")
+        older = [path for path in folder.iterdir() if own.fullmatch(path.name) and path.is_file()]
+        for path in older:
+            # One that cannot be removed harms nobody: no other takes its name.
+            with suppress(OSError):
+                path.unlink()
+        return sum(not path.exists() for path in older)
 
     @property
     def _name(self) -> str:
@@ -123,3 +169,11 @@ class EvaluationFiles:
 
     def _figures(self) -> dict[bool, Figures]:
         return {sampled: figures_of(played) for sampled, played in self._played.items() if played}
+
+
+def _check_parent(path: Path) -> None:
+    """TLT0005 where a file cannot be written for want of its folder: better to know before an hour is played."""
+    if not path.parent.is_dir():
+        title, help_ = f"cannot write `{path}`: there is no such folder", "name another place with --json"
+        raise TltlError([Diagnostic("TLT0005", title, help=help_)])
+    writable_folder(path.parent)

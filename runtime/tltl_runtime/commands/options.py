@@ -16,8 +16,22 @@ _OUTPUT: Final = ("--output", "--out", "-o")
 def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:
     """``-o DIR``, which the command takes as ``folder``."""
     path = click.Path(path_type=Path, file_okay=False)
-    shown = default is not None
-    return click.option(*_OUTPUT, "folder", metavar="DIR", type=path, default=default, show_default=shown, help=about)
+
+    def named(_: click.Context, parameter: click.Parameter, folder: Path | None) -> Path | None:
+        if folder == Path("-"):
+            raise click.BadParameter("a folder is needed, and `-` is none", param=parameter)
+        return folder
+
+    return click.option(
+        *_OUTPUT,
+        "folder",
+        metavar="DIR",
+        type=path,
+        callback=named,
+        default=default,
+        show_default=default is not None,
+        help=about,
+    )
 
 
 def output_file(metavar: str, about: str) -> Callable[[Function], Function]:

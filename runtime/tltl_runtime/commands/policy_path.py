@@ -14,8 +14,12 @@ def policy_path(path: Path) -> Path:
     """The file of a policy: ``path``, or the one in this folder, which is there.
 
     Raises:
-        TltlError: TLT0872, there is no policy in the folder; TLT0001, what a training there measured cannot be read.
+        TltlError: TLT0840, it is an ONNX model; TLT0872, there is no policy in the folder; TLT0001, what a training
+            there measured cannot be read.
     """
+    if path.suffix.lower() == ".onnx" and path.is_file():
+        title = f"`{path}` is the model for other engines, which `tltlc inspect -o` wrote"
+        raise TltlError([Diagnostic("TLT0840", title, help="name the .safetensors file that it was made of")])
     if not path.is_dir():
         return path
     if (path / POLICY).exists():

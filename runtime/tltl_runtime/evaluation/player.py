@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import gymnasium
 
@@ -16,9 +16,12 @@ from tltl_runtime.stealth.episodes.trajectory import Trajectory, trajectory
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import RewardOptions
-from tltlc.record import EMPTY, record
+from tltlc.record import EMPTY, record, replace
 
 Recorded = Literal["none", "failures", "all"]
+
+CHOICES: Final = {True: "sampled", False: "arg-max"}
+"""What the ways to choose actions are called."""
 
 
 @record
@@ -27,6 +30,7 @@ class Setup:
 
     ``level`` is what :func:`~tltl_runtime.stealth.levels.file.load_level` takes.  ``params`` are in SI units.
     ``recorded`` says of which episodes recordings are wanted; unless it is None, the trajectories of all are kept.
+    ``player`` is what recordings call the policy.
     """
 
     policy: Policy
@@ -36,6 +40,7 @@ class Setup:
     seed: int
     params: Mapping[str, float] = EMPTY
     recorded: Recorded | None = None
+    player: str = "policy"
 
 
 @record
@@ -72,7 +77,7 @@ class Player:
         )
         self._recorder: RecordEpisode | None = None
         if setup.recorded is not None:
-            self._env = self._recorder = RecordEpisode(self._env, "policy")
+            self._env = self._recorder = RecordEpisode(self._env)
 
     def play(self, task: Task) -> Result:
         """Play one episode."""
@@ -81,7 +86,8 @@ class Player:
             played = play(setup.policy, self._env, setup.seed, task.index, task.sampled)
         if self._recorder is None:
             return Result(task, played)
-        episode = self._recorder.episode
+        player = f"{setup.player}, {CHOICES[task.sampled]}, episode {task.index}"
+        episode = replace(self._recorder.episode, player=player)
         kept = setup.recorded == "all" or (setup.recorded == "failures" and not played.success)
         return Result(task, played, trajectory(episode), to_bytes(episode) if kept else b"")
 

@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Protocol
 
 from tltl_runtime.evaluation.play import episode_seed
-from tltl_runtime.evaluation.player import Result, Task
+from tltl_runtime.evaluation.player import CHOICES, Result, Task
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
@@ -57,9 +57,8 @@ def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int) -> Itera
 
 
 def _lost(error: LostError, task: Task, seed: int) -> TltlError:
-    chosen = "sampled" if task.sampled else "arg-max"
     title = (
-        f"a worker was lost while it played episode {task.index} of seed {seed}, {chosen} "
+        f"a worker was lost while it played episode {task.index} of seed {seed}, {CHOICES[task.sampled]} "
         f"(seed {episode_seed(seed, task.index)} of the level): {error}"
     )
     help_ = f"play that one alone: `--seed {seed} --first {task.index} --episodes 1 --workers 1`"

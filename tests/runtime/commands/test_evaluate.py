@@ -21,8 +21,10 @@ from tests.runtime.evaluation.untrained import SOON, untrained
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.evaluation.player import Player
 from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.run import Run as Training
 from tltl_runtime.training.run import write_run
 from tltl_runtime.training.settings import read_settings
@@ -45,10 +47,15 @@ def test_the_report_for_people(tltlc: Run, policy: Path) -> None:  # noqa: F811
     assert found.status == 0
     lines = found.out.splitlines()
     assert lines[0] == f"cover_and_hide v0, spec soon, seed 5: {policy}"
-    assert lines[4] == "pass rate (95 %)  0.00 (0.00 to 0.56)     0.00 (0.00 to 0.56)"
+    assert lines[1] == "note: the level has changed since the policy was trained on it"
+    assert lines[5] == "pass rate (95 %)  0.00 (0.00 to 0.56)     0.00 (0.00 to 0.56)"
     assert "sampled: 3 of 3 failed" in lines
-    assert "  3 out of time in state 0, remaining: Reach near(exit), and keep alive throughout." in lines
-    assert lines[-1] == "`--seed 5 --first 0 --episodes 1 --out DIR` records one of them, for `tltlc replay`."
+    assert "  3 out of time in state 0, remaining: Reach near(exit), and keep alive" in lines
+    assert "  throughout." in lines
+    assert lines[-2:] == [
+        "To record one of them, for `tltlc replay`:",
+        f"  tltlc evaluate {policy} --seed 5 --first 0 --episodes 1 --out evaluation",
+    ]
     told = found.err.splitlines()
     assert told[2] == "50% played; passed: 0 of 3 sampled"
     assert told[-1] == "100% played; passed: 0 of 3 sampled, 0 of 3 arg-max"
@@ -58,10 +65,11 @@ def test_the_report_for_programs(tltlc: Run, policy: Path) -> None:  # noqa: F81
     found = tltlc("evaluate", policy.parent, "--episodes", "4", "--seed", "5", "--json", "-")
     assert found.status == 0
     said = json.loads(found.out)
-    head = ["level", "variant", "spec", "seed", "first", "complete", "policy", "versions"]
+    head = ["level", "variant", "level_hash", "spec", "seed", "first", "complete", "policy", "versions"]
     assert list(said) == [*head, *FIGURES, "argmax"]
     assert list(said["argmax"]) == FIGURES
     assert (said["level"], said["variant"], said["spec"], said["seed"]) == ("cover_and_hide", "v0", "soon", 5)
+    assert said["level_hash"] == level_hash(load_level("cover_and_hide")) != said["policy"]["level_hash"]
     assert [each["index"] for each in said["episodes"]] == [0, 1, 2, 3]
     assert {each["seed"] for each in said["episodes"]} == {each["seed"] for each in said["argmax"]["episodes"]}
     assert said["progress"].keys() == said["reward"].keys() == {"mean", "std"}
@@ -98,18 +106,41 @@ def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> No
     names += ["evaluation.json", "ways-arg-max.png", "ways-sampled.png"]
     assert sorted(path.name for path in folder.iterdir()) == sorted(names)
     assert report.read_text() == (folder / "evaluation.json").read_text()
+    assert found.err.splitlines()[-1] == (
+        f"wrote {folder}: 4 recordings with plans, ways-sampled.png, ways-arg-max.png, evaluation.json; "
+        "look at ways-sampled.png first"
+    )
     said = json.loads(report.read_text())
     for each in said["episodes"]:
         episode = read_episode(folder / f"cover_and_hide-v0-5-{each['index']}-sampled.episode.npz")
         assert (episode.seed, episode.end) == (each["seed"], each["end"])
         assert float(episode.rewards.sum()) == pytest.approx(each["reward"])
+        sha256 = said["policy"]["sha256"]
+        assert episode.player == f"policy cover_and_hide soon {sha256[:8]}, sampled, episode {each['index']}"
     with Image.open(folder / "ways-sampled.png") as picture:
         red = sum(count for count, colour in picture.convert("RGB").getcolors(1 << 20) if colour == (100, 116, 139))
     assert red > 50, "there are marks where time was up"
-    assert "records one of them" not in found.out
+    assert "To record one of them" not in found.out
 
-    tltlc(*command, "--record", "none")
-    assert sorted(path.name for path in folder.iterdir()) == sorted(names)
+    kept = ["cover_and_hide-v0-5.png", "cover_and_hide-v1-5-0-sampled.png", "notes.txt", "ways-of-mine.png"]
+    for name in kept:
+        (folder / name).touch()
+    again = tltlc(*command, "--record", "none")
+    assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names[-3:]])
+    assert again.err.splitlines()[-2:] == [
+        f"removed 10 files of an earlier evaluation of the level from {folder}",
+        f"wrote {folder}: no recordings, ways-sampled.png, ways-arg-max.png, evaluation.json; "
+        "look at ways-sampled.png first",
+    ]
+
+
+def test_what_nobody_can_do_is_said(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    spec = "import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }"
+    path = tmp_path / "far.safetensors"
+    write_policy(path, untrained(spec, "navigation", "v2"))
+    found = tltlc("evaluate", path, "--episodes", "1")
+    assert found.status == 0
+    assert found.err.startswith("warning[TLT0814]: nobody reaches `exit` in `navigation:v2`")
 
 
 def test_recordings_need_a_folder(tltlc: Run, policy: Path) -> None:  # noqa: F811
@@ -138,7 +169,10 @@ def test_the_folder_of_a_training_knows_the_file_of_its_level(
     assert (json.loads(found.out)["level"], found.status) == ("vault", 0)
     alone = tltlc("evaluate", "policy.safetensors", "--episodes", "1")
     assert (alone.status, alone.out) == (2, "")
-    assert alone.err.startswith("error[TLT0800]: there is no level `vault`")
+    assert alone.err == (
+        "error[TLT0800]: there is no level `vault`: the policy was trained on a level of your own\n"
+        "  help: name its file: `tltlc evaluate policy.safetensors --level vault.toml`\n"
+    )
 
 
 @pytest.mark.parametrize(("name", "status", "workers"), [("SIGINT", 130, "2"), ("SIGTERM", 143, "1")])
@@ -167,6 +201,9 @@ def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status
         (("POLICY", "--workers", "many"), 2, "error[TLT0700]: invalid value for '--workers': `many` is neither"),
         (("POLICY", "--episodes", "0"), 2, "error[TLT0700]"),
         (("POLICY", "--json", "file/report.json"), 3, "error[TLT0005]"),
+        (("POLICY", "--json", "gone/report.json"), 3, "error[TLT0005]: cannot write `gone/report.json`: there is no"),
+        (("POLICY", "--out", "-"), 2, "error[TLT0700]: invalid value for '--output'"),
+        (("bot.onnx",), 1, "error[TLT0840]: `bot.onnx` is the model for other engines, which `tltlc inspect -o` wrote"),
         (("POLICY", "--out", "file/runs"), 3, "error[TLT0005]"),
     ],
 )
@@ -181,6 +218,7 @@ def test_refused(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").touch()
+    (tmp_path / "bot.onnx").touch()
     (tmp_path / "cover_and_hide.tltl").write_text(SOON.replace("20 steps", "25 steps"))
     found = tltlc("evaluate", *(str(policy) if each == "POLICY" else each for each in arguments))
     assert (found.status, found.out) == (status, "")
@@ -190,6 +228,9 @@ def test_refused(
 def test_the_policy_that_comes_with_a_level(tltlc: Run) -> None:  # noqa: F811
     found = tltlc("evaluate", "--level", "cover_and_hide", "--episodes", "10", "--json", "-")
     said = json.loads(found.out)
+    assert said["level_hash"] == said["policy"]["level_hash"]
+    named = json.loads(tltlc("evaluate", "cover_and_hide:v1", "--episodes", "1", "--json", "-").out)
+    assert (named["level"], named["variant"], named["policy"]) == ("cover_and_hide", "v1", said["policy"])
     assert (said["level"], said["spec"]) == ("cover_and_hide", "cover_and_hide")
     assert said["argmax"]["pass_rate"] >= 0.9
 

@@ -77,7 +77,9 @@ def test_recordings_where_they_are_wanted(policy: Policy, expected: list[Played]
             assert bool(result.recording) is there
             if there:
                 episode = from_bytes(result.recording, "it")
-                assert (episode.seed, episode.player) == (result.played.seed, "policy")
+                chosen = "sampled" if result.task.sampled else "arg-max"
+                assert episode.seed == result.played.seed
+                assert episode.player == f"policy, {chosen}, episode {result.task.index}"
 
 
 class Deadly:
