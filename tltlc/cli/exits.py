@@ -65,9 +65,11 @@ def status_of(diagnostics: Iterable[Diagnostic]) -> int:
 
 
 def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:
-    """The error for a part that is not installed."""
+    """The error for a part that is not installed; extras of tltlc itself are installed from its clone."""
     title = f"{wanted_by} needs `{module}`, which is not installed"
-    return TltlError([Diagnostic("TLT0730", title, help=f"pip install '{requirement}'")])
+    own = requirement.startswith("tltlc[")
+    way_out = f"in the clone of tltlc: pip install -c constraints.txt '{requirement.replace('tltlc', '.')}'"
+    return TltlError([Diagnostic("TLT0730", title, help=way_out if own else f"pip install '{requirement}'")])
 
 
 def report(error: Exception) -> int:

@@ -146,6 +146,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
 }
 """By table, that of the file's first lines being ``""``, and by key."""
 
+_TOP: Final = "at the top, above the first `[...]`"
 _HELP: Final = 'values are written as in `envs = 32` and `device = "cpu"`'
 
 
@@ -191,10 +192,8 @@ def _read(table: str, key: str, entry: Entry, found: dict[str, Any], log: list[D
 
 def _home(key: str) -> str | None:
     """Where a key belongs that stands in the wrong table."""
-    tables = [table for table, kinds in KINDS.items() if key in kinds]
-    if not tables:
-        return None
-    return f"it belongs under `[{tables[0]}]`" if tables[0] else "it belongs at the top, above the first `[...]`"
+    places = [f"under `[{table}]`" if table else _TOP for table, kinds in KINDS.items() if key in kinds]
+    return f"it belongs {' or '.join(places)}" if places else None
 
 
 def _wrong(entry: Entry, key: str, expected: str) -> Diagnostic:

@@ -19,5 +19,6 @@ def test_the_extra_that_is_missing_is_named(command: str, tmp_path: Path) -> Non
     name = command.partition(" ")[0]
     assert (done.returncode, done.stdout) == (4, "")
     assert done.stderr == (
-        f"error[TLT0730]: `tltlc {name}` needs `torch`, which is not installed\n  help: pip install 'tltlc[rl]'\n"
+        f"error[TLT0730]: `tltlc {name}` needs `torch`, which is not installed\n"
+        "  help: in the clone of tltlc: pip install -c constraints.txt '.[rl]'\n"
     )

@@ -31,7 +31,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 EPISODES = 8
 
-needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install 'tltlc[ray]'")
+needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 POOLS = [2, pytest.param("ray", marks=needs_ray)]
 
 

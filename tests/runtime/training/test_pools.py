@@ -14,7 +14,7 @@ from tltl_runtime.training.run import POLICY
 from tltl_runtime.training.train import train
 from tltlc.record import replace
 
-needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install 'tltlc[ray]'")
+needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 
 SPEC = "import stealth\nspec crouch { level cover_and_hide\n limit 20 steps\n reach sneaking }\n"
 """A spec that is met by chance now and then, so that there are ways to begin on."""

@@ -23,7 +23,7 @@ GOLDEN = Path(__file__).parents[2] / "golden" / "training"
 WRONG = {
     "TLT0860": "[ppo]\ngamma = \n",
     "TLT0861": "[ppo]\nlearning_rat = 1e-4\n[roll]\n",
-    "TLT0861_elsewhere": 'gamma = 0.9\n[ppo]\ndevice = "cpu"\n',
+    "TLT0861_elsewhere": 'gamma = 0.9\n[ppo]\ndevice = "cpu"\nsteps = 9\n',
     "TLT0862": '[ppo]\ngamma = 1.5\nepochs = true\nlearning_rate = 0\n[network]\nhidden = []\nactivation = "rely"\n',
     "TLT0862_table": 'ppo = 3\ndevice = "gpu"\n[classes]\nrunner = "my runner"\n[stop]\nminutes = nan\n',
     "TLT0862_minibatches": "[rollout]\nenvs = 1\nsteps = 2\n",

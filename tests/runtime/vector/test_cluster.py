@@ -12,7 +12,7 @@ from tltl_runtime.vector.cluster import cluster
 from tltlc.diagnostics.diagnostic import TltlError
 
 
-@pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install 'tltlc[ray]'")
+@pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 def test_nobody_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     with socket.socket() as unused:
         unused.bind(("127.0.0.1", 0))
@@ -27,4 +27,4 @@ def test_without_ray(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(TltlError) as found, cluster():
         pass
     (diagnostic,) = found.value.diagnostics
-    assert (diagnostic.code, diagnostic.help) == ("TLT0730", "pip install 'tltlc[ray]'")
+    assert (diagnostic.code, diagnostic.help) == ("TLT0730", "in the clone of tltlc: pip install -c constraints.txt '.[ray]'")

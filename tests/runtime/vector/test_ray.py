@@ -15,7 +15,7 @@ from tests.runtime.vector.test_vector import COUNT, SPEC, played, same
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv, make_vec
 from tltlc.diagnostics.diagnostic import TltlError
 
-pytestmark = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install 'tltlc[ray]'")
+pytestmark = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 
 
 @pytest.fixture(scope="module", autouse=True)
