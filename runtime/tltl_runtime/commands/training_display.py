@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.live import Live
 
 from tltl_runtime.commands.training_picture import Picture
-from tltl_runtime.commands.training_text import found_line, line, search_line
+from tltl_runtime.commands.training_text import SEARCH_IS_LOST, found_line, line, search_end, search_line
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.report import Report
 from tltl_runtime.training.run import Run
@@ -69,7 +69,12 @@ class _Lines:
         self._has_begun = self._has_trained = False
 
     def searched(self, searched: Searched) -> None:
-        self._begin()
+        if not self._has_begun:
+            self._begin()
+            exploration = self._run.settings.exploration
+            self._print(f"ways to meet the spec are searched first, by chance. {search_end(exploration)}", always=True)
+            self._print(SEARCH_IS_LOST, always=True)
+            self._next = 0.0
         self._print(search_line(searched))
 
     def trained(self, report: Report) -> None:
@@ -77,6 +82,9 @@ class _Lines:
         first, self._has_trained = not self._has_trained, True
         if first and report.searched:
             self._print(found_line(report.searched), always=True)
+        if first:
+            again = f"tltlc train --resume {quote(str(self._run.folder))}"
+            self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {again}", always=True)
         self._print(line(report, self._run.settings.stop), always=first or report.stop is not None)
 
     def _begin(self) -> None:
@@ -86,9 +94,6 @@ class _Lines:
         self._has_begun, run = True, self._run
         place = f"{Path(run.level).stem} {run.variant}"
         self._print(f"training {run.fspa.name} on {place}, seed {run.seed}, in {run.folder}", always=True)
-        again = f"tltlc train --resume {quote(str(run.folder))}"
-        self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {again}", always=True)
-        self._next = 0.0
 
     def _print(self, text: str, *, always: bool = False) -> None:
         now = time.monotonic()

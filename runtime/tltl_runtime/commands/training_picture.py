@@ -13,10 +13,12 @@ from rich.table import Table
 from rich.text import Text
 
 from tltl_runtime.commands.training_text import (
+    SEARCH_IS_LOST,
     confirmation_line,
     duration,
     found_line,
     rate,
+    search_end,
     search_line,
     seconds_left,
 )
@@ -90,7 +92,7 @@ class Picture:
         part = min(1.0, searched.steps / exploration.steps)
         most = f"of {exploration.steps:,} steps at the most"
         table.add_row("searched", _bar(part, "blue", bar), f"{percent(part):>4}", most)
-        return Group(table, Text(f"\n{search_line(searched)}"))
+        return Group(table, Text(f"\n{search_line(searched)}\n\n{search_end(exploration)}\n\n{SEARCH_IS_LOST}"))
 
     def _body(self, report: Report, bar: int, room: int) -> RenderableType:
         """What there is to see after an iteration, in ``room`` lines: where there are few, of fewer states."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tltl_runtime.texts import number, share
 from tltl_runtime.training.report import Confirmation, Report
-from tltl_runtime.training.search import Searched
+from tltl_runtime.training.search import Exploration, Searched
 from tltl_runtime.training.settings import Stop
+
+SEARCH_IS_LOST: Final = "Ctrl-C stops it; a search that is not over then begins anew."
 
 
 def line(report: Report, stop: Stop) -> str:
@@ -35,6 +39,15 @@ def search_line(searched: Searched) -> str:
         ways = "no way to meet the spec yet"
     took = f"{searched.steps:,} steps in {duration(searched.seconds)}"
     return f"searching by chance: {took}, {searched.places:,} places, {ways}"
+
+
+def search_end(exploration: Exploration) -> str:
+    """When a search ends, in a sentence."""
+    ways = f"{exploration.ways} way{'s' * (exploration.ways != 1)}"
+    return (
+        f"It ends when {ways} are found and four times as many steps are over as to the first one, "
+        f"at the latest after {exploration.steps:,} steps."
+    )
 
 
 def found_line(searched: Searched) -> str:

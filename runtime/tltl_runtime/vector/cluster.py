@@ -33,7 +33,9 @@ def cluster() -> Iterator[Any]:
         import ray
     except ModuleNotFoundError:
         title = "workers of a Ray cluster need `ray`, which is not installed"
-        raise TltlError([Diagnostic("TLT0730", title, help="in the clone of tltlc: pip install -c constraints.txt '.[ray]'")]) from None
+        raise TltlError(
+            [Diagnostic("TLT0730", title, help="in the clone of tltlc: pip install -c constraints.txt '.[ray]'")]
+        ) from None
     if ray.is_initialized():
         yield ray
         return

@@ -163,6 +163,19 @@ def test_until_the_spec_is_met(tltlc: TltlcFunction, here: Path) -> None:  # noq
     assert (card.fspa.name, card.sensors.map, card.network.hidden) == ("soon", None, (8,))
 
 
+def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    Path("search.toml").write_text(SMALL.replace("ways = 0", "ways = 2\nsteps = 640"))
+    found = tltlc("train", "soon.tltl", "--config", "search.toml", "--out", "it")
+    assert found.status == 0, found.err
+    _, searched, lost, *lines = found.err.splitlines()
+    assert searched == (
+        "ways to meet the spec are searched first, by chance. It ends when 2 ways are found and four times as many "
+        "steps are over as to the first one, at the latest after 640 steps."
+    )
+    assert lost == "Ctrl-C stops it; a search that is not over then begins anew."
+    assert "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume it" in lines
+
+
 def test_a_folder_holds_one_training(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     assert tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it").status == 0
     again = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it")

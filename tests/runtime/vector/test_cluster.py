@@ -27,4 +27,7 @@ def test_without_ray(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(TltlError) as found, cluster():
         pass
     (diagnostic,) = found.value.diagnostics
-    assert (diagnostic.code, diagnostic.help) == ("TLT0730", "in the clone of tltlc: pip install -c constraints.txt '.[ray]'")
+    assert (diagnostic.code, diagnostic.help) == (
+        "TLT0730",
+        "in the clone of tltlc: pip install -c constraints.txt '.[ray]'",
+    )

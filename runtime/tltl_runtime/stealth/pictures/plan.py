@@ -151,12 +151,17 @@ def _key(level: Level) -> list[Any]:
     if level.switches:
         handles.append(Line2D([], [], marker="o", linestyle="", color=_SWITCH, markersize=10, label="switch"))
     if level.exits:
-        handles.append(Line2D([], [], marker="*", linestyle="", color=_EXIT, markersize=12, label="exit"))
+        handles.append(exit_mark())
     if level.enemies:
         handles.append(Line2D([], [], linestyle="--", color=_ROUTE, label="route of an enemy"))
     if level.movers:
         handles.append(Line2D([], [], linestyle=":", color=_MOVER, label="way of a moving obstacle"))
     return handles
+
+
+def exit_mark() -> Line2D:
+    """The star of an exit, for legends."""
+    return Line2D([], [], marker="*", linestyle="", color=_EXIT, markersize=12, label="exit")
 
 
 def natural_size(level: Level) -> tuple[float, float]:

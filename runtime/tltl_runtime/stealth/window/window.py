@@ -206,7 +206,9 @@ def _loaded() -> Any:
         import pygame
     except ModuleNotFoundError as error:
         title = f"a window needs `{error.name}`, which is not installed"
-        raise TltlError([Diagnostic("TLT0730", title, help="in the clone of tltlc: pip install -c constraints.txt '.[game]'")]) from None
+        raise TltlError(
+            [Diagnostic("TLT0730", title, help="in the clone of tltlc: pip install -c constraints.txt '.[game]'")]
+        ) from None
     return pygame
 
 

@@ -15,7 +15,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 def _missing() -> TltlError:
     way_out = "in the clone of tltlc: pip install -c constraints.txt '.[game]'"
     if sys.version_info >= (3, 12):
-        way_out = "it comes ready to use for Python 3.10 and 3.11 alone: install '.[game]' in the clone of tltlc with one"
+        way_out = "it comes ready to use for Python 3.10 and 3.11 alone: install '.[game]' in the clone with one"
     return TltlError([Diagnostic("TLT0730", "the game needs `pybullet`, which is not installed", help=way_out)])
 
 

@@ -34,4 +34,5 @@ def test_trajectories_and_where_they_failed() -> None:
 
     without = count([passed] * 3, RED)
     assert count([passed, failed, passed], RED) > without + 40, "a mark at the end and one in the legend"
-    assert count([failed] * 3, GREEN) < count([passed] * 3, GREEN), "successes are in the legend alone"
+    elsewhere = Trajectory(line[:2], np.array([0, 4], dtype=np.int32), "success")
+    assert count([passed, elsewhere], GREEN) > count([passed, passed], GREEN), "a mark where each succeeded"
