@@ -54,5 +54,5 @@ def _std(each: Figures, spread: Spread, places: int) -> str:
 
 def _failures(ended: Ended) -> tuple[str, str]:
     listed = ", ".join(map(str, ended.episodes[:_MOST_LISTED])) + (", …" if ended.count > _MOST_LISTED else "")
-    what = column("  ", f"{ended.count} {_ENDS[ended.end]} in state {ended.state}, remaining: {ended.label}")
+    what = column(f"  {ended.count} ", f"{_ENDS[ended.end]} in state {ended.state}, remaining: {ended.label}")
     return what, column(f"    episode{'s' if ended.count > 1 else ''} ", listed)

@@ -51,7 +51,7 @@ def test_the_report_for_people(tltlc: Run, policy: Path) -> None:  # noqa: F811
     assert lines[5] == "pass rate (95 %)  0.00 (0.00 to 0.56)     0.00 (0.00 to 0.56)"
     assert "sampled: 3 of 3 failed" in lines
     assert "  3 out of time in state 0, remaining: Reach near(exit), and keep alive" in lines
-    assert "  throughout." in lines
+    assert "    throughout." in lines
     assert lines[-2:] == [
         "To record one of them, for `tltlc replay`:",
         f"  tltlc evaluate {policy} --seed 5 --first 0 --episodes 1 --out evaluation",
