@@ -44,10 +44,7 @@ def search_line(searched: Searched) -> str:
 def search_end(exploration: Exploration) -> str:
     """When a search ends, in a sentence."""
     ways = f"{exploration.ways} way{'s' * (exploration.ways != 1)}"
-    return (
-        f"It ends when {ways} are found and four times as many steps are over as to the first one, "
-        f"at the latest after {exploration.steps:,} steps."
-    )
+    return f"It ends when {ways} are found, at the latest after {exploration.steps:,} steps."
 
 
 def found_line(searched: Searched) -> str:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
+from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint
 from tltl_runtime.training.distributed import Peers, cores
 from tltl_runtime.training.environment import TrainingEnv
+from tltl_runtime.training.imitation import Lessons
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.run import CHECKPOINT, RUN, Run, identity, read_run, write_run
-from tltl_runtime.training.search import Search, Searched, Way
+from tltl_runtime.training.search import Search, Searched
 from tltl_runtime.training.starts import Replayed
 from tltl_runtime.training.streams import Purpose, stream
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
@@ -65,23 +68,38 @@ def prepared(
     checkpoint: Checkpoint | None,
     searching: Callable[[Searched], None],
 ) -> tuple[TrainingEnv, Searched | None]:
-    """What rsl-rl trains with, at the beginning of episodes that no process played before, and what a search found."""
+    """What rsl-rl trains with, at the beginning of episodes that no process played before, and what a search found.
+
+    That is None where there was no need of one: ways are searched once, unless a limit broke the search off.
+    """
     exploration, searched, restarts = run.settings.exploration, None, None
     iteration = checkpoint.iteration if checkpoint else 0
     if exploration.ways:
-        ways: list[Way] = []
-        if checkpoint is None:
-            search = Search(played, len(run.fspa.states), exploration, stream(run, own, Purpose.SEARCH))
-            for searched in search.run():
-                searching(searched)
-                if 0 < run.settings.stop.minutes * 60 <= searched.seconds:
-                    break
-            ways = search.ways
         generator = np.random.default_rng(stream(run, own, Purpose.STARTS, iteration))
-        restarts = Restarts(ways, exploration.parts, generator)
+        restarts = Restarts(exploration.parts, generator)
         if checkpoint is not None:
             # Of more processes than there were, the new ones know the ways of older ones.
             known = checkpoint.processes[own.rank % len(checkpoint.processes)]
             restarts.load({name: each.numpy() for name, each in known.items()})
+        limit_s, before_s = run.settings.stop.minutes * 60, checkpoint.seconds if checkpoint else 0.0
+        broken_off = checkpoint and checkpoint.searched and not checkpoint.searched.complete
+        if checkpoint is None or (broken_off and not 0 < limit_s <= before_s):
+            search = Search(played, len(run.fspa.states), exploration, stream(run, own, Purpose.SEARCH, iteration))
+            for searched in search.run():
+                searching(searched)
+                if 0 < limit_s <= before_s + searched.seconds:
+                    break
+            for way in search.ways:
+                restarts.add(way)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
-    return TrainingEnv(played, [int(each) for each in seeds], device, restarts), searched
+    make = partial(
+        make_env,
+        run.level,
+        run.variant,
+        run.fspa,
+        sensors=run.sensors,
+        reward=run.settings.reward,
+        params=run.params,
+    )
+    lessons = Lessons(make, restarts) if restarts and exploration.imitation else None
+    return TrainingEnv(played, [int(each) for each in seeds], device, restarts, lessons), searched

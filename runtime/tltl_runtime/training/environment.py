@@ -13,6 +13,7 @@ from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 from torch import Tensor
 
+from tltl_runtime.training.imitation import Lessons
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.search import end_of
 from tltl_runtime.training.starts import Episodes
@@ -43,6 +44,7 @@ class TrainingEnv(VecEnv):
 
     With ``restarts`` they say where episodes begin, whose seeds ``seed`` then does not tell; those that do not begin at
     the level's start are not among the ``finished``.  ``replayed`` counts the decisions that led to their starts.
+    ``lessons`` are decisions that the runner is to imitate.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -54,6 +56,7 @@ class TrainingEnv(VecEnv):
         seed: int | Sequence[int],
         device: str = "cpu",
         restarts: Restarts | None = None,
+        lessons: Lessons | None = None,
     ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
             raise TypeError(f"actions of several branches are needed, a MultiDiscrete, not {env.single_action_space}")
@@ -66,6 +69,7 @@ class TrainingEnv(VecEnv):
         self.shapes = {key: tuple(each.shape or ()) for key, each in env.single_observation_space.items()}
         self.device = device
         self.restarts = restarts
+        self.lessons = lessons
         self.cfg: dict[str, Any] = {}
         # Nothing is cut by rsl-rl: the spec's limit ends an episode.
         self.max_episode_length = 2**31

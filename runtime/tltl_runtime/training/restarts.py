@@ -7,7 +7,7 @@ CoRL 2017; Salimans and Chen, Learning Montezuma's Revenge from a single demonst
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,10 +20,18 @@ _WAYS = 6
 """Of the ways with the same end, as many of the shortest are kept, each of another seed."""
 _ENDS = 8
 """Of the ends as many are kept as were found first."""
-_FRESH = 0.1
-"""How many episodes begin at the level's start in any case."""
+_FRESH = 0.03
+"""How many episodes begin at the level's start in any case: one that gets nowhere lasts until the spec's limit."""
 _LEAST = 0.005
-"""The weight of a part that teaches nothing now: it may do so again."""
+"""The weight of a part that teaches nothing any more: it may do so again."""
+_REACHED = 0.2
+"""The success rate from which on a part counts as learned, in part at least."""
+_AHEAD = 0.1, 0.6
+"""The weight of the part before the first one that is, and by how much those before it weigh less, each than the next.
+
+What is far from anything that was learned gives long episodes without any success, whose noise is all that PPO would
+then learn from.
+"""
 _RATE = 0.1, 0.02
 """How fast success rates follow the episodes: those of a part, that from the level's start."""
 _SPARE = 1.5, 20
@@ -38,28 +46,56 @@ class Restarts:
     rates from each part of its ways, in [0, 1]; ``passed`` is the success rate from the level's start.
     """
 
-    def __init__(self, ways: Sequence[Way], parts: int, generator: np.random.Generator) -> None:
+    def __init__(self, parts: int, generator: np.random.Generator) -> None:
         self._random = generator
         self._parts = parts
         self.ways: dict[int, list[Way]] = {}
         self.rates: dict[int, NDArray[np.float64]] = {}
         self.passed = 0.0
-        for way in ways:
-            self._add(way)
+
+    def add(self, way: Way) -> None:
+        """Keep a way where it is among the shortest to its end."""
+        if way.end not in self.ways:
+            if len(self.ways) == _ENDS:
+                return
+            self.ways[way.end] = []
+            self.rates[way.end] = np.zeros(self._parts)
+            # The end of a way is where the learning begins.
+            self.rates[way.end][-1] = 0.5
+        shortest: dict[int, Way] = {}
+        for each in sorted([*self.ways[way.end], way], key=lambda each: len(each.actions)):
+            # Of one seed no more than one: what guards do in it would be learned by heart.
+            shortest.setdefault(each.seed, each)
+        self.ways[way.end] = list(shortest.values())[:_WAYS]
 
     def draw(self) -> Start:
         """Where the next episode begins: the more often at the level's start, the better the agent is from there."""
         seed = int(self._random.integers(2**31))
-        if not self.ways or self._random.random() < _FRESH + (1 - 2 * _FRESH) * self.passed:
+        if not self.ways or self._random.random() < _FRESH + (1 - 2 * _FRESH) * self._at_start():
             return Start(seed)
-        ends, rates = list(self.rates), np.concatenate(list(self.rates.values()))
-        weights = rates * (1 - rates) + _LEAST
+        ends = list(self.rates)
+        weights = np.concatenate([_weights(rates) for rates in self.rates.values()])
         index, part = divmod(int(self._random.choice(len(weights), p=weights / weights.sum())), self._parts)
         ways = self.ways[ends[index]]
         way = ways[self._random.integers(len(ways))]
         at = int(len(way.actions) * (part + self._random.random()) / self._parts)
         times, more = _SPARE
         return Start(way.seed, way.actions[:at], (way.end, part), int((len(way.actions) - at) * times) + more)
+
+    def lessons(self, count: int) -> list[tuple[Way, int]]:
+        """Up to ``count`` decisions on the ways, each a way and its number, there where episodes begin and fail."""
+        if not self.ways:
+            return []
+        rates = np.concatenate(list(self.rates.values()))
+        weights = np.concatenate([_weights(each) for each in self.rates.values()])
+        drawn = self._random.choice(len(weights), size=count, p=weights / weights.sum())
+        drawn = drawn[self._random.random(count) >= rates[drawn]]
+        ends, found = list(self.rates), []
+        for index, part in zip(*divmod(drawn, self._parts), strict=True):
+            ways = self.ways[ends[index]]
+            way = ways[self._random.integers(len(ways))]
+            found.append((way, int(len(way.actions) * (part + self._random.random()) / self._parts)))
+        return found
 
     def ended(self, start: Start, actions: Actions, end: int | None) -> None:
         """Learn how an episode ended that began at ``start``: in success with this ``end``, or None, without.
@@ -74,7 +110,7 @@ class Restarts:
             way_end, part = start.part
             self.rates[way_end][part] += of_part * (success - self.rates[way_end][part])
         if end is not None:
-            self._add(Way(start.seed, actions, end))
+            self.add(Way(start.seed, actions, end))
 
     def state(self) -> dict[str, NDArray[Any]]:
         """All but the generator, as arrays, for :meth:`load`."""
@@ -94,21 +130,19 @@ class Restarts:
         if len(state["way_seeds"]):
             actions = np.split(state["way_actions"], np.cumsum(state["way_lengths"])[:-1])
             for seed, end, own in zip(state["way_seeds"], state["way_ends"], actions, strict=True):
-                self._add(Way(int(seed), own.tolist(), int(end)))
+                self.add(Way(int(seed), own.tolist(), int(end)))
             self.rates = dict(zip(self.rates, state["rates"].copy(), strict=True))
         self.passed = float(state["passed"][0])
 
-    def _add(self, way: Way) -> None:
-        """Keep a way where it is among the shortest to its end."""
-        if way.end not in self.ways:
-            if len(self.ways) == _ENDS:
-                return
-            self.ways[way.end] = []
-            self.rates[way.end] = np.zeros(self._parts)
-            # The end of a way is where the learning begins.
-            self.rates[way.end][-1] = 0.5
-        shortest: dict[int, Way] = {}
-        for each in sorted([*self.ways[way.end], way], key=lambda each: len(each.actions)):
-            # Of one seed no more than one: what guards do in it would be learned by heart.
-            shortest.setdefault(each.seed, each)
-        self.ways[way.end] = list(shortest.values())[:_WAYS]
+    def _at_start(self) -> float:
+        """How well the agent does from the level's start, where it may have been seldom, or from the starts of ways."""
+        return max(self.passed, float(np.mean([rates[0] for rates in self.rates.values()])))
+
+
+def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How likely episodes begin in each part, given the success rates from there."""
+    first = int(np.argmax(rates >= _REACHED)) if rates.max() >= _REACHED else len(rates) - 1
+    weights: NDArray[np.float64] = rates * (1 - rates) + _LEAST
+    most, less = _AHEAD
+    weights[:first] = most * less ** np.arange(first - 1, -1, -1)
+    return weights

@@ -17,6 +17,7 @@ from torch import Tensor
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.environment import Finished, TrainingEnv
+from tltl_runtime.training.imitation import imitate
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
 
@@ -69,7 +70,7 @@ class Runner(OnPolicyRunner):
                 self.alg.compute_returns(observation)
             collected = time.perf_counter()
             with threads(self.cfg.get("threads", 1)):
-                losses = self.alg.update()
+                losses = {**self.alg.update(), **self._imitate()}
             self.current_learning_iteration += 1
             yield Iteration(
                 number=self.current_learning_iteration,
@@ -95,6 +96,17 @@ class Runner(OnPolicyRunner):
         observation, rewards, dones = (each.to(self.device) for each in (observation, rewards, dones))
         self.alg.process_env_step(observation, rewards, dones, extras)
         return observation
+
+    def _imitate(self) -> dict[str, float]:
+        """Imitate where there is something to; processes do it together, so that their weights stay equal."""
+        lessons, losses = self.env.lessons, []
+        for _ in range(self.cfg["imitation"] if lessons else 0):
+            drawn = lessons.draw() if lessons else None
+            if not any(peers().gather(drawn is not None)):
+                break
+            observations, actions = drawn or (self.env.get_observations()[:0], torch.zeros(0, self.env.num_actions))
+            losses.append(imitate(self.alg, observations.to(self.device), actions.to(self.device)))
+        return {"imitation": sum(losses) / len(losses)} if losses else {}
 
     def _check(self, observation: Any, rewards: Tensor, dones: Tensor) -> None:
         """Raise TltlError, TLT0854, where the environment gave values that are no numbers."""

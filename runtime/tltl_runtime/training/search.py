@@ -4,6 +4,9 @@ Robustness is blind to walls: an agent that only follows it stays where the dist
 nobody crouches, climbs and jumps in the right order.  Here, whatever place was reached is returned to by playing the
 actions that led there again, and from there chance goes on: Ecoffet et al., First return, then explore, Nature 590,
 2021.  A place is a cell of the level in a state of the automaton, so nothing about the level needs to be known.
+
+What goes on from a place has the seed of the episode that found it, and whatever the level draws from that, such as the
+door that opens, stays as it is.  So the places of a seed are forgotten as soon as a way was found with it.
 """
 
 from __future__ import annotations
@@ -25,8 +28,6 @@ _BURST = 60
 """Decisions from a place on."""
 _FRESH = 0.05
 """How many episodes begin at their beginning."""
-_OTHERS = 4
-"""So many times as long as to the first way the search takes to find other ends, too."""
 _TOLD_EVERY_S = 0.5
 
 
@@ -34,14 +35,15 @@ _TOLD_EVERY_S = 0.5
 class Exploration:
     """The search before the training, and what is made of it.
 
-    It ends when ``ways`` episodes have met the spec (0: no search) and it has gone on for four times as long as it took
-    to the first of them, so that other ends are found, too; or after ``steps`` decisions, those that are played again
-    not counted.  The ways are divided into ``parts`` at which episodes of the training may begin.
+    It ends when ``ways`` episodes, each of another seed, have met the spec (0: no search); or after ``steps``
+    decisions, those that are played again not counted.  The ways are divided into ``parts`` at which episodes of the
+    training may begin.  After each update ``imitation`` steps of the optimiser follow towards decisions on them.
     """
 
     ways: int
     steps: int
     parts: int
+    imitation: int
 
 
 @record
@@ -65,13 +67,17 @@ def end_of(infos: Mapping[str, Any], row: int) -> int:
 
 @record
 class Searched:
-    """How far a search is: decisions (those played again apart), places that were reached, lengths of the ways."""
+    """How far a search is: decisions (those played again apart), places that were reached, lengths of the ways.
+
+    It is ``complete`` where it ended by its own rule.
+    """
 
     steps: int
     replayed: int
     seconds: float
     places: int
     lengths: tuple[int, ...]
+    complete: bool
 
 
 class Search:
@@ -88,11 +94,8 @@ class Search:
         self._states = states
         self._exploration = exploration
         self._random = np.random.default_rng(seed)
-        self._first: dict[int, Start] = {}
-        """The shortest way known to each place, by ``cell * states + state``."""
-        self._chosen: list[int] = []
-        """How often each place was begun at, in the order in which they were found."""
-        self._places: list[int] = []
+        self._known = _Known(self._random)
+        self._reached = 0
         self.ways: list[Way] = []
 
     def run(self) -> Iterator[Searched]:
@@ -103,58 +106,92 @@ class Search:
         shape = self._env.num_envs, len(choices)
         action = self._random.integers(0, choices, size=shape)
         left = np.full(self._env.num_envs, _BURST)
-        steps = first = 0
-        enough = self._exploration.steps
-        while steps < enough:
+        steps = 0
+        while steps < self._exploration.steps and len(self.ways) < self._exploration.ways:
             kept = self._random.random(shape) < _KEPT
             action = np.where(kept, action, self._random.integers(0, choices, size=shape))
             _, _, terminated, truncated, infos = episodes.step(action)
             steps += self._env.num_envs
             over = terminated | truncated
+            left -= 1
             for row in range(self._env.num_envs):
                 if not over[row]:
-                    left[row] = self._note(episodes, row, infos, int(left[row]) - 1)
+                    if self._note(episodes, row, infos):
+                        left[row] = max(left[row], _BURST // 2)
                 elif infos["final_info"]["success"][row]:
-                    end = end_of(infos["final_info"], row)
-                    self.ways.append(Way(episodes.starts[row].seed, episodes.actions[row], end))
+                    self._found(Way(episodes.starts[row].seed, episodes.actions[row], end_of(infos["final_info"], row)))
             spent = ~over & (left <= 0)
             episodes.turn(over)
             if spent.any():
                 episodes.cut(spent)
             left[over | spent] = _BURST
-            if self.ways and not first:
-                first = steps
-            if len(self.ways) >= self._exploration.ways:
-                enough = min(enough, _OTHERS * first)
             if time.perf_counter() - told > _TOLD_EVERY_S:
                 told = time.perf_counter()
-                yield self._searched(steps, episodes.replayed, told - began)
-        yield self._searched(steps, episodes.replayed, time.perf_counter() - began)
+                yield self._searched(steps, episodes.replayed, told - began, complete=False)
+        yield self._searched(steps, episodes.replayed, time.perf_counter() - began, complete=True)
 
-    def _note(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]], left: int) -> int:
-        """Take note of the place that an environment is at; how many decisions it has left."""
-        cell = int(infos["cell"][row])
-        if cell < 0:
-            return left
-        place = cell * self._states + int(infos["state"][row])
-        known = self._first.get(place)
-        if known is None:
-            self._places.append(place)
-            self._chosen.append(0)
-            left = max(left, _BURST // 2)
-        if known is None or len(episodes.actions[row]) < len(known.actions):
-            self._first[place] = Start(episodes.starts[row].seed, list(episodes.actions[row]))
-        return left
+    def _note(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
+        """Take note of the place that an environment is at; whether nobody was there before."""
+        cell, seed = int(infos["cell"][row]), episodes.starts[row].seed
+        if cell < 0 or any(way.seed == seed for way in self.ways):
+            return False
+        is_new = self._known.note(int(infos["state"][row]), cell, seed, episodes.actions[row])
+        self._reached += is_new
+        return is_new
+
+    def _found(self, way: Way) -> None:
+        if all(each.seed != way.seed for each in self.ways):
+            self.ways.append(way)
+            self._known.forget(way.seed)
 
     def _draw(self) -> Start:
-        """A place to begin at, the likelier the less often it was; now and then the beginning of a new episode."""
-        if not self._places or self._random.random() < _FRESH:
+        """A place to begin at; now and then the beginning of a new episode."""
+        if not self._known or self._random.random() < _FRESH:
             return Start(int(self._random.integers(2**31)))
-        weights = (1.0 + np.array(self._chosen)) ** -0.5
-        index = int(self._random.choice(len(weights), p=weights / weights.sum()))
-        self._chosen[index] += 1
-        return self._first[self._places[index]]
+        return self._known.draw()
 
-    def _searched(self, steps: int, replayed: int, seconds: float) -> Searched:
+    def _searched(self, steps: int, replayed: int, seconds: float, *, complete: bool) -> Searched:
         lengths = tuple(sorted(len(way.actions) for way in self.ways))
-        return Searched(steps, replayed, seconds, len(self._places), lengths)
+        return Searched(steps, replayed, seconds, self._reached, lengths, complete)
+
+
+class _Known:
+    """The places that were reached: by state and cell the shortest way to each, and how often it was begun at."""
+
+    def __init__(self, random: np.random.Generator) -> None:
+        self._random = random
+        self._starts: dict[int, dict[int, Start]] = {}
+        self._begun: dict[int, dict[int, int]] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._starts)
+
+    def note(self, state: int, cell: int, seed: int, actions: Actions) -> bool:
+        """Keep the way to a place where it is the shortest; whether it is the first one."""
+        starts = self._starts.setdefault(state, {})
+        known = starts.get(cell)
+        if known is None or len(actions) < len(known.actions):
+            starts[cell] = Start(seed, list(actions))
+            self._begun.setdefault(state, {}).setdefault(cell, 0)
+        return known is None
+
+    def draw(self) -> Start:
+        """A place of any state alike, so that the later ones, which have few places, count as much as the first; there
+        the likelier, the less often it was begun at.
+        """
+        state = list(self._starts)[self._random.integers(len(self._starts))]
+        begun = self._begun[state]
+        weights = (1.0 + np.fromiter(begun.values(), np.float64)) ** -0.5
+        cell = list(begun)[self._random.choice(len(weights), p=weights / weights.sum())]
+        begun[cell] += 1
+        return self._starts[state][cell]
+
+    def forget(self, seed: int) -> None:
+        """Leave out what is reached with a seed."""
+        for state in list(self._starts):
+            kept = {cell: start for cell, start in self._starts[state].items() if start.seed != seed}
+            if kept:
+                self._starts[state] = kept
+                self._begun[state] = {cell: self._begun[state][cell] for cell in kept}
+            else:
+                del self._starts[state], self._begun[state]

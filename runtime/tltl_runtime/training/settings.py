@@ -151,6 +151,7 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
     ppo = settings.ppo
     groups = list(shapes)
     return {
+        "imitation": settings.exploration.imitation,
         "num_steps_per_env": settings.rollout.steps,
         "save_interval": 0,
         "threads": settings.threads,

@@ -130,7 +130,12 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "kernel": Whole(1, MAX_KERNEL),
         "stride": Whole(1, MAX_STRIDE),
     },
-    "exploration": {"ways": Whole(0, 1_000), "steps": Whole(1, 10**9), "parts": Whole(1, 1_000)},
+    "exploration": {
+        "ways": Whole(0, 1_000),
+        "steps": Whole(1, 10**9),
+        "parts": Whole(1, 1_000),
+        "imitation": Whole(0, 100),
+    },
     "reward": {
         "mode": OneOf(get_args(Mode)),
         "termination": OneOf(get_args(Termination)),

@@ -71,6 +71,8 @@ def train(
         stack.enter_context(threads(1))
         played = stack.enter_context(closing(environments(run)))
         env, searched = prepared(run, own, device, played, checkpoint, searching)
+        if env.lessons:
+            stack.callback(env.lessons.close)
         torch.manual_seed(int(stream(run, own, Purpose.TORCH).generate_state(1)[0]))
         config = rsl_config(run.settings, env.shapes, env.branches)
         yield from _Training(run, own, runner(env, config, None, device), checkpoint, searched).reports()
@@ -94,6 +96,9 @@ class _Training:
             self._fade_entropy()
             if own.rank < len(begun.processes):
                 _set_own(begun.processes[own.rank], runner)
+            if searched:
+                # The one before was broken off by a limit.
+                begun = replace(begun, searched=searched, seconds=begun.seconds + searched.seconds)
         self._state = begun or Checkpoint(
             run=identity(run),
             iteration=0,

@@ -15,7 +15,7 @@ from tltl_runtime.training.report import Report
 from tltl_runtime.training.search import Searched
 from tltlc.record import replace
 
-SEARCHED = Searched(steps=6400, replayed=3200, seconds=80.0, places=1200, lengths=(90, 80))
+SEARCHED = Searched(steps=6400, replayed=3200, seconds=80.0, places=1200, lengths=(90, 80), complete=True)
 
 
 def _lines(folder: Path, columns: int, lines: int, report: Report | Searched | None) -> list[str]:

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -43,7 +43,7 @@ def search(env: WorkerVectorEnv, exploration: Exploration) -> tuple[list[Way], l
 
 
 def test_ways_meet_the_spec_when_they_are_played_again(env: WorkerVectorEnv) -> None:
-    ways, told = search(env, Exploration(ways=3, steps=20_000, parts=4))
+    ways, told = search(env, Exploration(ways=3, steps=20_000, parts=4, imitation=0))
     assert len(ways) >= 3
     assert told[-1].lengths == tuple(sorted(len(way.actions) for way in ways))
     assert told[-1].places > 10
@@ -57,7 +57,7 @@ def test_ways_meet_the_spec_when_they_are_played_again(env: WorkerVectorEnv) -> 
 
 
 def test_any_number_of_workers_finds_the_same_ways(env: WorkerVectorEnv) -> None:
-    exploration = Exploration(ways=2, steps=20_000, parts=4)
+    exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
     other = envs(2)
     assert search(env, exploration)[0] == search(other, exploration)[0]
     other.close()
@@ -65,7 +65,7 @@ def test_any_number_of_workers_finds_the_same_ways(env: WorkerVectorEnv) -> None
 
 def test_a_search_ends_at_its_limit() -> None:
     env = envs(1, FAR)
-    ways, told = search(env, Exploration(ways=1, steps=200, parts=4))
+    ways, told = search(env, Exploration(ways=1, steps=200, parts=4, imitation=0))
     env.close()
     assert not ways
     assert told[-1].steps == 200
@@ -134,9 +134,16 @@ def test_a_lost_worker_is_told_with_the_seeds_that_episodes_began_with(env: Work
     assert told == [(row, 10 + row, 1, 5) for row in range(4)]
 
 
+def restarts_of(ways: Sequence[Way], parts: int, seed: int = 1) -> Restarts:
+    restarts = Restarts(parts, np.random.default_rng(seed))
+    for way in ways:
+        restarts.add(way)
+    return restarts
+
+
 def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
     way = Way(1, [[0, 0, 0, 0, 0]] * 80, 1)
-    restarts = Restarts([way], 8, np.random.default_rng(0))
+    restarts = restarts_of([way], 8, 0)
 
     def drawn() -> Counter[int | None]:
         parts = (restarts.draw().part for _ in range(1000))
@@ -150,7 +157,9 @@ def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
         for _ in range(times):
             restarts.ended(Start(1, way.actions[: 10 * part], (1, part)), longer, 1)
     later = drawn()
-    assert later[5] > 3 * max(later[7], later[6], later[4])
+    # What is learned teaches little, and what is far from it nothing yet.
+    assert later[5] > 2 * later[4] > 10 * max(later[7], later[6])
+    assert later[4] > 1.3 * later[3] > 2 * later[1]
     for _ in range(500):
         restarts.ended(Start(2), longer, 1)
     assert drawn()[None] > 800
@@ -158,7 +167,7 @@ def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
 
 def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:
     way = Way(9, [[0, 0, 0, 0, index % 2] for index in range(160)], 1)
-    restarts = Restarts([way], 16, np.random.default_rng(1))
+    restarts = restarts_of([way], 16)
     for start in (restarts.draw() for _ in range(300)):
         if start.part is not None:
             end, part = start.part
@@ -172,7 +181,7 @@ def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:
 def test_the_shortest_ways_to_each_end_are_kept_and_the_agents_own_join_them() -> None:
     ways = [Way(index, [[0] * 5] * (100 + index), index % 2) for index in range(20)]
     ways += [Way(0, [[0] * 5] * length, 0) for length in (99, 150)]
-    restarts = Restarts(ways, 4, np.random.default_rng(1))
+    restarts = restarts_of(ways, 4)
     restarts.ended(Start(77), [[1] * 5] * 50, 0)
     restarts.ended(Start(78), [[1] * 5] * 40, None)
     restarts.ended(Start(79), [[1] * 5] * 400, 3)
@@ -183,18 +192,18 @@ def test_the_shortest_ways_to_each_end_are_kept_and_the_agents_own_join_them() -
 
 
 def test_without_ways_episodes_begin_at_their_beginning() -> None:
-    restarts = Restarts([], 4, np.random.default_rng(1))
+    restarts = restarts_of([], 4)
     assert all(start.part is None and not start.actions for start in (restarts.draw() for _ in range(50)))
 
 
 @pytest.mark.parametrize("count", [0, 3])
 def test_what_is_kept_of_restarts_is_all_of_them(count: int) -> None:
     ways = [Way(index, [[index, 0, 1, 0, 1]] * (5 + index), index) for index in range(count)]
-    restarts = Restarts(ways, 4, np.random.default_rng(1))
+    restarts = restarts_of(ways, 4)
     if count:
         restarts.ended(Start(3, (), (2, 2)), [], None)
     restarts.ended(Start(3), [[0] * 5] * 200, None)
-    again = Restarts([], 4, np.random.default_rng(1))
+    again = restarts_of([], 4)
     again.load(restarts.state())
     assert again.ways == restarts.ways
     assert {end: rates.tolist() for end, rates in again.rates.items()} == {

@@ -1,0 +1,64 @@
+"""What is imitated, and that it is."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from tests.runtime.training.runs import run_in
+from tests.runtime.training.test_search import restarts_of
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.training.environment import TrainingEnv
+from tltl_runtime.training.imitation import BATCH, Lessons, imitate
+from tltl_runtime.training.runner import Runner
+from tltl_runtime.training.search import Way
+from tltl_runtime.training.settings import rsl_config
+from tltl_runtime.vector import make_vec
+
+WAY = Way(5, [[index % 3, 1, 0, 0, index % 2] for index in range(40)], 1)
+make = partial(make_env, "cover_and_hide")
+
+
+def test_decisions_are_drawn_with_what_is_sensed_before_each() -> None:
+    lessons = Lessons(make, restarts_of([WAY], 4))
+    drawn = lessons.draw()
+    lessons.close()
+    assert drawn is not None
+    observations, actions = drawn
+    env = make()
+    first, _ = env.reset(seed=WAY.seed)
+    along = [first, *(env.step(action)[0] for action in WAY.actions)]
+    env.close()
+    entities = np.stack([each["entities"] for each in along])
+    for sensed, action in zip(observations["entities"].numpy(), actions.tolist(), strict=True):
+        (decisions,) = np.nonzero((entities == sensed).all(axis=1))
+        assert action in [WAY.actions[index] for index in decisions]
+
+
+@pytest.mark.parametrize(("rates", "parts"), [([0, 0, 0, 0.5], {0, 1, 2, 3}), ([0, 1, 1, 1], {0}), ([1] * 4, set())])
+def test_what_is_learned_is_imitated_no_more(rates: list[float], parts: set[int]) -> None:
+    restarts = restarts_of([WAY], 4)
+    restarts.rates[1][:] = rates
+    decisions = restarts.lessons(BATCH)
+    assert {index // 10 for _, index in decisions} == parts
+    assert len(decisions) <= BATCH
+    assert (Lessons(make, restarts).draw() is None) == (not parts)
+
+
+def test_imitation_makes_the_actions_likelier() -> None:
+    run = run_in(Path("none"))
+    played = make_vec("cover_and_hide", "v0", 2, 1)
+    env = TrainingEnv(played, 1)
+    torch.manual_seed(0)
+    runner = Runner(env, rsl_config(run.settings, env.shapes, env.branches))
+    lessons = Lessons(make, restarts_of([WAY], 4))
+    drawn = lessons.draw()
+    assert drawn is not None
+    losses = [imitate(runner.alg, *drawn) for _ in range(200)]
+    lessons.close()
+    played.close()
+    assert losses[-1] < 0.7 * losses[0]
