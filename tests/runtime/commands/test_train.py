@@ -160,6 +160,8 @@ def test_until_the_spec_is_met(tltlc: TltlcFunction, here: Path) -> None:  # noq
     assert re.fullmatch(r"the spec is met after 64 steps, \d+ s: met in 2 of the last 2 episodes, .*", first)
     assert last == "to evaluate it: tltlc evaluate runs/soon"
     card = read_policy("runs/soon/policy.safetensors").card
+    best = card.training["best"]
+    assert (best["pass_rate"], best["confirmed"]) == (1.0, True)
     assert (card.fspa.name, card.sensors.map, card.network.hidden) == ("soon", None, (8,))
 
 
