@@ -222,6 +222,6 @@ def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, w
     else:
         click.echo(text, nl=False)
     if files.removed:
-        click.echo(f"removed {files.removed} files of an earlier evaluation of the level from {folder}", err=True)
+        click.echo(f"removed {files.removed} files of an evaluation of another policy from {folder}", err=True)
     if wrote := files.write(text):
         click.echo(f"wrote {wrote}", err=True)

@@ -14,7 +14,7 @@ from tltl_runtime.evaluation.player import CHOICES, Result, Setup
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.record_json import to_json
-from tltl_runtime.stealth.episodes.file import SUFFIX, from_bytes, new_path
+from tltl_runtime.stealth.episodes.file import SUFFIX, from_bytes, new_path, read_episode
 from tltl_runtime.stealth.episodes.trajectory import Trajectory
 from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.levels.file import load_level
@@ -33,7 +33,7 @@ class EvaluationFiles:
     ``path`` is the policy's file, ``sha256`` that of its bytes, in hexadecimal, and ``first`` the index of the first
     episode; ``command`` evaluates the same episodes again.  ``folder``, which is made where it is missing, gets
     recordings and pictures, ``json_file`` the report for programs; both are optional.  What an earlier evaluation of
-    the level left in the folder is removed with the first result: ``removed`` of its files.
+    another policy left in the folder is removed with the first result: ``removed`` of its files.
 
     Raises:
         TltlError: TLT0005, nothing can be written there; of ``add`` and ``write`` too.
@@ -153,15 +153,27 @@ class EvaluationFiles:
         return f"note: the policy was trained on another level, {card.level} {card.variant}\n"
 
     def _remove_older(self, folder: Path) -> int:
-        """Remove what an earlier evaluation of this level wrote; how many files it was."""
-        choices, endings = "|".join(CHOICES.values()), f"{re.escape(SUFFIX)}|[.]png"
-        own = re.compile(rf"{re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?({endings})|ways-({choices})[.]png")
-        older = [path for path in folder.iterdir() if own.fullmatch(path.name) and path.is_file()]
-        for path in older:
+        """Remove pictures of the ways, and recordings of this level that another policy played: how many files."""
+        choices = "|".join(CHOICES.values())
+        recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")
+        older = [folder / f"ways-{choice}.png" for choice in CHOICES.values()]
+        for path in folder.iterdir():
+            if (found := recording.fullmatch(path.name)) and self._is_of_another(path):
+                older += [path, folder / f"{found[1]}.png"]
+        there = [path for path in older if path.is_file()]
+        for path in there:
             # One that cannot be removed harms nobody: no other takes its name.
             with suppress(OSError):
                 path.unlink()
-        return sum(not path.exists() for path in older)
+        return sum(not path.exists() for path in there)
+
+    def _is_of_another(self, path: Path) -> bool:
+        """Whether a file is a recording of what another policy played, which this evaluation says nothing of."""
+        try:
+            player = read_episode(path).player
+        except TltlError:
+            return False
+        return player.startswith("policy ") and not player.startswith(f"{self._setup.player}, ")
 
     @property
     def _name(self) -> str:

@@ -31,8 +31,8 @@ def begun(run: Run, resume: bool) -> Checkpoint | None:
     """
     if resume:
         checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
-        if read_run(run.folder).settings != run.settings:
-            # Its limits are others now, and hold when it is resumed the next time.
+        if read_run(run.folder) != run:
+            # Its limits, or the place of its level's file, are others now, and hold when it is resumed the next time.
             write_run(run)
         return checkpoint
     if (run.folder / RUN).exists():

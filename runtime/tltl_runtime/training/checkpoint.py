@@ -30,7 +30,7 @@ class Best:
 
     score: Score
     actor: Mapping[str, Tensor]
-    steps: int | None = None
+    steps: int
 
 
 @record

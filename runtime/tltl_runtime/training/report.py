@@ -71,8 +71,8 @@ class Report:
     unbroken: int
     confirmation: Confirmation | None
     best_pass_rate: float | None
+    best_steps: int | None
     stop: StopReason | None
     checkpointed: bool
     searched: Searched | None = None
     replayed: int = 0
-    best_steps: int | None = None

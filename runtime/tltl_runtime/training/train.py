@@ -211,7 +211,7 @@ class _Training:
         if score is None or (best is not None and score < best.score and not self._windows.met):
             return best
         # The rollout was played with the weights from before the update that followed it.
-        return Best(score, self._state.algorithm["actor_state_dict"])
+        return Best(score, self._state.algorithm["actor_state_dict"], self._state.steps)
 
     def _confirmation(self, best: Best, iteration: int) -> Confirmation:
         """What the first process finds when it confirms the policy that met the spec throughout the windows."""
@@ -243,6 +243,7 @@ class _Training:
             unbroken=self._windows.unbroken,
             confirmation=confirmation,
             best_pass_rate=best.score[0] if best else None,
+            best_steps=best.steps if best else None,
             stop=reason,
             checkpointed=checkpointed,
             searched=self._state.searched,

@@ -22,12 +22,14 @@ from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.evaluation.player import Player
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.run import Run as Training
 from tltl_runtime.training.run import write_run
 from tltl_runtime.training.settings import read_settings
+from tltlc.record import replace
 
 Run = Callable[..., Outcome]
 STARTER = Path(tltl_runtime.__file__).with_name("starter")
@@ -122,25 +124,21 @@ def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> No
     assert red > 50, "there are marks where time was up"
     assert "To record one of them" not in found.out
 
+    # Of the same policy, the recordings of other episodes stay; of another one, all would be taken for this one's.
     kept = ["cover_and_hide-v0-5.png", "cover_and_hide-v1-5-0-sampled.png", "notes.txt", "ways-of-mine.png"]
     for name in kept:
         (folder / name).touch()
     again = tltlc(*command, "--record", "none")
+    assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names])
+    mine, other = untrained(), tmp_path / "other.safetensors"
+    write_policy(other, Policy(replace(mine.card, training={"seed": 9}), mine.actor))
+    again = tltlc("evaluate", other, *command[2:], "--record", "none")
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names[-3:]])
     assert again.err.splitlines()[-2:] == [
-        f"removed 10 files of an earlier evaluation of the level from {folder}",
+        f"removed 10 files of an evaluation of another policy from {folder}",
         f"wrote {folder}: no recordings, ways-sampled.png, ways-arg-max.png, evaluation.json; "
         "look at ways-sampled.png first",
     ]
-
-
-def test_what_nobody_can_do_is_said(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
-    spec = "import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }"
-    path = tmp_path / "far.safetensors"
-    write_policy(path, untrained(spec, "navigation", "v2"))
-    found = tltlc("evaluate", path, "--episodes", "1")
-    assert found.status == 0
-    assert found.err.startswith("warning[TLT0814]: nobody reaches `exit` in `navigation:v2`")
 
 
 def test_recordings_need_a_folder(tltlc: Run, policy: Path) -> None:  # noqa: F811

@@ -38,6 +38,7 @@ def a_report(
         unbroken=successes if successes == count else 0,
         confirmation=confirmation,
         best_pass_rate=successes / count if count else None,
+        best_steps=4096 * (number - 1) if count else None,
         stop=stop,
         checkpointed=checkpointed,
     )
