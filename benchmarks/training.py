@@ -59,6 +59,7 @@ ABLATIONS: Mapping[str, Ablation] = {
     "reward potential": Ablation('[reward]\nmode = "potential"\n'),
     "terminal penalty undiscounted": Ablation('[reward]\nterminal_penalty = "undiscounted"\n'),
     "no semantic map": Ablation(options=("--no-map",)),
+    "no imitation of ways": Ablation("[exploration]\nimitation = 0\n"),
     "no search for ways": Ablation("[exploration]\nways = 0\n"),
 }
 

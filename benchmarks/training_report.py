@@ -20,7 +20,7 @@ ABLATION: Final = "ablation: "
 GPU: Final = "cuda"
 PICTURE_NAME: Final = "training.png"
 
-_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7")
+_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#999999")
 """Told apart by the colour-blind, too: those of M. Okabe and K. Ito, behind our own."""
 
 
@@ -142,12 +142,12 @@ def _trained(records: Mapping[str, Record]) -> str:
 `tltlc train --level LEVEL --seed SEED --minutes {MINUTES:g} --workers N`, then `tltlc evaluate` of its policy on fresh
 episodes, with actions sampled and with the likeliest ones. *Workers* of 2: the training had two cores; of 1: it had
 one core, and another training the other. *Ended*: `met` where the spec was met in two successive windows of 50
-episodes. *Steps* are the decisions that the agent learned from; *all steps* also those of the search for ways and
-those that were played again to begin on a way. *Minutes* are of wall time, those of the search included; *steps/s* are
-of the time after it, *learning* is the share of that which updates took, and *others* are how many cores of the machine
-were busy with other work. *Pass rate* with its Wilson interval; *progress* and *reward* (with the undiscounted
-terminal penalty) are means with standard deviations. *Paper*: Gutiérrez-Sánchez et al., IEEE Trans. Games 2024, Table
-I.
+episodes, and by the policy then in 100 fresh ones. *Steps* are the decisions that the agent learned from; *all steps*
+also those of the search for ways and those that were played again to begin on a way. *Minutes* are of wall time, those
+of the search included; *steps/s* are of the time after it, *learning* is the share of that which updates took, and
+*others* are how many cores of the machine were busy with other work. *Pass rate* with its Wilson interval; *progress*
+and *reward* (with the undiscounted terminal penalty) are means with standard deviations. *Paper*: Gutiérrez-Sánchez et
+al., IEEE Trans. Games 2024, Table I.
 
 {table(header, body)}
 
