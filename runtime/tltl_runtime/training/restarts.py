@@ -83,10 +83,13 @@ class Restarts:
         return Start(way.seed, way.actions[:at], (way.end, part), int((len(way.actions) - at) * times) + more)
 
     def lessons(self, count: int) -> list[tuple[Way, int]]:
-        """Up to ``count`` decisions on the ways, each a way and its number, there where episodes begin and fail."""
+        """Up to ``count`` decisions on the ways, each a way and its number, there where episodes begin and fail.
+
+        Who succeeds from an earlier part, or from the level's start, needs no lesson on what comes later.
+        """
         if not self.ways:
             return []
-        rates = np.concatenate(list(self.rates.values()))
+        rates = np.concatenate([np.maximum.accumulate(np.maximum(each, self.passed)) for each in self.rates.values()])
         weights = np.concatenate([_weights(each) for each in self.rates.values()])
         drawn = self._random.choice(len(weights), size=count, p=weights / weights.sum())
         drawn = drawn[self._random.random(count) >= rates[drawn]]
