@@ -16,8 +16,8 @@ from tltlc.record import replace
 
 needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 
-SPEC = "import stealth\nspec crouch { level cover_and_hide\n limit 20 steps\n reach sneaking }\n"
-"""A spec that is met by chance now and then, so that there are ways to begin on."""
+SPEC = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+"""A spec that who does anything at all meets, after eight steps, so that there are ways to begin on."""
 
 
 def _trained(folder: Path, **settings: Any) -> bytes:
