@@ -11,7 +11,6 @@ import click
 
 from tltl_runtime.commands.level_argument import check_there, names_level
 from tltl_runtime.evaluation.evaluate import check_limit
-from tltl_runtime.policies.file import check_size
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.record_json import to_json
@@ -80,7 +79,6 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     check_limit(task.fspa)
     seed = asked.seed or 0
     sensors = chosen(level, asked.sensors or None)
-    check_size(settings.network, task.fspa, sensors)
     folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}"
     _check_folder(folder)
     return Run(

@@ -84,7 +84,7 @@ def prepared(
         limit_s, before_s = run.settings.stop.minutes * 60, checkpoint.seconds if checkpoint else 0.0
         broken_off = checkpoint and checkpoint.searched and not checkpoint.searched.complete
         if checkpoint is None or (broken_off and not 0 < limit_s <= before_s):
-            search = Search(played, len(run.fspa.states), exploration, stream(run, own, Purpose.SEARCH, iteration))
+            search = Search(played, exploration, stream(run, own, Purpose.SEARCH, iteration))
             for searched in search.run():
                 searching(searched)
                 if 0 < limit_s <= before_s + searched.seconds:

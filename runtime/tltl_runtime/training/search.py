@@ -83,15 +83,11 @@ class Searched:
 class Search:
     """A search in ``env``, whose environments are :class:`~tltl_runtime.training.starts.Replayed`.
 
-    ``states`` are those of the automaton, ``ways`` what was found.  Equal seeds give equal searches, whatever the
-    workers.
+    ``ways`` are what was found.  Equal seeds give equal searches, whatever the workers.
     """
 
-    def __init__(
-        self, env: WorkerVectorEnv, states: int, exploration: Exploration, seed: np.random.SeedSequence
-    ) -> None:
+    def __init__(self, env: WorkerVectorEnv, exploration: Exploration, seed: np.random.SeedSequence) -> None:
         self._env = env
-        self._states = states
         self._exploration = exploration
         self._random = np.random.default_rng(seed)
         self._known = _Known(self._random)

@@ -37,7 +37,7 @@ def env() -> Iterator[WorkerVectorEnv]:
 
 
 def search(env: WorkerVectorEnv, exploration: Exploration) -> tuple[list[Way], list[Searched]]:
-    found = Search(env, 2, exploration, np.random.SeedSequence(7))
+    found = Search(env, exploration, np.random.SeedSequence(7))
     told = list(found.run())
     return found.ways, told
 

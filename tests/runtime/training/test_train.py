@@ -421,6 +421,18 @@ def test_a_limit_of_minutes_ends_the_search_too(folder: Path) -> None:
     assert report.searched.steps < 100_000
 
 
+def test_a_search_that_a_limit_broke_off_is_made_anew(folder: Path) -> None:
+    changes = {"exploration__ways": 10, "exploration__steps": 8000}
+    run = run_in(folder / "anew", **changes, stop__minutes=0.005)
+    (report,) = train(run)
+    assert report.searched is not None
+    assert not report.searched.complete
+    longer = replace(run, settings=run_in(folder, **changes).settings)
+    last = list(train(longer, resume=True))[-1]
+    assert last.searched is not None
+    assert (last.searched.complete, last.searched.steps, last.stop) == (True, 8000, "steps")
+
+
 @pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])
 def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str, last: float) -> None:
     run = run_in(
