@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from shlex import quote
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from tltl_runtime.training.starts import Replayed
 from tltl_runtime.training.streams import Purpose, stream
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
+from tltl_runtime.wrapper import TltlEnv
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
@@ -37,7 +39,7 @@ def begun(run: Run, resume: bool) -> Checkpoint | None:
         return checkpoint
     if (run.folder / RUN).exists():
         title = f"`{run.folder}` holds a training already"
-        help_ = f"go on with it by `tltlc train --resume {run.folder}`, or name another place with --out"
+        help_ = f"go on with it by `tltlc train --resume {quote(str(run.folder))}`, or name another place with --out"
         raise TltlError([Diagnostic("TLT0867", title, help=help_)])
     write_run(run)
     return None
@@ -72,27 +74,60 @@ def prepared(
 
     That is None where there was no need of one: ways are searched once, unless a limit broke the search off.
     """
-    exploration, searched, restarts = run.settings.exploration, None, None
+    exploration, searched, restarts, lessons = run.settings.exploration, None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
     if exploration.ways:
-        generator = np.random.default_rng(stream(run, own, Purpose.STARTS, iteration))
-        restarts = Restarts(exploration.parts, generator)
-        if checkpoint is not None:
-            # Of more processes than there were, the new ones know the ways of older ones.
-            known = checkpoint.processes[own.rank % len(checkpoint.processes)]
-            restarts.load({name: each.numpy() for name, each in known.items()})
-        limit_s, before_s = run.settings.stop.minutes * 60, checkpoint.seconds if checkpoint else 0.0
-        broken_off = checkpoint and checkpoint.searched and not checkpoint.searched.complete
-        if checkpoint is None or (broken_off and not 0 < limit_s <= before_s):
-            search = Search(played, exploration, stream(run, own, Purpose.SEARCH, iteration))
-            for searched in search.run():
-                searching(searched)
-                if 0 < limit_s <= before_s + searched.seconds:
-                    break
-            for way in search.ways:
-                restarts.add(way)
+        restarts = _restarts(run, own, checkpoint)
+        if checkpoint is None or _broken_off(run, checkpoint):
+            searched = _searched(run, own, played, checkpoint, restarts, searching)
+        if exploration.imitation:
+            lessons = Lessons(_env_of(run), restarts)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
-    make = partial(
+    return TrainingEnv(played, [int(each) for each in seeds], device, restarts, lessons), searched
+
+
+def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:
+    """Where the episodes of this process begin, with the ways that the checkpoint knows."""
+    iteration = checkpoint.iteration if checkpoint else 0
+    generator = np.random.default_rng(stream(run, own, Purpose.STARTS, iteration))
+    restarts = Restarts(run.settings.exploration.parts, generator)
+    if checkpoint:
+        # Of more processes than there were, the new ones know the ways of older ones.
+        known = checkpoint.processes[own.rank % len(checkpoint.processes)]
+        restarts.load({name: each.numpy() for name, each in known.items()})
+    return restarts
+
+
+def _broken_off(run: Run, checkpoint: Checkpoint) -> bool:
+    """Whether a limit broke off the search before the training, and now there is time to make it anew."""
+    limit_s, searched = run.settings.stop.minutes * 60, checkpoint.searched
+    return searched is not None and not searched.complete and not 0 < limit_s <= checkpoint.seconds
+
+
+def _searched(
+    run: Run,
+    own: Peers,
+    played: WorkerVectorEnv,
+    checkpoint: Checkpoint | None,
+    restarts: Restarts,
+    searching: Callable[[Searched], None],
+) -> Searched | None:
+    """Search ways for ``restarts``, until the training's limit of minutes at the latest."""
+    iteration, before_s = (checkpoint.iteration, checkpoint.seconds) if checkpoint else (0, 0.0)
+    limit_s, searched = run.settings.stop.minutes * 60, None
+    search = Search(played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration))
+    for searched in search.run():
+        searching(searched)
+        if 0 < limit_s <= before_s + searched.seconds:
+            break
+    for way in search.ways:
+        restarts.add(way)
+    return searched
+
+
+def _env_of(run: Run) -> Callable[[], TltlEnv]:
+    """What makes an environment of the training."""
+    return partial(
         make_env,
         run.level,
         run.variant,
@@ -101,5 +136,3 @@ def prepared(
         reward=run.settings.reward,
         params=run.params,
     )
-    lessons = Lessons(make, restarts) if restarts and exploration.imitation else None
-    return TrainingEnv(played, [int(each) for each in seeds], device, restarts, lessons), searched

@@ -41,8 +41,11 @@ class Lessons:
         decisions = self._restarts.lessons(BATCH)
         if not decisions:
             return None
-        ways = {id(way): way for way, _ in decisions}
-        self._sensed = {key: self._sensed.get(key) or (way, self._along(way)) for key, way in ways.items()}
+        known = {id(way) for ways in self._restarts.ways.values() for way in ways}
+        self._sensed = {key: sensed for key, sensed in self._sensed.items() if key in known}
+        for way, _ in decisions:
+            if id(way) not in self._sensed:
+                self._sensed[id(way)] = way, self._along(way)
         rows = [(self._sensed[id(way)][1], index) for way, index in decisions]
         sensed = {
             name: torch.from_numpy(np.stack([along[name][index] for along, index in rows])).to(torch.float32)

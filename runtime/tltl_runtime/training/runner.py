@@ -6,7 +6,6 @@ import io
 import time
 from collections.abc import Iterator
 from contextlib import redirect_stdout
-from itertools import count
 from typing import Any
 
 import torch
@@ -26,7 +25,8 @@ from tltlc.record import record
 class Iteration:
     """What a rollout and the update after it gave: ``number`` counts from 1, ``steps`` are those of all environments.
 
-    ``losses`` are those of rsl-rl's PPO by name, ``collect_s`` and ``learn_s`` are wall-clock seconds.
+    ``losses`` are those of rsl-rl's PPO by name, and that of the ``imitation`` where there was one; ``collect_s`` and
+    ``learn_s`` are wall-clock seconds.
     """
 
     number: int
@@ -56,13 +56,13 @@ class Runner(OnPolicyRunner):
                 # The same steps in a tenth of the time.
                 group["fused"] = True
 
-    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
-        """Run an iteration each time that one is asked for, up to ``most`` of them, or without end."""
+    def iterations(self) -> Iterator[Iteration]:
+        """Run an iteration each time that one is asked for, without end."""
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
         observation = self.env.get_observations().to(self.device)
-        for _ in count() if most is None else range(most):
+        while True:
             began = time.perf_counter()
             with torch.inference_mode():
                 for _ in range(self.cfg["num_steps_per_env"]):

@@ -91,7 +91,7 @@ class Search:
         self._exploration = exploration
         self._random = np.random.default_rng(seed)
         self._known = _Known(self._random)
-        self._reached = 0
+        self._places: set[tuple[int, int]] = set()
         self.ways: list[Way] = []
 
     def run(self) -> Iterator[Searched]:
@@ -127,13 +127,12 @@ class Search:
         yield self._searched(steps, episodes.replayed, time.perf_counter() - began, complete=True)
 
     def _note(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
-        """Take note of the place that an environment is at; whether nobody was there before."""
-        cell, seed = int(infos["cell"][row]), episodes.starts[row].seed
+        """Take note of the place that an environment is at; whether it is not among the known."""
+        state, cell, seed = int(infos["state"][row]), int(infos["cell"][row]), episodes.starts[row].seed
         if cell < 0 or any(way.seed == seed for way in self.ways):
             return False
-        is_new = self._known.note(int(infos["state"][row]), cell, seed, episodes.actions[row])
-        self._reached += is_new
-        return is_new
+        self._places.add((state, cell))
+        return self._known.note(state, cell, seed, episodes.actions[row])
 
     def _found(self, way: Way) -> None:
         if all(each.seed != way.seed for each in self.ways):
@@ -148,7 +147,7 @@ class Search:
 
     def _searched(self, steps: int, replayed: int, seconds: float, *, complete: bool) -> Searched:
         lengths = tuple(sorted(len(way.actions) for way in self.ways))
-        return Searched(steps, replayed, seconds, self._reached, lengths, complete)
+        return Searched(steps, replayed, seconds, len(self._places), lengths, complete)
 
 
 class _Known:

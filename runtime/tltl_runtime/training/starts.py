@@ -7,6 +7,7 @@ actions again.  The agent's own decisions follow.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import gymnasium
@@ -95,6 +96,8 @@ class Episodes:
 
     The environments are :class:`Replayed`.  ``observation`` is that of the first episodes, which begin here;
     ``replayed`` counts the decisions that were played again.
+
+    What it does raises WorkerError where a worker was lost, with the seeds of the starts.
     """
 
     def __init__(self, env: WorkerVectorEnv, draw: Callable[[], Start]) -> None:
@@ -105,44 +108,53 @@ class Episodes:
         self.actions: list[Actions] = [[] for _ in self._next]
         self.replayed = 0
         self._tell(range(env.num_envs))
-        self.observation, _ = env.reset()
+        with self._telling():
+            self.observation, _ = env.reset()
         self.turn(np.ones(env.num_envs, dtype=np.bool_))
 
     def step(self, actions: NDArray[np.int64]) -> tuple[Any, ...]:
-        """Step all environments with the actions [num_envs, branches], and note these; what the environments give.
-
-        Raises:
-            WorkerError: a worker was lost; it tells the seeds of the starts, and steps with those played again.
-        """
+        """Step all environments with the actions [num_envs, branches], and note these; what the environments give."""
         for known, action in zip(self.actions, actions.tolist(), strict=True):
             known.append(action)
-        try:
+        with self._telling():
             return self._env.step(actions)
-        except WorkerError as error:
-            raise WorkerError(error.loss, tuple(map(self._placed, error.playing))) from error
 
     def turn(self, over: NDArray[np.bool_]) -> None:
         """Take note that in these environments the next episodes have begun."""
         rows = np.flatnonzero(over).tolist()
-        if not rows:
-            return
-        for row in rows:
-            start = self.starts[row] = self._next[row]
-            self.actions[row] = [list(action) for action in start.actions]
-            self.replayed += len(start.actions)
-            self._next[row] = self._draw()
-        self._tell(rows)
+        if rows:
+            self._go_on(rows)
+            self._tell(rows)
 
     def cut(self, over: NDArray[np.bool_]) -> Any:
         """Break off the episodes of these environments and begin the next ones; the observation of all."""
-        observation, _ = self._env.reset(options={"reset_mask": over})
-        self.turn(over)
+        rows = np.flatnonzero(over).tolist()
+        self._go_on(rows)
+        with self._telling():
+            observation, _ = self._env.reset(options={"reset_mask": over})
+        self._tell(rows)
         return observation
 
     def is_spent(self, row: int) -> bool:
         """Whether the agent has had as many decisions as the start of the episode in this environment gave it."""
         start = self.starts[row]
         return start.most is not None and len(self.actions[row]) - len(start.actions) >= start.most
+
+    def _go_on(self, rows: Iterable[int]) -> None:
+        """Go on to the next episodes of these environments."""
+        for row in rows:
+            start = self.starts[row] = self._next[row]
+            self.actions[row] = [list(action) for action in start.actions]
+            self.replayed += len(start.actions)
+            self._next[row] = self._draw()
+
+    @contextmanager
+    def _telling(self) -> Iterator[None]:
+        """Tell of a worker that is lost the seeds of the starts, and steps with those played again."""
+        try:
+            yield
+        except WorkerError as error:
+            raise WorkerError(error.loss, tuple(map(self._placed, error.playing))) from error
 
     def _placed(self, playing: Playing) -> Playing:
         """What is played, as this knows it: the environment was not told of the seeds."""
@@ -154,4 +166,5 @@ class Episodes:
         begin: list[tuple[int, NDArray[np.int8]] | None] = [None] * self._env.num_envs
         for row in rows:
             begin[row] = self._next[row].seed, np.array(self._next[row].actions, dtype=np.int8)
-        self._env.set_attr("begin", begin)
+        with self._telling():
+            self._env.set_attr("begin", begin)

@@ -96,24 +96,27 @@ class _Training:
             self._fade_entropy()
             if own.rank < len(begun.processes):
                 _set_own(begun.processes[own.rank], runner)
-            if searched:
-                # The one before was broken off by a limit.
-                begun = replace(begun, searched=searched, seconds=begun.seconds + searched.seconds)
         self._state = begun or Checkpoint(
             run=identity(run),
             iteration=0,
             losses={},
             steps=0,
-            seconds=searched.seconds if searched else 0.0,
+            seconds=0.0,
             replayed=0,
-            searched=searched,
+            searched=None,
             algorithm=copied(runner.alg.save()),
-            processes=tuple(own.gather(_own(runner))),
+            processes=(),
             window=(),
             unbroken=0,
             best=None,
             met=False,
         )
+        if searched:
+            # Of one that a limit had broken off, the seconds count, too.
+            seconds = own.broadcast(self._state.seconds + searched.seconds)
+            self._state = replace(self._state, searched=searched, seconds=seconds)
+        if searched or begun is None:
+            self._state = replace(self._state, processes=tuple(own.gather(_own(runner))))
         self._seconds_before, self._began = self._state.seconds, time.perf_counter()
         self._replayed_before = self._state.replayed
         self._saved: Checkpoint | None = begun
@@ -162,7 +165,7 @@ class _Training:
         iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
         self._windows.add(finished)
         self._fade_entropy()
-        best = self._best()
+        best = self._best() if finished else self._state.best
         confirmation = self._confirmation(best, iteration.number) if best and self._windows.met else None
         if confirmation and not confirmation.passed:
             self._windows.refuse()
@@ -206,7 +209,7 @@ class _Training:
             self._runner.alg.entropy_coef = ppo.entropy * (1 - met)
 
     def _best(self) -> Best | None:
-        """The best policy so far: that which played the last window, where none before it did better."""
+        """The best policy so far: that which played the end of the last window, where none before did better."""
         best, score = self._state.best, self._windows.score
         if score is None or (best is not None and score < best.score and not self._windows.met):
             return best

@@ -57,8 +57,8 @@ def run_in(folder: Path, **changes: Any) -> Run:
 class Telling(Runner):
     """A runner that tells the weights after each iteration, as their hash."""
 
-    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
-        for iteration in super().iterations(most):
+    def iterations(self) -> Iterator[Iteration]:
+        for iteration in super().iterations():
             weights = b"".join(each.numpy().tobytes() for each in self.alg.actor.state_dict().values())
             _say(weights=hashlib.sha256(weights).hexdigest(), iteration=iteration.number)
             yield iteration
@@ -67,16 +67,16 @@ class Telling(Runner):
 class Diverging(Runner):
     """A runner whose second iteration gives a loss that is no number."""
 
-    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
-        for iteration in super().iterations(most):
+    def iterations(self) -> Iterator[Iteration]:
+        for iteration in super().iterations():
             yield iteration if iteration.number < 2 else replace(iteration, losses={"value": math.nan})
 
 
 class Growing(Runner):
     """A runner one of whose weights grows larger than a policy's file can hold."""
 
-    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
-        for iteration in super().iterations(most):
+    def iterations(self) -> Iterator[Iteration]:
+        for iteration in super().iterations():
             next(self.alg.actor.parameters()).data.view(-1)[0] = 1e5
             yield iteration
 
@@ -94,8 +94,8 @@ class Failing(Runner):
 class Weighing(Runner):
     """A runner that tells the weight of the bonus for undecided actions among the losses."""
 
-    def iterations(self, most: int | None = None) -> Iterator[Iteration]:
-        for iteration in super().iterations(most):
+    def iterations(self) -> Iterator[Iteration]:
+        for iteration in super().iterations():
             yield replace(iteration, losses={"weight": self.alg.entropy_coef})
 
 

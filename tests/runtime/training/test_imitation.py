@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+import gymnasium
 import numpy as np
 import pytest
 import torch
@@ -23,6 +25,16 @@ WAY = Way(5, [[index % 3, 1, 0, 0, index % 2] for index in range(40)], 1)
 make = partial(make_env, "cover_and_hide")
 
 
+class Counting(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """Counts how often it is reset."""
+
+    resets = 0
+
+    def reset(self, **options: Any) -> tuple[Any, dict[str, Any]]:
+        self.resets += 1
+        return super().reset(**options)
+
+
 def test_decisions_are_drawn_with_what_is_sensed_before_each() -> None:
     lessons = Lessons(make, restarts_of([WAY], 4))
     drawn = lessons.draw()
@@ -37,6 +49,19 @@ def test_decisions_are_drawn_with_what_is_sensed_before_each() -> None:
     for sensed, action in zip(observations["entities"].numpy(), actions.tolist(), strict=True):
         (decisions,) = np.nonzero((entities == sensed).all(axis=1))
         assert action in [WAY.actions[index] for index in decisions]
+
+
+def test_a_way_is_played_again_once() -> None:
+    other = Way(6, [[1, 1, 0, 0, 0]] * 30, 1)
+    restarts = restarts_of([WAY, other], 4)
+    env = Counting(make())
+    lessons = Lessons(lambda: env, restarts)
+    for rates in ([0, 0, 0, 0.5], [1, 0, 0, 0], [0, 0, 0.5, 0.5]):
+        restarts.rates[1][:] = rates
+        for _ in range(5):
+            lessons.draw()
+    lessons.close()
+    assert env.resets == 2
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,11 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.restarts import Restarts
@@ -132,6 +134,36 @@ def test_a_lost_worker_is_told_with_the_seeds_that_episodes_began_with(env: Work
         episodes.step(np.zeros((4, 5), dtype=np.int64))
     told = [(each.env, each.seed, each.episode, each.step) for each in found.value.playing]
     assert told == [(row, 10 + row, 1, 5) for row in range(4)]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="kills a process as other systems do")
+def test_a_worker_that_is_lost_while_others_begin_is_told_with_their_seeds(env: WorkerVectorEnv) -> None:
+    starts = iter([Start(seed, [[0] * 5] * 3) for seed in range(10, 20)])
+    episodes = Episodes(env, lambda: next(starts))
+    episodes.step(np.zeros((4, 5), dtype=np.int64))
+    (worker,) = env.worker_pids
+    assert worker is not None
+    os.kill(worker, signal.SIGKILL)
+    with pytest.raises(WorkerError) as found:
+        episodes.cut(np.array([True, False, False, True]))
+    told = [(each.env, each.seed, each.episode, each.step) for each in found.value.playing]
+    assert told == [(0, 14, 1, 3), (1, 11, 1, 4), (2, 12, 1, 4), (3, 17, 1, 3)]
+
+
+def test_a_place_counts_once(env: WorkerVectorEnv) -> None:
+    # With each way the places of its seed are forgotten, and found again.
+    seen: set[tuple[int, int]] = set()
+    step = env.step
+
+    def noted(actions: NDArray[np.int64]) -> tuple[Any, ...]:
+        given = step(actions)
+        seen.update(zip(given[4]["state"].tolist(), given[4]["cell"].tolist(), strict=True))
+        return given
+
+    env.step = noted  # type: ignore[method-assign]
+    ways, told = search(env, Exploration(ways=8, steps=20_000, parts=4, imitation=0))
+    assert len(ways) == 8
+    assert len(seen) / 2 < told[-1].places <= len(seen)
 
 
 def restarts_of(ways: Sequence[Way], parts: int, seed: int = 1) -> Restarts:

@@ -24,12 +24,15 @@ from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.record import write_record
 from tltl_runtime.training.report import Confirmation, Report
 from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, RUN, Run, identity, read_run, write_run
+from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.train import train
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
 
 SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
 """A spec that who does anything at all meets, after eight steps."""
+IN_VAIN = "import spatial\nentity exit\nspec vain { level cover_and_hide\n limit 8 steps\n reach near(exit) }\n"
+"""A spec that nobody meets."""
 CHANCE = "import stealth\nspec chance { level cover_and_hide\n limit 2 steps\n avoid sneaking }\n"
 """A spec that an agent that has learned nothing meets in one of four episodes or so."""
 
@@ -222,7 +225,7 @@ def test_a_training_that_was_resumed_begins_on_the_ways_that_it_knew(folder: Pat
     assert {*kept["way_seeds"].tolist()} <= {*_checkpoint(run).processes[0]["way_seeds"].tolist()}
 
 
-def test_the_best_policy_is_the_one_that_played_its_window(folder: Path) -> None:
+def test_the_best_policy_is_the_one_that_played_the_end_of_its_window(folder: Path) -> None:
     # Every episode on this level that lasts no longer than a rollout fails; a window is one episode.
     run = run_in(folder / "best", rollout__steps=512, stop__steps=2048, stop__episodes=1)
     reports = train(run)
@@ -236,6 +239,15 @@ def test_the_best_policy_is_the_one_that_played_its_window(folder: Path) -> None
     best, now = checkpoint.best.actor, checkpoint.algorithm["actor_state_dict"]
     assert all(torch.equal(weights[name], best[name].to(torch.float16)) for name in weights)
     assert not all(torch.equal(best[name], now[name]) for name in weights)
+
+
+def test_a_policy_that_ended_no_episode_is_not_the_best(folder: Path) -> None:
+    # All episodes end after eight steps, and in vain; a rollout is four.
+    changes = {"rollout__steps": 4, "stop__steps": 16 * 3, "stop__episodes": 4}
+    run = _judged_by(run_in(folder / "none", **changes), IN_VAIN)
+    reports = list(train(run))
+    assert [len(each.iteration.finished) for each in reports] == [0, 4, 0]
+    assert [each.best_steps for each in reports] == [None, 16, 16]
 
 
 def test_a_run_is_read_as_it_was_written(tmp_path: Path) -> None:
@@ -431,6 +443,21 @@ def test_a_search_that_a_limit_broke_off_is_made_anew(folder: Path) -> None:
     last = list(train(longer, resume=True))[-1]
     assert last.searched is not None
     assert (last.searched.complete, last.searched.steps, last.stop) == (True, 8000, "steps")
+
+
+def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(_: Runner) -> Iterator[Iteration]:
+        raise KeyboardInterrupt
+
+    changes = {"exploration__ways": 10, "exploration__steps": 4000}
+    run = run_in(folder / "found", **changes, stop__minutes=0.005)
+    list(train(run))
+    monkeypatch.setattr(Runner, "iterations", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        next(train(replace(run, settings=run_in(folder, **changes).settings), resume=True))
+    searched = _checkpoint(run).searched
+    assert searched is not None
+    assert (searched.complete, searched.steps) == (True, 4000)
 
 
 @pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])
