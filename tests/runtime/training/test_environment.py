@@ -1,0 +1,74 @@
+"""What PPO is told of episodes that end: which are over, and which of them might have gone on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import cycle
+
+import numpy as np
+import pytest
+import torch
+
+from tltl_runtime.training.environment import Finished, TrainingEnv
+from tltl_runtime.training.restarts import Restarts
+from tltl_runtime.training.search import Way
+from tltl_runtime.training.starts import Replayed, Start
+from tltl_runtime.vector import make_vec
+from tltl_runtime.vector.env import TLTL_INFO
+
+SPEC = """\
+import stealth
+predicate leaping in [-1, 1] = 1 - 2 * grounded
+spec stoop { level navigation
+  limit 4 steps
+  reach sneaking
+  avoid leaping
+}
+"""
+"""A spec that a crouch meets and a jump violates, both at once."""
+STAY, WALK, JUMP, CROUCH = [0, 0, 0, 0, 0], [1, 0, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 1, 0]
+WAY = Way(5, [STAY, CROUCH], end=1)
+ON_IT = Start(5, [STAY], part=(WAY.end, 0))
+STARTS = (Start(5), Start(5), Start(5), ON_IT, ON_IT, Start(5, [STAY], part=(WAY.end, 0), most=2), ON_IT)
+"""Where the episodes of each environment begin."""
+
+
+class Fixed(Restarts):
+    """Restarts that draw the same starts in turn."""
+
+    def __init__(self) -> None:
+        super().__init__(1, np.random.default_rng(0))
+        self.add(WAY)
+        self._starts = cycle(STARTS)
+
+    def draw(self) -> Start:
+        return next(self._starts)
+
+
+@pytest.fixture(name="env")
+def _env() -> Iterator[TrainingEnv]:
+    info = {**TLTL_INFO, "cell": np.int64}
+    played = make_vec("navigation", "v0", len(STARTS), 1, spec=SPEC, wrapper=Replayed, info=info)
+    yield TrainingEnv(played, 0, restarts=Fixed())
+    played.close()
+
+
+def test_episodes_that_are_cut_or_out_of_time_are_time_outs_and_those_on_ways_are_not_counted(env: TrainingEnv) -> None:
+    first = env.get_observations()
+    told = []
+    for actions in ([WALK, JUMP, CROUCH, JUMP, CROUCH, WALK, WALK], *[[WALK] * len(STARTS)] * 3):
+        observation, _, dones, extras = env.step(torch.tensor(actions))
+        rows, late = (torch.nonzero(each).flatten().tolist() for each in (dones, extras["time_outs"]))
+        told.append((rows, late, env.finished()))
+        if len(told) == 2:
+            # The episode that was cut is followed at once by one that begins where it did.
+            assert all(torch.equal(observation[key][5], first[key][5]) for key in env.shapes)
+    violated, met = Finished(False, 0.0, 1, 0, violated=True), Finished(True, 1.0, 1, 1, violated=False)
+    assert told == [
+        # What is violated or met has no value beyond its end.
+        ([1, 2, 3, 4], [], (violated, met)),
+        # Environment 5 took as many decisions as its start allows, environment 6 as many as the spec does.
+        ([5], [5], ()),
+        ([6], [6], ()),
+        ([0, 3, 4, 5], [0, 3, 4, 5], (Finished(False, 0.0, 4, 0, violated=False),)),
+    ]
