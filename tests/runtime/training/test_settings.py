@@ -9,7 +9,6 @@ from typing import get_type_hints
 import pytest
 
 from tltl_runtime.policies.network import Network
-from tltl_runtime.training import settings as module
 from tltl_runtime.training.settings import Settings, default_text, read_settings, rsl_config
 from tltl_runtime.training.settings_file import KINDS, read_values
 from tltlc.diagnostics.diagnostic import TltlError
@@ -99,7 +98,3 @@ def compare(name: str, error: TltlError) -> None:
         expected.write_text(found, encoding="utf-8")
     assert found == expected.read_text(encoding="utf-8")
     assert name[:7] in found
-
-
-def test_the_defaults_lie_beside_the_module() -> None:
-    assert module.DEFAULTS.parent == Path(module.__file__).parent
