@@ -45,9 +45,11 @@ class Figures:
 def figures_of(episodes: Sequence[Played]) -> Figures:
     """The figures over episodes; raises ValueError where there are none."""
     passed = sum(each.success for each in episodes)
+    # First, since it says in words what is wrong with none.
+    interval = wilson(passed, len(episodes))
     return Figures(
-        pass_rate=passed / len(episodes) if episodes else 0.0,
-        pass_interval=wilson(passed, len(episodes)),
+        pass_rate=passed / len(episodes),
+        pass_interval=interval,
         progress=spread_of([each.progress for each in episodes]),
         reward=spread_of([each.reward for each in episodes]),
         steps=spread_of([float(each.steps) for each in episodes]),
