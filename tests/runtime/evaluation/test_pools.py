@@ -12,7 +12,7 @@ from concurrent.futures import Future
 from contextlib import closing
 from importlib.util import find_spec
 from multiprocessing import active_children
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
@@ -21,7 +21,7 @@ from tltl_runtime.evaluation import ray_pool
 from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, set_up
 from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import Played, episode_seed
-from tltl_runtime.evaluation.player import Player, Result, Setup, Task
+from tltl_runtime.evaluation.player import Player, Recorded, Result, Setup, Task
 from tltl_runtime.evaluation.spread import LostError, spread
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.episodes.file import from_bytes
@@ -30,6 +30,9 @@ from tltl_runtime.stealth.world.physics import WorldError
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 EPISODES = 8
+
+CHANCE = "import stealth\nspec chance { level cover_and_hide\n limit 2 steps\n avoid sneaking }\n"
+"""A spec that some episodes of an untrained policy meet, and others do not."""
 
 needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 POOLS = [2, pytest.param("ray", marks=needs_ray)]
@@ -80,6 +83,15 @@ def test_recordings_where_they_are_wanted(policy: Policy, expected: list[Played]
                 chosen = "sampled" if result.task.sampled else "arg-max"
                 assert episode.seed == result.played.seed
                 assert episode.player == f"policy, {chosen}, episode {result.task.index}"
+
+
+@pytest.mark.parametrize("recorded", get_args(Recorded))
+def test_failures_are_told_from_episodes_that_met_the_spec(recorded: Recorded) -> None:
+    found = list(results(set_up(untrained(CHANCE), None, None, None, 3, recorded), [Task(each) for each in range(6)]))
+    failed = [not each.played.success for each in found]
+    assert set(failed) == {True, False}
+    wanted = {"none": [False] * 6, "failures": failed, "all": [True] * 6}
+    assert [bool(each.recording) for each in found] == wanted[recorded]
 
 
 class Deadly:
