@@ -40,22 +40,20 @@ class MultiCategorical(Distribution):
 
     def sample(self) -> Tensor:
         """A choice of each branch [..., branches], by a race of exponential clocks: the first to ring is chosen."""
-        chosen = [(log.exp() / torch.empty_like(log).exponential_()).argmax(-1) for log in self._logs]
-        return torch.stack(chosen, -1).to(self._logs[0].dtype)
+        return _greatest([log.exp() / torch.empty_like(log).exponential_() for log in self._logs])
 
     def deterministic_output(self, mlp_output: Tensor) -> Tensor:
         """The likeliest choice of each branch [..., branches]; of equal ones the first."""
-        parts = mlp_output.split(self.branches, dim=-1)
-        return torch.stack([part.argmax(-1) for part in parts], -1).to(mlp_output.dtype)
+        return _greatest(mlp_output.split(self.branches, dim=-1))
 
     def as_deterministic_output_module(self) -> nn.Module:
         """A module that makes the likeliest choices of logits."""
-        return _Likeliest(self)
+        return _Likeliest(self.branches)
 
     @property
     def mean(self) -> Tensor:
         """The likeliest choice of each branch: choices have no mean."""
-        return torch.stack([log.argmax(-1) for log in self._logs], -1).to(self._logs[0].dtype)
+        return _greatest([*self._logs])
 
     @property
     def std(self) -> Tensor:
@@ -92,12 +90,18 @@ class MultiCategorical(Distribution):
 
 
 class _Likeliest(nn.Module):
-    def __init__(self, distribution: MultiCategorical) -> None:
+    def __init__(self, branches: tuple[int, ...]) -> None:
         super().__init__()
-        self.branches = distribution.branches
+        self.branches = branches
 
     def forward(self, logits: Tensor) -> Tensor:
-        return torch.stack([part.argmax(-1) for part in logits.split(self.branches, dim=-1)], -1).to(logits.dtype)
+        return _greatest(logits.split(self.branches, dim=-1))
+
+
+def _greatest(branches: list[Tensor]) -> Tensor:
+    """The place of the greatest value of each branch [..., branches], in their type; of equal ones the first."""
+    # TorchScript, to which rsl-rl may export an actor, knows lists and no sequences.
+    return torch.stack([values.argmax(-1) for values in branches], -1).to(branches[0].dtype)
 
 
 def _entropy(log: Tensor) -> Tensor:

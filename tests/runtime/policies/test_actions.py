@@ -103,6 +103,14 @@ def test_the_likeliest_choice_is_the_first_of_equal_ones() -> None:
     assert one.mean.tolist() == wanted
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_the_likeliest_choice_can_be_exported_to_torchscript() -> None:
+    logits = logits_of([3, 2, 2], (4,), 1)
+    one = MultiCategorical(3, [3, 2, 2])
+    exported = torch.jit.script(one.as_deterministic_output_module())
+    assert torch.equal(exported(logits), one.deterministic_output(logits))
+
+
 def test_a_new_network_rules_nothing_out() -> None:
     torch.manual_seed(0)
     mlp = MLP(10, 12, [32], "elu")
