@@ -15,7 +15,7 @@ from torch import Tensor
 
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.network import Network
-from tltl_runtime.policies.policy import Policy, actor_of, blank_actor, weight_count
+from tltl_runtime.policies.policy import Policy, blank_actor, weight_count
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.refusals import Refusals
 from tltl_runtime.stealth.level import Sensors
@@ -101,7 +101,7 @@ def from_bytes(data: bytes, name: str) -> Policy:
     header = _header(data, name)
     card = _card(header, name)
     _check_tensors(header, card, name)
-    return Policy(card, actor_of(card, _weights(data, name)))
+    return Policy(card, _weights(data, name))
 
 
 def _too_large(size: int) -> TltlError:

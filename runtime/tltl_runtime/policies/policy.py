@@ -18,27 +18,32 @@ from tltl_runtime.policies.network import Network, Shapes, model_config
 
 
 class NoNumbersError(ValueError):
-    """What goes into a network, or comes out of it, is not finite; the message says what."""
+    """What a network is made of, what goes into it, or what comes out of it, is not finite; the message says what."""
 
 
 class Policy:
     """An actor's weights with their card.
 
-    The weights are those of ``actor`` now, rounded to half precision: what a file holds is what plays, bit for bit,
-    and a training that goes on changes nothing.  What a policy chooses depends on nothing but the observation, and on
-    the generator where it samples: an observation is taken alone, never in a batch, whose size would change the last
-    bits of the logits.
+    The ``weights``, by name, are taken as they are now and rounded to half precision: what a file holds is what plays,
+    bit for bit, and a training that goes on changes nothing.  What a policy chooses depends on nothing but the
+    observation, and on the generator where it samples: an observation is taken alone, never in a batch, whose size
+    would change the last bits of the logits.
 
     Raises:
-        ValueError: a weight is no finite number in half precision, or the actor is none that the card describes.
+        NoNumbersError: a weight is no finite number in half precision.
+        ValueError: the weights are not those of the network that the card describes.
     """
 
-    def __init__(self, card: Card, actor: MLPModel) -> None:
+    def __init__(self, card: Card, weights: Mapping[str, Tensor] | MLPModel) -> None:
+        if isinstance(weights, MLPModel):
+            weights = weights.state_dict()
+        rounded = {name: each.detach().cpu().half() for name, each in weights.items()}
+        if not all(bool(each.isfinite().all()) for each in rounded.values()):
+            raise NoNumbersError(
+                "a weight of the actor is no finite number in half precision: its training has diverged"
+            )
         self.card = card
-        weights = {name: each.detach().to("cpu", torch.float16) for name, each in actor.state_dict().items()}
-        if not all(bool(each.isfinite().all()) for each in weights.values()):
-            raise ValueError("a weight of the actor is no finite number in half precision: its training has diverged")
-        self.actor = actor_of(card, weights)
+        self.actor = _actor_of(card, rounded)
 
     def weights(self) -> dict[str, Tensor]:
         """The weights by name, in half precision, without loss."""
@@ -94,8 +99,8 @@ def weight_count(network: Network, shapes: Shapes, branches: Sequence[int]) -> i
         return sum(each.numel() for each in _actor(network, shapes, branches).state_dict().values())
 
 
-def actor_of(card: Card, weights: Mapping[str, Tensor]) -> MLPModel:
-    """An actor with such weights, ready to play; raises ValueError where they are not those of the card's network."""
+def _actor_of(card: Card, weights: Mapping[str, Tensor]) -> MLPModel:
+    """An actor with a copy of such weights, ready to play."""
     actor = blank_actor(card)
     try:
         actor.load_state_dict({name: each.float() for name, each in weights.items()}, assign=True)

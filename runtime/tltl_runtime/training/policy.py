@@ -8,7 +8,7 @@ from torch import Tensor
 
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.identity import level_hash
-from tltl_runtime.policies.policy import Policy, actor_of
+from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.environment import TrainingEnv
 from tltl_runtime.training.run import Run
@@ -36,14 +36,13 @@ def card_of(run: Run, env: TrainingEnv) -> Card:
 
 
 def policy_of(card: Card, weights: Mapping[str, Tensor]) -> Policy:
-    """The actor of these ``weights`` with its card.
+    """The policy of an actor's ``weights``.
 
     Raises:
         TltlError: TLT0866, a weight is no finite number in half precision.
     """
-    actor = actor_of(card, {name: each.cpu() for name, each in weights.items()})
     try:
-        return Policy(card, actor)
-    except ValueError as error:
+        return Policy(card, weights)
+    except NoNumbersError as error:
         help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
         raise TltlError([Diagnostic("TLT0866", str(error), help=help_)]) from None

@@ -36,7 +36,7 @@ def untrained(spec: str | None = SOON, level: str = "cover_and_hide", variant: s
         with torch.no_grad():
             for weights in actor.parameters():
                 weights.mul_(3.0)
-    return Policy(card, actor)
+    return Policy(card, actor.state_dict())
 
 
 def card_of(env: TltlEnv) -> Card:

@@ -49,7 +49,7 @@ def policy_of(card: Card, seed: int = 0, sharpness: float = 50.0) -> Policy:
     with torch.no_grad():
         actor.mlp[-1].weight.mul_(sharpness)
         actor.mlp[-1].bias.uniform_(-1, 1)
-    return Policy(card, actor)
+    return Policy(card, actor.state_dict())
 
 
 def observation_of(card: Card, rng: np.random.Generator, batch: tuple[int, ...] = ()) -> dict[str, NDArray[Any]]:

@@ -52,7 +52,7 @@ def test_equal_generators_give_equal_choices(policy: Policy) -> None:
 
 def test_the_first_of_equal_choices(policy: Policy) -> None:
     with torch.no_grad():
-        flat = Policy(policy.card, policy.actor)
+        flat = Policy(policy.card, policy.weights())
         flat.actor.mlp[-1].weight.zero_()
         flat.actor.mlp[-1].bias.zero_()
     seen = observation_of(policy.card, np.random.default_rng(3))

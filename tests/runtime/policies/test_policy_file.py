@@ -21,7 +21,7 @@ from safetensors.torch import load, save
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
 from tltl_runtime.policies.file import MAX_BYTES, check_size, from_bytes, read_policy, to_bytes, write_policy
 from tltl_runtime.policies.network import Network
-from tltl_runtime.policies.policy import Policy, new_actor
+from tltl_runtime.policies.policy import NoNumbersError, Policy, new_actor
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
 from tltlc.record import replace
@@ -74,7 +74,7 @@ def test_no_file_is_written_that_is_too_large_to_be_read(
 
 def test_the_weights_are_those_of_the_moment_rounded_to_half_precision(policy: Policy) -> None:
     actor = new_actor(policy.card)
-    made = Policy(policy.card, actor)
+    made = Policy(policy.card, actor.state_dict())
     before = to_bytes(made)
     with torch.no_grad():
         for each in actor.parameters():
@@ -88,7 +88,7 @@ def test_the_weights_are_those_of_the_moment_rounded_to_half_precision(policy: P
 
 def test_making_and_reading_policies_draws_no_random_numbers(policy: Policy) -> None:
     state = torch.get_rng_state()
-    from_bytes(to_bytes(Policy(policy.card, policy.actor)), "it")
+    from_bytes(to_bytes(Policy(policy.card, policy.weights())), "it")
     assert torch.equal(torch.get_rng_state(), state)
 
 
@@ -97,14 +97,14 @@ def test_weights_that_no_file_holds_make_no_policy(policy: Policy, value: float)
     actor = new_actor(policy.card)
     with torch.no_grad():
         actor.mlp[0].bias[3] = value
-    with pytest.raises(ValueError, match="no finite number in half precision"):
-        Policy(policy.card, actor)
+    with pytest.raises(NoNumbersError, match="no finite number in half precision"):
+        Policy(policy.card, actor.state_dict())
 
 
-def test_an_actor_of_another_network_makes_no_policy(policy: Policy) -> None:
+def test_weights_of_another_network_make_no_policy(policy: Policy) -> None:
     other = replace(policy.card, network=Network(hidden=(7,)))
     with pytest.raises(ValueError, match="of another network"):
-        Policy(other, policy.actor)
+        Policy(other, policy.weights())
 
 
 def test_a_file_is_written_whole(tmp_path: Path, policy: Policy) -> None:
@@ -131,7 +131,7 @@ def test_safetensors_alone_reads_it(tmp_path: Path, policy: Policy) -> None:
 
 def test_a_record_that_is_not_json_is_refused_at_once(policy: Policy) -> None:
     with pytest.raises(ValueError, match="JSON"):
-        to_bytes(Policy(replace(policy.card, training={"loss": float("nan")}), policy.actor))
+        to_bytes(Policy(replace(policy.card, training={"loss": float("nan")}), policy.weights()))
 
 
 # --- files that nobody vouches for ------------------------------------------------------------------
