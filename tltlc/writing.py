@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
@@ -15,23 +15,28 @@ from tltlc.files import reason
 _OPTION: Final = "name another place with -o"
 
 
-def write_files(folder: Path, files: Mapping[str, str | bytes], advice: str = _OPTION) -> tuple[Path, ...]:
+def write_files(
+    folder: Path, files: Mapping[str, str | bytes], advice: str = _OPTION, *, durable: bool = False
+) -> tuple[Path, ...]:
     """Write all of the files into the folder, or none of them; their paths in order.  Folders are made where missing.
 
     Every file is first written under a temporary name beside its place, and only when all of them are there are
     they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005, with ``advice`` on where else to write.
+
+    Each ``durable`` file is a whole one after a loss of power, too, and is not lost once this has returned.  No other
+    process may write it meanwhile: what one left that was killed is written over.
     """
     try:
         for place in {(folder / name).parent: None for name in files}:
             place.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         raise _error(folder, error, advice) from None
-    return _write({folder / name: content for name, content in files.items()}, advice)
+    return _write({folder / name: content for name, content in files.items()}, advice, durable)
 
 
-def write_file(path: Path, content: str | bytes, advice: str = _OPTION) -> None:
+def write_file(path: Path, content: str | bytes, advice: str = _OPTION, *, durable: bool = False) -> None:
     """Write one file into a folder that exists, in the same way; a device or a pipe is written to directly."""
-    _write({path: content}, advice)
+    _write({path: content}, advice, durable)
 
 
 @contextmanager
@@ -53,8 +58,9 @@ def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
-def _write(files: Mapping[Path, str | bytes], advice: str = _OPTION) -> tuple[Path, ...]:
+def _write(files: Mapping[Path, str | bytes], advice: str, durable: bool) -> tuple[Path, ...]:
     waiting: list[tuple[Path, Path]] = []
+    unsynced: set[Path] = set()
     shown = Path()
     try:
         for shown, content in files.items():
@@ -66,22 +72,41 @@ def _write(files: Mapping[Path, str | bytes], advice: str = _OPTION) -> tuple[Pa
                 with place.open("wb") as file:
                     file.write(data)
                 continue
-            temporary = place.with_name(f".tltlc-{os.getpid()}-{len(waiting)}.tmp")
+            name = place.name if durable else f"tltlc-{os.getpid()}-{len(waiting)}"
+            temporary = place.with_name(f".{name}.tmp")
             waiting.append((temporary, place))
             with temporary.open("wb") as file:
                 file.write(data)
+                if durable:
+                    file.flush()
+                    os.fsync(file.fileno())
+                    unsynced.add(place.parent)
             if mode is not None:
                 temporary.chmod(stat.S_IMODE(mode))
         while waiting:
             temporary, shown = waiting[0]
             temporary.replace(shown)
             waiting.pop(0)
+        for shown in unsynced:
+            _sync_folder(shown)
     except (OSError, ValueError) as error:
         raise _error(shown, error, advice) from None
     finally:
         for temporary, _ in waiting:
-            temporary.unlink(missing_ok=True)
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
     return tuple(files)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Have the system write down that files were renamed, where it knows how to."""
+    if os.name == "nt":
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def _mode(path: Path) -> int | None:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import zipfile
 from collections.abc import Mapping
-from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 from shlex import quote
@@ -17,8 +15,9 @@ from torch import Tensor
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.windows import Score
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reading_error, reason
+from tltlc.files import reading_error
 from tltlc.record import record
+from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-checkpoint"
 VERSION: Final = 2
@@ -73,22 +72,7 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
             content[name] = {field: getattr(made, field) for field in kind.__match_args__}
     data = BytesIO()
     torch.save({"format": FORMAT, "version": VERSION, **content}, data)
-    # The folder belongs to one process, and what a process left that was killed is written over.
-    temporary = path.with_name(f".{path.name}.tmp")
-    try:
-        with temporary.open("wb") as file:
-            file.write(data.getbuffer())
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-        _sync_folder(path.parent)
-    except OSError as error:
-        help_ = "make room there, and go on with --resume"
-        title = f"cannot write `{path}`: {reason(error)}"
-        raise TltlError([Diagnostic("TLT0005", title, help=help_)]) from None
-    finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
+    write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True)
 
 
 def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpoint | None:
@@ -149,12 +133,13 @@ def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) 
     """TLT0864 where a checkpoint is of another training, and what differs; TLT0868 where the level alone does."""
     other = [name for name in wanted if found.get(name) != wanted[name]]
     if other == ["level"]:
-        raise _other_level(path.parent)
+        raise level_changed(path.parent)
     if other:
         raise _refused(path, f"it is of another training: another {' and another '.join(map(_called, other))}")
 
 
-def _other_level(folder: Path) -> TltlError:
+def level_changed(folder: Path) -> TltlError:
+    """TLT0868: the level is another now than the one that the training in ``folder`` began on."""
     name = quote(str(folder))
     help_ = (
         f"put it back and go on by `tltlc train --resume {name}`, or train anew on the level as it is now; "
@@ -179,14 +164,3 @@ def _other_version(path: Path, version: object) -> TltlError:
 def _refused(path: Path, why: str) -> TltlError:
     help_ = "put back a copy of it, or move it away: the training then begins anew"
     return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {why}", help=help_)])
-
-
-def _sync_folder(folder: Path) -> None:
-    """Have the system write down that a file was renamed, where it knows how to."""
-    if os.name == "nt":
-        return
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -1,0 +1,51 @@
+"""Checkpoints in their files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+import torch
+
+from tltl_runtime.training.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.search import Searched
+from tltlc.record import replace
+
+
+@pytest.fixture(name="checkpoint")
+def _checkpoint() -> Checkpoint:
+    return Checkpoint(
+        run={"level": "0"},
+        iteration=3,
+        losses={"value": 0.5},
+        steps=192,
+        seconds=1.5,
+        replayed=7,
+        searched=Searched(10, 7, 0.5, 4, (8, 9), complete=True),
+        algorithm={"rate": 0.001},
+        processes=({"cpu": torch.get_rng_state()},),
+        window=((True, 1.0),),
+        unbroken=0,
+        best=Best((0.5, 1.0, -2.0), {}, 64),
+        met=False,
+    )
+
+
+def test_a_checkpoint_outlasts_a_loss_of_power(
+    tmp_path: Path, checkpoint: Checkpoint, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sizes, sync = [], os.fsync
+
+    def synced(descriptor: int) -> None:
+        sizes.append(os.fstat(descriptor).st_size)
+        sync(descriptor)
+
+    monkeypatch.setattr(os, "fsync", synced)
+    write_checkpoint(path := tmp_path / "checkpoint.pt", checkpoint)
+    assert sizes[0] == path.stat().st_size
+    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+    again = read_checkpoint(path, checkpoint.run)
+    assert again is not None
+    assert torch.equal(again.processes[0]["cpu"], checkpoint.processes[0]["cpu"])
+    assert replace(again, processes=()) == replace(checkpoint, processes=())

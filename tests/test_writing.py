@@ -1,0 +1,78 @@
+"""Files that are there as a whole or not at all, after a loss of power too where that is asked for."""
+
+from __future__ import annotations
+
+import os
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.writing import write_file, write_files
+
+
+@pytest.fixture(name="done")
+def _done(monkeypatch: pytest.MonkeyPatch) -> list[int | str]:
+    """What the system is asked for, in order: sizes of files and `folder` that are synced, names that files get."""
+    told: list[int | str] = []
+    sync, replace = os.fsync, Path.replace
+
+    def synced(descriptor: int) -> None:
+        found = os.fstat(descriptor)
+        told.append("folder" if stat.S_ISDIR(found.st_mode) else found.st_size)
+        sync(descriptor)
+
+    def replaced(path: Path, target: Path) -> Path:
+        told.append(target.name)
+        return replace(path, target)
+
+    monkeypatch.setattr(os, "fsync", synced)
+    monkeypatch.setattr(Path, "replace", replaced)
+    return told
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows syncs no folders")
+def test_durable_files_are_on_the_disk_before_they_get_their_names(tmp_path: Path, done: list[int | str]) -> None:
+    write_files(tmp_path, {"a": "one", "b/c": b"three"}, durable=True)
+    assert done == [3, 5, "a", "c", "folder", "folder"]
+    assert [(tmp_path / name).read_text() for name in ("a", "b/c")] == ["one", "three"]
+    done.clear()
+    write_file(tmp_path / "a", "four", durable=True)
+    assert done == [4, "a", "folder"]
+
+
+def test_other_files_wait_for_no_disk(tmp_path: Path, done: list[int | str]) -> None:
+    write_files(tmp_path, {"a": "one", "b/c": b"three"})
+    assert done == ["a", "c"]
+
+
+@pytest.mark.parametrize("durable", [False, True])
+def test_a_failure_leaves_what_was_there(tmp_path: Path, durable: bool) -> None:
+    (tmp_path / "a").write_text("older")
+    (tmp_path / "b").mkdir()
+    with pytest.raises(TltlError, match=r"TLT0005: cannot write `.*b`"):
+        write_files(tmp_path, {"a": "newer", "b": "newer"}, durable=durable)
+    assert (tmp_path / "a").read_text() == "older"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="kills a process as other systems do")
+def test_what_a_killed_process_left_of_a_durable_file_is_written_over(tmp_path: Path) -> None:
+    killed = """
+import os, signal, sys
+from pathlib import Path
+from tltlc.writing import write_file
+os.fsync = lambda _: os.kill(os.getpid(), signal.SIGKILL)
+write_file(Path(sys.argv[1]), "newer", durable=True)
+"""
+    path = tmp_path / "a"
+    path.write_text("older")
+    for _ in range(2):
+        subprocess.run([sys.executable, "-c", killed, str(path)], check=False)
+        assert path.read_text() == "older"
+        assert len([*tmp_path.iterdir()]) == 2
+    write_file(path, "newer", durable=True)
+    assert [each.read_text() for each in tmp_path.iterdir()] == ["newer"]
