@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
-from math import isfinite
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any
@@ -26,19 +25,18 @@ if TYPE_CHECKING:
     from tltl_runtime.training.run import Run
 
 
-def _finite(_: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
-    if value is not None and not isfinite(value):
-        raise click.BadParameter("a limit is a finite number", param=parameter)
-    return value
+def _setting(table: str, key: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
+    """Refuses what a file of settings may not say, either."""
 
+    def checked(_: click.Context, parameter: click.Parameter, value: Any) -> Any:
+        from tltl_runtime.training.settings_file import KINDS
 
-def _device(_: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
-    from tltl_runtime.training.settings_file import KINDS
+        kind = KINDS[table][key]
+        if value is not None and kind.read(value) is None:
+            raise click.BadParameter(f"`{value}` is not {kind}", param=parameter)
+        return value
 
-    kind = KINDS[""]["device"]
-    if value is not None and kind.read(value) is None:
-        raise click.BadParameter(f"`{value}` is not {kind}", param=parameter)
-    return value
+    return checked
 
 
 @click.command(
@@ -73,12 +71,18 @@ Watching, from another terminal:
     type=click.Path(path_type=Path),
     help="Settings in place of the defaults; --print-config shows all of them.",
 )
-@click.option("--steps", metavar="N", type=click.IntRange(min=1), help="End after so many steps of all environments.")
+@click.option(
+    "--steps",
+    metavar="N",
+    type=int,
+    callback=_setting("stop", "steps"),
+    help="End after so many steps of all environments.",
+)
 @click.option(
     "--minutes",
     metavar="M",
-    type=click.FloatRange(min=0),
-    callback=_finite,
+    type=float,
+    callback=_setting("stop", "minutes"),
     help="End after so many minutes of training (0: no limit).",
 )
 @click.option(
@@ -87,7 +91,7 @@ Watching, from another terminal:
     type=WorkersType(),
     help="Processes that play (0: one a core), or those of a Ray cluster.",
 )
-@click.option("--device", metavar="cpu|cuda|cuda:N", callback=_device, help="Where the network learns.")
+@click.option("--device", metavar="cpu|cuda|cuda:N", callback=_setting("", "device"), help="Where the network learns.")
 @senses_options
 @click.option("--print-config", is_flag=True, help="Print the settings, as a file for --config, and exit.")
 def command(

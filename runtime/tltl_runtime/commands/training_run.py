@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from shlex import quote
-from typing import Any, Final, Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 import click
 
@@ -20,7 +20,7 @@ from tltl_runtime.stealth.senses.sensors import chosen
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
 from tltl_runtime.training.distributed import peers
-from tltl_runtime.training.run import RUN, Run, read_level_hash, read_run
+from tltl_runtime.training.run import MAY_CHANGE, RUN, Run, leaves, read_level_hash, read_run
 from tltl_runtime.training.settings import Settings, read_settings
 from tltl_runtime.training.settings_file import read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -29,17 +29,6 @@ from tltlc.record import record, replace
 from tltlc.spec_file import split
 
 T = TypeVar("T")
-
-_MAY_CHANGE: Final = {
-    "device",
-    "threads",
-    "checkpoint_s",
-    "rollout.workers",
-    "rollout.pool",
-    "stop.steps",
-    "stop.minutes",
-}
-"""Settings that a training may be resumed with other values of."""
 
 
 @record
@@ -202,15 +191,7 @@ def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
         yield f"{where} has the seed {run.seed}, not {asked.seed}"
     if asked.sensors and chosen(load_level(run.level, run.variant), asked.sensors) != run.sensors:
         yield f"{where} senses something else than these options say"
-    for path in _changed(to_json(run.settings), to_json(settings)):
-        if path not in _MAY_CHANGE:
+    wanted = dict(leaves(to_json(settings)))
+    for path, value in leaves(to_json(run.settings)):
+        if path not in MAY_CHANGE and value != wanted[path]:
             yield f"{where} has another `{path}` than `{asked.config}`"
-
-
-def _changed(one: Any, other: Any, path: str = "") -> Iterator[str]:
-    """The keys, with dots between them, under which two JSON values of one shape differ."""
-    if isinstance(one, dict):
-        for key in one:
-            yield from _changed(one[key], other[key], f"{path}.{key}".lstrip("."))
-    elif one != other:
-        yield path

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,8 +11,6 @@ if TYPE_CHECKING:
 else:
     # Only newer versions of click have a type there.
     _Type = click.ParamType
-
-_MOST: Final = 10_000
 
 
 class WorkersType(_Type):
@@ -24,6 +22,13 @@ class WorkersType(_Type):
         """The number, or ``ray``."""
         if value == "ray" or isinstance(value, int):
             return value
-        if not (value.isascii() and value.isdecimal()) or int(value) > _MOST:
-            self.fail(f"`{value}` is neither a number of processes nor `ray`", param, ctx)
-        return int(value)
+        from tltl_runtime.training.settings_file import KINDS
+
+        kind = KINDS["rollout"]["workers"]
+        try:
+            number = kind.read(int(value))
+        except ValueError:
+            number = None
+        if number is None:
+            self.fail(f"`{value}` is neither `ray` nor {kind}", param, ctx)
+        return number

@@ -6,6 +6,8 @@ windows without a failure.
 
 from __future__ import annotations
 
+from shlex import quote
+
 import numpy as np
 
 from tltl_runtime.evaluation.evaluate import evaluate
@@ -37,5 +39,6 @@ def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirm
 def _check_level(run: Run, policy: Policy) -> None:
     if level_hash(load_level(run.level, run.variant)) != policy.card.level_hash:
         title = f"the level `{run.level}` has changed since the training began, so the policy cannot be confirmed on it"
-        help_ = f"put it back and go on by `tltlc train --resume {run.folder}`, or train anew on the level as it is now"
+        on = f"tltlc train --resume {quote(str(run.folder))}"
+        help_ = f"put it back and go on by `{on}`, or train anew on the level as it is now"
         raise TltlError([Diagnostic("TLT0868", title, help=help_)])

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Final
 
+from tltl_runtime.training.run import WRITABLE
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
 
@@ -27,10 +28,11 @@ def held(folder: Path) -> Iterator[None]:
         file = (folder / _LOCK).open("a+b")
     except (OSError, ValueError) as error:
         title = f"cannot write into `{folder}`: {reason(error)}"
-        raise TltlError([Diagnostic("TLT0005", title, help="name another place with --out")]) from None
+        raise TltlError([Diagnostic("TLT0005", title, help=WRITABLE)]) from None
     with file:
         if not _locked(file):
-            title, help_ = f"another process trains in `{folder}`", "wait for its end, or name another place with --out"
+            title = f"another process trains in `{folder}`"
+            help_ = "wait for its end; a new training may go elsewhere, with --out"
             raise TltlError([Diagnostic("TLT0865", title, help=help_)])
         yield
 

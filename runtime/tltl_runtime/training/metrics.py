@@ -23,6 +23,9 @@ METRICS: Final = "metrics.jsonl"
 _ADVICE: Final = "see that there is room, and that you may write there"
 OF_THE_WINDOW: Final = ("pass_rate", "progress", "reward", "episode_steps")
 """The means over the last episodes."""
+_WHOLE: Final = ("iteration", "steps", "episodes", "window")
+"""The whole numbers of a line that are read again."""
+_READ: Final = {*_WHOLE, "seconds", *OF_THE_WINDOW}
 _OF_THE_ITERATION: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
 
 
@@ -93,7 +96,9 @@ def means(window: Window) -> dict[str, float]:
 
 
 def read_metrics(path: Path) -> list[dict[str, Any]]:
-    """The lines of ``metrics.jsonl`` in order, none where there is no file; one that was cut short is left out.
+    """The lines of ``metrics.jsonl`` in order, none where there is no file.
+
+    One is left out that was cut short, or lacks what is read again.
 
     Raises:
         TltlError: TLT0001, the system does not give us the file.
@@ -118,12 +123,14 @@ def _line(measured: Mapping[str, Any]) -> str:
 
 
 def _measured(line: str) -> dict[str, Any] | None:
-    """What a line says; None where it is no whole one."""
+    """What a line says; None where it lacks what is read again."""
     try:
         measured = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
-    return measured if isinstance(measured, dict) and "iteration" in measured else None
+    if not isinstance(measured, dict) or not measured.keys() >= _READ:
+        return None
+    return measured if all(type(measured[name]) is int for name in _WHOLE) else None
 
 
 def _append(path: Path, line: bytes) -> None:

@@ -33,6 +33,13 @@ POLICY: Final = "policy.safetensors"
 RECORD: Final = "record.json"
 CURVE: Final = "curve.png"
 
+MAY_CHANGE: Final = frozenset(
+    {"device", "threads", "checkpoint_s", "rollout.workers", "rollout.pool", "stop.steps", "stop.minutes"}
+)
+"""Settings, as :func:`leaves` names them, that a training may be resumed with other values of."""
+WRITABLE: Final = "see that there is room, and that you may write there; a new training may go elsewhere, with --out"
+"""The advice where the folder of a training, be it new or resumed, cannot be written to."""
+
 _FORMAT: Final = "tltl-run"
 _VERSION: Final = 1
 _MOST_NAMED: Final = 8
@@ -81,7 +88,7 @@ def write_run(run: Run) -> None:
         "level_hash": level_hash(load_level(run.level, run.variant)),
         "artefact": json.loads(artefact),
     }
-    write_files(run.folder, {RUN: json.dumps(document, indent=1, ensure_ascii=False) + "\n"}, "name another --out")
+    write_files(run.folder, {RUN: json.dumps(document, indent=1, ensure_ascii=False) + "\n"}, WRITABLE)
 
 
 def read_run(folder: Path) -> Run:
@@ -128,21 +135,12 @@ def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
 
 def _check_settings(source: SourceFile, document: Mapping[str, Any]) -> None:
     """TLT0863 where there are other settings now than in the version that wrote the document."""
-    there, known = set(_leaves(document.get("settings", {}))), set(_leaves(to_json(read_settings())))
+    there, known = set(dict(leaves(document.get("settings", {})))), set(dict(leaves(to_json(read_settings()))))
     help_ = f"begin the training anew; `tltlc evaluate {quote(str(Path(source.name).parent))}` plays what it learned"
     if there and (later := sorted(known - there)):
         raise _unfit(source, f"it is of an older version of tltlc, which had no setting `{later[0]}`", help_)
     if gone := sorted(there - known):
         raise _unfit(source, f"it is of another version of tltlc, which had a setting `{gone[0]}`", help_)
-
-
-def _leaves(settings: object, path: str = "") -> Iterator[str]:
-    """The names of settings in JSON, with dots between them."""
-    if not isinstance(settings, dict):
-        yield path
-        return
-    for name, each in settings.items():
-        yield from _leaves(each, f"{path}.{name}".lstrip("."))
 
 
 def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
@@ -155,21 +153,14 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
 
 
 def identity(run: Run) -> dict[str, str]:
-    """What a checkpoint depends on, all but limits, devices and processes, in parts that messages tell apart: the
-    hashes of ``level`` and ``spec``, the ``seed``, and a SHA-256, in hexadecimal, of all ``settings``.
+    """What a checkpoint depends on, in parts that messages tell apart: the hashes of ``level`` and ``spec``, the
+    ``seed``, and a SHA-256, in hexadecimal, of the senses and of all ``settings`` but for :data:`MAY_CHANGE`.
     """
-    settings = run.settings
     counts = {
         "observation": OBSERVATION,
         "params": dict(run.params),
         "sensors": to_json(run.sensors),
-        "ppo": to_json(settings.ppo),
-        "network": to_json(settings.network),
-        "exploration": to_json(settings.exploration),
-        "reward": to_json(settings.reward),
-        "classes": to_json(settings.classes),
-        "rollout": [settings.rollout.envs, settings.rollout.steps],
-        "windows": [settings.stop.windows, settings.stop.episodes],
+        "settings": {path: value for path, value in leaves(to_json(run.settings)) if path not in MAY_CHANGE},
     }
     return {
         "level": level_hash(load_level(run.level, run.variant)),
@@ -177,6 +168,15 @@ def identity(run: Run) -> dict[str, str]:
         "seed": str(run.seed),
         "settings": hashlib.sha256(json.dumps(counts, sort_keys=True).encode()).hexdigest(),
     }
+
+
+def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Settings in JSON one by one: the name, with a dot between table and key, and the value."""
+    if not isinstance(settings, dict):
+        yield path, settings
+        return
+    for name, each in settings.items():
+        yield from leaves(each, f"{path}.{name}".lstrip("."))
 
 
 def named_trainings(folder: Path) -> str:

@@ -75,8 +75,8 @@ class Classes:
 class Settings:
     """All settings of a training but for its seed.
 
-    ``checkpoint_s`` are seconds between checkpoints at the most, ``threads`` those of torch while it learns, and
-    ``device`` is where the network is.
+    A checkpoint follows the first iteration that ends ``checkpoint_s`` seconds or more after the last one; ``threads``
+    are those of torch while it learns, and ``device`` is where the network is.
     """
 
     ppo: Ppo
@@ -133,17 +133,17 @@ def settings_text(settings: Settings) -> str:
         if found := _SETTING.match(line):
             value, default = (getattr(getattr(each, table, each), found["key"]) for each in (settings, defaults))
             if value != default:
-                head = f"{found['key']} = {_toml(value)}"
-                line = f"{head:<{found.start('comment') - 1}} {found['comment'] or ''}".rstrip()
+                line = f"{found['key']} = {_toml(value)}"
+                if comment := found["comment"]:
+                    line = f"{line:<{found.start('comment') - 1}} {comment}"
         lines.append(line)
     return "\n".join(lines) + "\n"
 
 
 def _toml(value: object) -> str:
     """A value of a setting as TOML; texts have no signs that TOML would read otherwise than JSON."""
-    return (
-        json.dumps(value) if isinstance(value, (str, bool)) else str(list(value) if isinstance(value, tuple) else value)
-    )
+    # Beyond 16 bits JSON's escapes are pairs, which TOML has not.
+    return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
 
 
 def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:

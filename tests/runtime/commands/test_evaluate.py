@@ -197,6 +197,7 @@ def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status
         (("POLICY", "--level", "navigation"), 1, "error[TLT0843]"),
         (("POLICY", "--spec", "cover_and_hide.tltl"), 1, "error[TLT0843]"),
         (("POLICY", "--workers", "many"), 2, "error[TLT0700]: invalid value for '--workers': `many` is neither"),
+        (("POLICY", "--workers", "10001"), 2, "error[TLT0700]: invalid value for '--workers': `10001` is neither"),
         (("POLICY", "--episodes", "0"), 2, "error[TLT0700]"),
         (("POLICY", "--json", "file/report.json"), 3, "error[TLT0005]"),
         (("POLICY", "--json", "gone/report.json"), 3, "error[TLT0005]: cannot write `gone/report.json`: there is no"),

@@ -12,12 +12,13 @@ import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
+from tests.runtime.training.reports import a_report, an_episode
 from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.summary import summary, summary_text
-from tltl_runtime.training.metrics import METRICS
+from tltl_runtime.training.metrics import METRICS, measurements
 from tltl_runtime.training.run import POLICY, write_run
 from tltl_runtime.training.train import train
 from tltlc.record import replace
@@ -110,11 +111,11 @@ def test_how_a_training_ended(policy: Policy, training: dict[str, object], said:
 def test_a_training_that_goes_on(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     write_run(run_in(tmp_path))
     write_policy(tmp_path / POLICY, Policy(replace(policy.card, training={}), policy.actor))
-    line = {"iteration": 1, "steps": 4096, "episodes": 1}
+    line = measurements(a_report(count=0, successes=0, finished=(an_episode(True),)), policy.card.fspa)
     (tmp_path / METRICS).write_text(json.dumps(line) + "\n")
     found: Outcome = tltlc("inspect", str(tmp_path))
     assert "  ended    not yet: after 4,096 steps, 1 episode ended" in found.out.splitlines()
-    assert "  training seed 3, 4,096 steps" in found.out.splitlines()
+    assert "  training seed 3, 4,096 steps, 2 s" in found.out.splitlines()
 
 
 def test_how_far_a_training_is(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.training.reports import a_report, an_episode
 from tests.runtime.training.runs import run_in
 from tltl_runtime.commands.policy_path import policy_path
-from tltl_runtime.training.metrics import METRICS
+from tltl_runtime.training.metrics import METRICS, measurements
 from tltl_runtime.training.run import POLICY, write_run
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -40,8 +41,11 @@ def test_a_training_without_a_policy(tltlc, here: Path, command: str) -> None:  
         "  help: `tltlc train --resume 'training/two words'` goes on until it has one; "
         "one that is going on has it soon\n"
     )
-    lines = [{"iteration": number, "steps": 4096 * number, "episodes": number} for number in (1, 2)]
-    (here / "two words" / METRICS).write_text("".join(json.dumps(line) + "\n" for line in lines))
+    fspa = run_in(here).fspa
+    lines = [measurements(a_report(number, finished=(an_episode(True),) * number), fspa) for number in (1, 2)]
+    # Whole JSON, and yet no measurements.
+    text = "".join(json.dumps(line) + "\n" for line in [*lines, {"iteration": 3}])
+    (here / "two words" / METRICS).write_text(text)
     assert "has no policy yet: after 8,192 steps, 3 episodes ended\n" in tltlc(command, "training/two words").err
 
 

@@ -20,6 +20,7 @@ from tests.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
 from tests.docs.blocks import DOCS
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.metrics import METRICS, read_metrics
+from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import default_text, read_settings
 from tltlc.record import replace
 
@@ -228,8 +229,14 @@ def test_a_training_goes_into_no_folder_of_other_files(tltlc: TltlcFunction, her
         (["hide.tltl", "--level", "nowhere"], 2, "there is no level `nowhere`"),
         (["hide.tltl", "--level", "navigation"], 1, "`navigation` has no "),
         (["endless.tltl"], 1, "`endless` has no limit, so an episode may go on for ever"),
-        (["soon.tltl", "--minutes", "nan"], 2, "a limit is a finite number"),
-        (["soon.tltl", "--workers", "many"], 2, "`many` is neither a number of processes nor `ray`"),
+        (["soon.tltl", "--steps", "0"], 2, "`0` is not a whole number from 1 to 1,000,000,000,000,000"),
+        (["--print-config", "--steps", str(10**16)], 2, "is not a whole number from 1 to 1,000,000,000,000,000"),
+        (["soon.tltl", "--minutes", "nan"], 2, "`nan` is not a number from 0 to 1,000,000"),
+        (["--print-config", "--minutes", "1e7"], 2, "`10000000.0` is not a number from 0 to 1,000,000"),
+        (["soon.tltl", "--minutes", "-1"], 2, "`-1.0` is not a number from 0 to 1,000,000"),
+        (["soon.tltl", "--workers", "many"], 2, "`many` is neither `ray` nor a whole number from 0 to 10,000"),
+        (["--print-config", "--workers", "10001"], 2, "`10001` is neither `ray` nor a whole number from 0 to 10,000"),
+        (["soon.tltl", "--workers", "9" * 5000], 2, "is neither `ray` nor a whole number from 0 to 10,000"),
         (["soon.tltl", "--device", "gpu"], 2, '`gpu` is not a device: "cpu", "cuda" or "cuda:0"'),
         (["soon.tltl", "--device", "cuda:31"], 1, "there is no device `cuda:31` here"),
         (["soon.tltl", "--entities", "s9"], 2, "the level `cover_and_hide` has no entity `s9`"),
@@ -239,6 +246,7 @@ def test_a_training_goes_into_no_folder_of_other_files(tltlc: TltlcFunction, her
         (["vault.tltl"], 2, "there is no level `vault`: `vault.toml` is not there, and none of that name comes with"),
         (["--resume", "gone", "--out", "there"], 2, "--resume goes on in its own folder"),
         (["soon.tltl", "--out", "small.toml/run"], 3, "cannot write into `small.toml/run`"),
+        (["soon.tltl", "--out", "small.toml/run"], 3, "a new training may go elsewhere, with --out"),
     ],
 )
 def test_what_cannot_be_trained(
@@ -353,6 +361,8 @@ def test_the_page_names_the_keys_of_the_record(tltlc: TltlcFunction, here: Path)
     rows = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
     said = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
     assert said == list(json.loads(Path("it/record.json").read_text()))
+    (search,) = re.findall(r"^\| `search` \| (.*) \|$", section, re.MULTILINE)
+    assert re.findall(r"`(\w+)`", search) == list(Searched.__match_args__)
 
 
 def _command(*options: str) -> list[str]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
@@ -78,6 +80,27 @@ def test_what_came_after_the_checkpoint_is_measured_again(tmp_path: Path, fspa: 
         file.write('{"iteration": 6, "st')  # as a machine leaves it that lost power
     _measure(tmp_path, fspa, range(4, 8), after=3)
     assert [line["iteration"] for line in read_metrics(tmp_path / METRICS)] == list(range(1, 8))
+
+
+@pytest.mark.parametrize("name", ["iteration", "steps", "seconds", "episodes", "window", "pass_rate", "reward"])
+def test_a_line_without_what_is_read_again_is_left_out(tmp_path: Path, fspa: Fspa, name: str) -> None:
+    _measure(tmp_path, fspa, range(1, 4))
+    lines = (tmp_path / METRICS).read_text().splitlines(keepends=True)
+    second = json.loads(lines[1])
+    del second[name]
+    (tmp_path / METRICS).write_text(lines[0] + json.dumps(second) + "\n" + lines[2])
+    assert [line["iteration"] for line in read_metrics(tmp_path / METRICS)] == [1, 3]
+
+
+@pytest.mark.parametrize("value", [None, "2", 2.0, True, []])
+@pytest.mark.parametrize("name", ["iteration", "steps", "episodes", "window"])
+def test_a_line_whose_counts_are_none_is_left_out(tmp_path: Path, fspa: Fspa, name: str, value: Any) -> None:
+    _measure(tmp_path, fspa, range(1, 3))
+    first, second = (tmp_path / METRICS).read_text().splitlines(keepends=True)
+    (tmp_path / METRICS).write_text(first + json.dumps({**json.loads(second), name: value}) + "\n" + "[" * 10**5)
+    assert [line["iteration"] for line in read_metrics(tmp_path / METRICS)] == [1]
+    _measure(tmp_path, fspa, range(2, 3), after=1)
+    assert [line["iteration"] for line in read_metrics(tmp_path / METRICS)] == [1, 2]
 
 
 def test_tensorboard_shows_each_step_once(tmp_path: Path, fspa: Fspa) -> None:

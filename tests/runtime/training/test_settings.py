@@ -9,7 +9,7 @@ from typing import get_type_hints
 import pytest
 
 from tltl_runtime.policies.network import Network
-from tltl_runtime.training.settings import Settings, default_text, read_settings, rsl_config
+from tltl_runtime.training.settings import Settings, default_text, read_settings, rsl_config, settings_text
 from tltl_runtime.training.settings_file import KINDS, read_values
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diagnostics.render import render
@@ -27,6 +27,52 @@ WRONG = {
     "TLT0862_table": 'ppo = 3\ndevice = "gpu"\n[classes]\nrunner = "my runner"\n[stop]\nminutes = nan\n',
     "TLT0862_minibatches": "[rollout]\nenvs = 1\nsteps = 2\n",
 }
+
+OTHER = """\
+device = "cuda:1"
+threads = 2
+checkpoint_s = 0.5
+[ppo]
+learning_rate = 1e-5
+entropy = 0.0
+entropy_schedule = "fixed"
+clip = 0.3
+lam = 0.9
+gamma = 0.5
+epochs = 1
+minibatches = 2
+value_loss = 0.5
+max_gradient = 10.0
+[rollout]
+envs = 4
+steps = 16
+workers = 2
+pool = "ray"
+[network]
+hidden = [64]
+activation = "relu"
+channels = [8, 8, 8]
+kernel = 5
+stride = 1
+[exploration]
+ways = 0
+steps = 1000
+parts = 1
+imitation = 0
+[reward]
+mode = "potential"
+termination = "paper"
+terminal_penalty = "undiscounted"
+[stop]
+windows = 1
+episodes = 2
+steps = 100
+minutes = 0.25
+[classes]
+runner = "mine.\U0001d4de:Runner"
+algorithm = "mine.algorithm:PPO"
+"""
+"""Another value for each setting."""
 
 
 def _read(tmp_path: Path, text: str) -> Settings:
@@ -73,6 +119,16 @@ def test_a_file_has_what_differs(tmp_path: Path) -> None:
 
 def test_nothing_but_the_printed_defaults_changes_nothing(tmp_path: Path) -> None:
     assert _read(tmp_path, default_text()) == _read(tmp_path, "") == read_settings()
+
+
+def test_settings_that_all_differ_are_printed_and_read_again(tmp_path: Path) -> None:
+    values, defaults = (read_values(SourceFile("settings.toml", text)) for text in (OTHER, default_text()))
+    assert [(table, key) for table in KINDS for key in KINDS[table] if values[table][key] == defaults[table][key]] == []
+    settings = _read(tmp_path, OTHER)
+    printed = settings_text(settings)
+    assert _read(tmp_path, printed) == settings
+    assert 'runner = "mine.\U0001d4de:Runner"' in printed.splitlines()
+    assert "threads = 2             # of torch while it learns; " in printed
 
 
 def test_rsl_rl_is_told_all(tmp_path: Path) -> None:

@@ -13,8 +13,9 @@ import pytest
 import torch
 
 from tests.runtime.training.runs import run_in
-from tests.runtime.training.test_settings import compare
+from tests.runtime.training.test_settings import OTHER, compare
 from tltl_runtime.policies.file import read_policy
+from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
@@ -23,8 +24,21 @@ from tltl_runtime.training.folder import held
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.record import write_record
 from tltl_runtime.training.report import Confirmation, Report
-from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, RUN, Run, identity, read_run, write_run
+from tltl_runtime.training.run import (
+    CHECKPOINT,
+    CURVE,
+    MAY_CHANGE,
+    POLICY,
+    RECORD,
+    RUN,
+    Run,
+    identity,
+    leaves,
+    read_run,
+    write_run,
+)
 from tltl_runtime.training.runner import Iteration, Runner
+from tltl_runtime.training.settings import Settings, read_settings
 from tltl_runtime.training.train import train
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
@@ -117,8 +131,9 @@ def test_a_training_that_is_left_goes_on_after_its_last_iteration(folder: Path) 
     reports.close()
     assert (_checkpoint(run).iteration, _checkpoint(run).steps) == (2, 128)
     # What a process that was killed had measured beyond its checkpoint is measured again.
+    beyond = {**read_metrics(run.folder / METRICS)[-1], "iteration": 3}
     with (run.folder / METRICS).open("a") as file:
-        file.write(json.dumps({"iteration": 3}) + "\n" + '{"iterat')
+        file.write(json.dumps(beyond) + "\n" + '{"iterat')
     assert [each.iteration.number for each in train(run, resume=True)] == [3]
     assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == [1, 2, 3]
     # It is over: its end is told once more.
@@ -175,7 +190,7 @@ def test_a_policy_is_not_confirmed_on_a_level_that_has_changed(tmp_path: Path, m
     shipped = level_path("cover_and_hide").read_text()
     Path("plan.toml").write_text(shipped)
     changes = {"stop__windows": 2, "stop__episodes": 5, "stop__steps": 10**5}
-    run = _judged_by(replace(run_in(Path("run"), **changes), level="plan.toml"), SOON)
+    run = _judged_by(replace(run_in(Path("my run"), **changes), level="plan.toml"), SOON)
     reports = train(run)
     next(reports)
     Path("plan.toml").write_text(shipped.replace("spread = 0.4", "spread = 0.3"))
@@ -257,6 +272,21 @@ def test_a_run_is_read_as_it_was_written(tmp_path: Path) -> None:
     assert identity(read_run(run.folder)) == identity(run)
 
 
+def test_a_checkpoint_depends_on_all_settings_but_those_that_may_change(folder: Path, tmp_path: Path) -> None:
+    run = replace(run_in(folder), settings=read_settings())
+    settings, other = dict(leaves(to_json(run.settings))), tmp_path / "other.toml"
+    other.write_text(OTHER, encoding="utf-8")
+    others = dict(leaves(to_json(read_settings(other))))
+    assert MAY_CHANGE <= others.keys() == settings.keys()
+    for name, value in settings.items():
+        document: Any = to_json(run.settings)
+        table, _, key = name.rpartition(".")
+        assert value != others[name]
+        (document[table] if table else document)[key] = others[name]
+        changed = replace(run, settings=from_json(Settings, document, "settings"))
+        assert (identity(changed) == identity(run)) == (name in MAY_CHANGE), name
+
+
 # --- what is refused --------------------------------------------------------------------------------
 
 
@@ -295,6 +325,13 @@ def _other_seed(run: Run) -> Run:
     return replace(run, seed=4)
 
 
+def _other_settings(run: Run) -> Run:
+    """As of a version that took the hash of its settings otherwise."""
+    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
+    torch.save({**content, "run": {**content["run"], "settings": "0" * 64}}, run.folder / CHECKPOINT)
+    return run
+
+
 def _newer(run: Run) -> Run:
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
     torch.save({**content, "version": 3}, run.folder / CHECKPOINT)
@@ -315,6 +352,7 @@ def _partial(run: Run) -> Run:
         ("TLT0864_flipped", _flipped),
         ("TLT0864_harmful", _harmful),
         ("TLT0864_seed", _other_seed),
+        ("TLT0864_settings", _other_settings),
         ("TLT0864_newer", _newer),
         ("TLT0864_partial", _partial),
     ],
@@ -340,6 +378,14 @@ def test_two_trainings_in_one_folder_are_refused(copy: Run) -> None:
     with held(copy.folder), pytest.raises(TltlError) as caught:
         next(train(copy, resume=True))
     compare("TLT0865", caught.value)
+
+
+def test_a_folder_that_cannot_be_written_to_is_resumed_from_nowhere_else(copy: Run) -> None:
+    (copy.folder / ".lock").unlink()
+    (copy.folder / ".lock").mkdir()
+    with pytest.raises(TltlError) as caught:
+        next(train(copy, resume=True))
+    compare("TLT0005_resumed", caught.value)
 
 
 def _with_ppo(document: Any, **changes: Any) -> Any:
