@@ -24,7 +24,7 @@ from typing import Any
 from benchmarks import training_report
 from benchmarks.load import Load
 from benchmarks.store import ROOT, Record, Store, measure_missing, source_digest
-from benchmarks.training_report import ABLATION, GPU
+from benchmarks.training_report import ABLATION, CORES, GPU, NO_LIMIT
 
 SECTION = "training"
 ABLATED = "cover_and_hide"
@@ -32,41 +32,41 @@ NEEDED = ("torch", "rsl_rl", "pybullet")
 
 FOLDER = Path(__file__).with_name(".training")
 PICTURE = Path(__file__).with_name(training_report.PICTURE_NAME)
-CORES = 2
 FRESH_SEED = 1000
 """Of the episodes of evaluations, far from those of trainings."""
 CURVE_POINTS = 60
 OTHERS = "other_cores.txt"
 """In the folder of a training: what else the machine did while it ran for the last time."""
-SOURCE = "source.json"
-"""In the folder of a training: the code with which it was begun, or resumed for the last time."""
-NO_LIMIT = 10**9
-"""Of steps: minutes alone end a training."""
+SOURCE = ".source.json"
+"""Behind the name of a training's folder, beside it: the code with which it was begun, or resumed for the last time."""
+
+Settings = Mapping[str, Mapping[str, str | int]]
+"""Settings of a training that differ from the defaults, by table and key."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ablation:
-    """What differs from the defaults: ``settings`` as TOML, further ``options`` of ``tltlc train``."""
+    """What differs from the defaults: ``settings``, and further ``options`` of ``tltlc train``."""
 
-    settings: str = ""
+    settings: Settings = field(default_factory=dict)
     options: Sequence[str] = ()
 
 
 ABLATIONS: Mapping[str, Ablation] = {
     "as it is": Ablation(),
-    "reward sparse": Ablation('[reward]\nmode = "sparse"\n'),
-    "reward edge": Ablation('[reward]\nmode = "edge"\n'),
-    "reward potential": Ablation('[reward]\nmode = "potential"\n'),
-    "terminal penalty undiscounted": Ablation('[reward]\nterminal_penalty = "undiscounted"\n'),
+    "reward sparse": Ablation({"reward": {"mode": "sparse"}}),
+    "reward edge": Ablation({"reward": {"mode": "edge"}}),
+    "reward potential": Ablation({"reward": {"mode": "potential"}}),
+    "terminal penalty undiscounted": Ablation({"reward": {"terminal_penalty": "undiscounted"}}),
     "no semantic map": Ablation(options=("--no-map",)),
-    "no imitation of ways": Ablation("[exploration]\nimitation = 0\n"),
-    "no search for ways": Ablation("[exploration]\nways = 0\n"),
+    "no imitation of ways": Ablation({"exploration": {"imitation": 0}}),
+    "no search for ways": Ablation({"exploration": {"ways": 0}}),
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured: ``minutes`` and ``ablation_minutes`` limit a training, ``settings`` are as TOML."""
+    """What is measured: ``minutes`` and ``ablation_minutes`` limit a training, whose ``settings`` are of all cells."""
 
     levels: Sequence[str] = training_report.LEVELS
     seeds: Sequence[int] = training_report.SEEDS
@@ -74,7 +74,7 @@ class Plan:
     episodes: int = 100
     ablations: Mapping[str, Ablation] = field(default_factory=lambda: ABLATIONS)
     ablation_minutes: float = 10.0
-    settings: str = ""
+    settings: Settings = field(default_factory=dict)
 
 
 FULL = Plan()
@@ -87,7 +87,7 @@ QUICK = Plan(
     episodes=1,
     ablations={"no semantic map": ABLATIONS["no semantic map"]},
     ablation_minutes=_QUICK_MINUTES,
-    settings="[rollout]\nenvs = 4\nsteps = 32\n[exploration]\nsteps = 64\n",
+    settings={"rollout": {"envs": 4, "steps": 32}, "exploration": {"steps": 64}},
 )
 
 
@@ -175,11 +175,12 @@ class Cell:
             return True
         load = Load()
         source = {"revision": _revision(), "source": source_digest("tltlc", "runtime")}
+        self.folder.parent.mkdir(parents=True, exist_ok=True)
+        # A training outlives whoever kills this process, and its figures need the source.
+        self._source.write_text(json.dumps(source), encoding="utf-8")
         self._run(minutes)
         # By its status alone an error looks like the end by a limit.
         ended = (self.folder / "record.json").exists()
-        if self.folder.exists():
-            (self.folder / SOURCE).write_text(json.dumps(source), encoding="utf-8")
         others = load.other_cores()
         if ended and others is not None:
             (self.folder / OTHERS).write_text(f"{others:.2f}", encoding="utf-8")
@@ -192,12 +193,15 @@ class Cell:
             _tltlc("train", "--resume", self.folder, *limit)
             return
         shutil.rmtree(self.folder, ignore_errors=True)
-        self.folder.parent.mkdir(parents=True, exist_ok=True)
         settings = self.folder.with_suffix(".toml")
         ablation = self.ablation or Ablation()
-        settings.write_text(self.plan.settings + ablation.settings, encoding="utf-8")
+        settings.write_text(settings_text(self.plan.settings, ablation.settings), encoding="utf-8")
         given = ("--level", self.level, "--seed", self.seed, "--config", settings, "--out", self.folder)
         _tltlc("train", *given, *limit, *ablation.options)
+
+    @property
+    def _source(self) -> Path:
+        return self.folder.with_suffix(SOURCE)
 
     def _record(self) -> Any:
         return json.loads((self.folder / "record.json").read_text(encoding="utf-8"))
@@ -210,7 +214,6 @@ class Cell:
         search = record["search"] or {"steps": 0, "replayed": 0, "seconds": 0.0}
         return {
             "end": record["end"],
-            "workers": record["settings"]["rollout"]["workers"],
             "steps": record["steps"],
             "all_steps": record["steps"] + record["replayed"] + search["steps"] + search["replayed"],
             "minutes": round(record["seconds"] / 60, 2),
@@ -220,8 +223,18 @@ class Cell:
             "window": record["window"],
             "other_cores": float(others.read_text(encoding="utf-8")) if others.exists() else None,
             "versions": record["versions"],
-            **json.loads((self.folder / SOURCE).read_text(encoding="utf-8")),
+            **json.loads(self._source.read_text(encoding="utf-8")),
         }
+
+
+def settings_text(*settings: Settings) -> str:
+    """The TOML text of settings together, of which later ones go before earlier ones."""
+    merged: dict[str, dict[str, str | int]] = {}
+    for each in settings:
+        for table, values in each.items():
+            merged.setdefault(table, {}).update(values)
+    lines = {table: [f"{key} = {json.dumps(value)}\n" for key, value in merged[table].items()] for table in merged}
+    return "".join(f"[{table}]\n{''.join(lines[table])}" for table in lines)
 
 
 def _tltlc(*arguments: object) -> int:

@@ -17,7 +17,6 @@ def trained(pass_rate: float, minutes: float, end: str = "met") -> Record:
     return {
         "end": end,
         "steps": 900_000,
-        "workers": 2,
         "minutes": minutes,
         "search_minutes": 1.0,
         "all_steps": 900_000,
@@ -42,19 +41,24 @@ def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
     run, failing = training._tltlc, iter([2])
 
     def counted(*arguments: object) -> int:
-        """The first evaluation fails."""
+        """The first training ends when nobody waits for it any more, and the first evaluation fails."""
         paths = [each for each in arguments if isinstance(each, Path)]
         (of,) = (path.name for path in paths if path.parent == folder and not path.suffix)
         ran.append(f"{arguments[0]} {of}")
         status = next(failing, None) if arguments[0] == "evaluate" else None
-        return run(*arguments) if status is None else status
+        status = run(*arguments) if status is None else status
+        if len(ran) == 1:
+            raise KeyboardInterrupt
+        return status
 
     monkeypatch.setattr(training, "_tltlc", counted)
     said: list[str] = []
+    with pytest.raises(KeyboardInterrupt):
+        training.measure(store, 0.0, said.append, training.QUICK, folder, picture)
     for _ in range(3):
         training.measure(store, 0.0, said.append, training.QUICK, folder, picture)
     cell, ablation = "cover_and_hide 1", "ablation: no semantic map"
-    # The second run goes on with the evaluation, without training anew, and the third has all.
+    # The runs after the first go on with the evaluation, without training anew, and the last has all.
     judged, ablated = "cover_and_hide-1", "no-semantic-map"
     expected = [f"train {judged}", f"evaluate {judged}", f"train {ablated}", f"evaluate {judged}"]
     assert [each for each in ran if each != "train cuda"] == expected
@@ -66,7 +70,8 @@ def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
     settings = json.loads((folder / "no-semantic-map" / "run.json").read_text(encoding="utf-8"))
     assert settings["sensors"]["map"] is None
     text = training_report.section(records)
-    assert "| cover_and_hide | 1 | 2 | minutes | 128 |" in text
+    assert "| cover_and_hide | 1 | minutes | 128 |" in text
+    assert "--minutes 30 --steps 1000000000 --workers 2`" in text
     assert "| no semantic map | minutes | 128 |" in text
     assert picture.read_bytes().startswith(b"\x89PNG")
 
@@ -84,6 +89,12 @@ def test_a_training_goes_on_from_its_checkpoint_or_begins_anew(
     assert cell.judged() == {"failed": "tltlc train"}
     assert ran == [how]
     assert cell.folder.exists() == (how == "--resume")
+
+
+def test_settings_of_the_plan_and_of_an_ablation_come_together() -> None:
+    exploration = {"exploration": {"ways": 0}}
+    text = training.settings_text(training.QUICK.settings, exploration, {"reward": {"mode": "edge"}})
+    assert text == ('[rollout]\nenvs = 4\nsteps = 32\n[exploration]\nsteps = 64\nways = 0\n[reward]\nmode = "edge"\n')
 
 
 def test_what_is_missed_is_named() -> None:
