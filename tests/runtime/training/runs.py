@@ -1,7 +1,4 @@
-"""Trainings that take seconds; as a program, one of them: ``python runs.py FOLDER [--resume] [SETTING=VALUE ...]``.
-
-The program prints a line of JSON for each report; in several processes of torchrun each does.
-"""
+"""Trainings that take seconds; :func:`main` is one as a program."""
 
 from __future__ import annotations
 
@@ -9,7 +6,6 @@ import hashlib
 import json
 import math
 import os
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -38,12 +34,12 @@ SMALL: dict[str, Any] = {
 }
 
 
-def run_in(folder: Path, **changes: Any) -> Run:
+def run_in(folder: Path, spec: str | None = None, **changes: Any) -> Run:
     """A training on cover_and_hide of three iterations of 64 steps, with ``changes`` of :data:`SMALL`; dots in the
-    names of settings are written as two underscores.
+    names of settings are written as two underscores.  ``spec`` is the text of another one than the level's own.
     """
     level = load_level("cover_and_hide")
-    task = load_task(spec_of(level), offered=params(level))
+    task = load_task(spec or spec_of(level), offered=params(level))
     settings = read_settings()
     for name, value in {**SMALL, **{name.replace("__", "."): value for name, value in changes.items()}}.items():
         table, _, key = name.rpartition(".")
@@ -105,11 +101,11 @@ def _say(**values: Any) -> None:
 
 
 def main(folder: str, *given: str) -> None:
-    changes = dict(each.split("=") for each in given if "=" in each)
+    """Train in a folder with ``NAME=VALUE`` of :func:`run_in`, the values in JSON, or go on there with ``--resume``.
+
+    It prints a line of JSON for each report; in several processes of torchrun each does.
+    """
+    changes = dict(each.split("=", 1) for each in given if "=" in each)
     run = run_in(Path(folder), **{name: json.loads(value) for name, value in changes.items()})
     for report in train(run, resume="--resume" in given):
         _say(number=report.iteration.number, steps=report.steps, stop=report.stop, finished=report.window.count)
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])

@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -27,7 +26,8 @@ from tltl_runtime.training.run import CHECKPOINT, POLICY, identity
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[3]
-PROGRAM = str(Path(runs.__file__))
+PROGRAM = ["-c", f"import sys; from {runs.__name__} import main; main(*sys.argv[1:])"]
+"""As a file each process that plays would import it, and torch, anew."""
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
 
 
@@ -69,7 +69,7 @@ def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoin
     told = 0
     for kill in range(3):
         resume = ["--resume"] if kill else []
-        with _started(PROGRAM, str(run.folder), *resume, f"stop__steps={steps}") as process:
+        with _started(*PROGRAM, str(run.folder), *resume, f"stop__steps={steps}") as process:
             assert process.stdout is not None
             first = json.loads(process.stdout.readline())
             assert first["number"] >= told
@@ -95,25 +95,28 @@ def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoin
         assert not any(map(_is_running, workers))
         told = checkpoint.iteration
     last = told + 3
-    with _started(PROGRAM, str(run.folder), "--resume", f"stop__steps={64 * last}") as process:
+    with _started(*PROGRAM, str(run.folder), "--resume", f"stop__steps={64 * last}") as process:
         lines = _lines(process)
     assert [line["number"] for line in lines] == [told + 1, told + 2, told + 3]
     assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == list(range(1, last + 1))
     assert read_policy(run.folder / POLICY).card.level == "cover_and_hide"
 
 
+def _together(folder: Path, *arguments: str) -> list[dict[str, Any]]:
+    """What each of two processes of torchrun says, which is the same."""
+    torchrun = ["-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2", "--no-python", sys.executable]
+    telling = 'classes__runner="tests.runtime.training.runs:Telling"'
+    with _started(*torchrun, *PROGRAM, str(folder), telling, *arguments) as process:
+        lines = _lines(process)
+    one, other = ([{**line, "rank": None} for line in lines if line["rank"] == rank] for rank in "01")
+    assert one == other
+    return one
+
+
 def test_processes_of_torchrun_learn_the_same_and_end_together(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    together = ["-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2", PROGRAM, str(folder)]
-    changes = ['classes__runner="tests.runtime.training.runs:Telling"', "rollout__steps=64"]
-    by_rank: dict[str, list[list[dict[str, Any]]]] = defaultdict(list)
-    for resume, steps in (([], 1536), (["--resume"], 2048)):
-        with _started(*together, *resume, *changes, f"stop__steps={steps}") as process:
-            lines = _lines(process)
-        for rank in "01":
-            by_rank[rank].append([{**line, "rank": None} for line in lines if line["rank"] == rank])
-    assert by_rank["0"] == by_rank["1"]
-    begun, resumed = by_rank["0"]
+    begun = _together(folder, "rollout__steps=64", "stop__steps=1536")
+    resumed = _together(folder, "rollout__steps=64", "stop__steps=2048", "--resume")
     reports = [line for line in begun + resumed if "number" in line]
     # Steps are those of both: 2 processes, 4 environments, 64 decisions.
     assert [(line["number"], line["steps"], line["stop"]) for line in reports] == [
@@ -124,3 +127,30 @@ def test_processes_of_torchrun_learn_the_same_and_end_together(tmp_path: Path) -
     ]
     assert len({line["weights"] for line in begun + resumed if "weights" in line}) == 4
     assert [line["iteration"] for line in read_metrics(folder / METRICS)] == [1, 2, 3, 4]
+
+
+def test_processes_of_torchrun_keep_their_own_ways_and_imitate_them_together(tmp_path: Path) -> None:
+    # A spec that who does anything at all meets, after eight steps.
+    spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+    changes = {"exploration__ways": 2, "exploration__parts": 4, "stop__episodes": 10**5}
+    given = [f"spec={json.dumps(spec)}", *(f"{name}={value}" for name, value in changes.items())]
+    folder, ways, replayed, weights = tmp_path / "run", [], [], set()
+    for steps, resume in ((256, []), (512, ["--resume"])):
+        said = _together(folder, *given, f"stop__steps={steps}", *resume)
+        weights |= {line["weights"] for line in said if "weights" in line}
+        run = run_in(folder, spec, **changes, classes__runner="tests.runtime.training.runs:Telling")
+        checkpoint = read_checkpoint(folder / CHECKPOINT, identity(run))
+        assert checkpoint is not None
+        ways.append([{*own["way_seeds"].tolist()} for own in checkpoint.processes])
+        replayed.append(checkpoint.replayed)
+    assert len(weights) == 4
+    # Steps are those of both: 2 processes, 4 environments, 16 decisions.
+    measured = read_metrics(folder / METRICS)
+    assert [line["steps"] for line in measured] == [128, 256, 384, 512]
+    assert any("imitation" in line["losses"] for line in measured)
+    assert 0 < replayed[0] < replayed[1]
+    begun, resumed = ways
+    assert begun[0].isdisjoint(begun[1])
+    for first, later in zip(begun, resumed, strict=True):
+        assert first
+        assert first <= later
