@@ -34,9 +34,7 @@ class Policy:
         ValueError: the weights are not those of the network that the card describes.
     """
 
-    def __init__(self, card: Card, weights: Mapping[str, Tensor] | MLPModel) -> None:
-        if isinstance(weights, MLPModel):
-            weights = weights.state_dict()
+    def __init__(self, card: Card, weights: Mapping[str, Tensor]) -> None:
         rounded = {name: each.detach().cpu().half() for name, each in weights.items()}
         if not all(bool(each.isfinite().all()) for each in rounded.values()):
             raise NoNumbersError(

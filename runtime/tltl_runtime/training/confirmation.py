@@ -6,17 +6,15 @@ windows without a failure.
 
 from __future__ import annotations
 
-from shlex import quote
-
 import numpy as np
 
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.training.checkpoint import level_changed
 from tltl_runtime.training.report import Confirmation
 from tltl_runtime.training.run import Run
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
@@ -38,7 +36,4 @@ def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirm
 
 def _check_level(run: Run, policy: Policy) -> None:
     if level_hash(load_level(run.level, run.variant)) != policy.card.level_hash:
-        title = f"the level `{run.level}` has changed since the training began, so the policy cannot be confirmed on it"
-        on = f"tltlc train --resume {quote(str(run.folder))}"
-        help_ = f"put it back and go on by `{on}`, or train anew on the level as it is now"
-        raise TltlError([Diagnostic("TLT0868", title, help=help_)])
+        raise level_changed(run.folder)

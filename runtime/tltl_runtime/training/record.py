@@ -39,7 +39,7 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     """
     policy = read_policy(run.folder / POLICY)
     made = training_record(run, policy.card, last, read_metrics(run.folder / METRICS))
-    write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.actor))
+    write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.weights()))
     text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
     title = f"{run.fspa.name} on {made['level']} {run.variant}, seed {run.seed}"
     write_files(run.folder, {CURVE: draw_curve(title, made["curve"]), RECORD: text}, "make room there")

@@ -88,7 +88,8 @@ def write_run(run: Run) -> None:
         "level_hash": level_hash(load_level(run.level, run.variant)),
         "artefact": json.loads(artefact),
     }
-    write_files(run.folder, {RUN: json.dumps(document, indent=1, ensure_ascii=False) + "\n"}, WRITABLE)
+    text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+    write_files(run.folder, {RUN: text}, WRITABLE, durable=True)
 
 
 def read_run(folder: Path) -> Run:

@@ -131,7 +131,7 @@ def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> No
     again = tltlc(*command, "--record", "none")
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names])
     mine, other = untrained(), tmp_path / "other.safetensors"
-    write_policy(other, Policy(replace(mine.card, training={"seed": 9}), mine.actor))
+    write_policy(other, Policy(replace(mine.card, training={"seed": 9}), mine.weights()))
     again = tltlc("evaluate", other, *command[2:], "--record", "none")
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names[-3:]])
     assert again.err.splitlines()[-2:] == [

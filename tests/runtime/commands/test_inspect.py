@@ -90,7 +90,7 @@ def test_a_summary_as_json_with_a_file_that_is_no_policy(tltlc, file: Path, poli
 )
 def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_path: Path, training: object) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     path = tmp_path / "bot.safetensors"
-    write_policy(path, Policy(replace(policy.card, training=training), policy.actor))
+    write_policy(path, Policy(replace(policy.card, training=training), policy.weights()))
     found: Outcome = tltlc("inspect", str(path))
     assert (found.status, found.err) == (0, "")
     assert not any(f"  {row} " in found.out for row in ("training", "kept", "ended", "search"))
@@ -104,13 +104,13 @@ def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_p
     ],
 )
 def test_how_a_training_ended(policy: Policy, training: dict[str, object], said: list[str]) -> None:
-    text = summary_text(summary(Policy(replace(policy.card, training=training), policy.actor)))
+    text = summary_text(summary(Policy(replace(policy.card, training=training), policy.weights())))
     assert all(each in text for each in said)
 
 
 def test_a_training_that_goes_on(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     write_run(run_in(tmp_path))
-    write_policy(tmp_path / POLICY, Policy(replace(policy.card, training={}), policy.actor))
+    write_policy(tmp_path / POLICY, Policy(replace(policy.card, training={}), policy.weights()))
     line = measurements(a_report(count=0, successes=0, finished=(an_episode(True),)), policy.card.fspa)
     (tmp_path / METRICS).write_text(json.dumps(line) + "\n")
     found: Outcome = tltlc("inspect", str(tmp_path))
@@ -132,7 +132,7 @@ def test_how_far_a_training_is(tltlc, tmp_path: Path) -> None:  # type: ignore[n
 
 def test_a_stranger_s_file_does_not_command_the_terminal(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     path = tmp_path / "bot.safetensors"
-    write_policy(path, Policy(replace(policy.card, level="\x1b[2Jgone\n", versions={"\x07": "\x1b"}), policy.actor))
+    write_policy(path, Policy(replace(policy.card, level="\x1b[2Jgone\n", versions={"\x07": "\x1b"}), policy.weights()))
     found: Outcome = tltlc("inspect", str(path))
     assert "  level    \ufffd[2Jgone\ufffd v0" in found.out
     assert "\x1b" not in found.out and "\x07" not in found.out

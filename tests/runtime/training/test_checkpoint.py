@@ -1,4 +1,4 @@
-"""Checkpoints in their files."""
+"""The files without which no training goes on."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 import torch
 
+from tests.runtime.training.runs import run_in
 from tltl_runtime.training.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.run import RUN, write_run
 from tltl_runtime.training.search import Searched
 from tltlc.record import replace
 
@@ -32,9 +34,9 @@ def _checkpoint() -> Checkpoint:
     )
 
 
-def test_a_checkpoint_outlasts_a_loss_of_power(
-    tmp_path: Path, checkpoint: Checkpoint, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture(name="synced")
+def _synced(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The sizes of the files that are synced."""
     sizes, sync = [], os.fsync
 
     def synced(descriptor: int) -> None:
@@ -42,10 +44,19 @@ def test_a_checkpoint_outlasts_a_loss_of_power(
         sync(descriptor)
 
     monkeypatch.setattr(os, "fsync", synced)
+    return sizes
+
+
+def test_a_checkpoint_outlasts_a_loss_of_power(tmp_path: Path, checkpoint: Checkpoint, synced: list[int]) -> None:
     write_checkpoint(path := tmp_path / "checkpoint.pt", checkpoint)
-    assert sizes[0] == path.stat().st_size
+    assert synced[0] == path.stat().st_size
     assert [each.name for each in tmp_path.iterdir()] == [path.name]
     again = read_checkpoint(path, checkpoint.run)
     assert again is not None
     assert torch.equal(again.processes[0]["cpu"], checkpoint.processes[0]["cpu"])
     assert replace(again, processes=()) == replace(checkpoint, processes=())
+
+
+def test_what_is_trained_outlasts_a_loss_of_power(tmp_path: Path, synced: list[int]) -> None:
+    write_run(run_in(tmp_path))
+    assert synced[0] == (tmp_path / RUN).stat().st_size
