@@ -61,6 +61,7 @@ ABLATIONS: Mapping[str, Ablation] = {
     "no semantic map": Ablation(options=("--no-map",)),
     "no imitation of ways": Ablation({"exploration": {"imitation": 0}}),
     "no search for ways": Ablation({"exploration": {"ways": 0}}),
+    "two threads that learn": Ablation({"threads": 2}),
 }
 
 

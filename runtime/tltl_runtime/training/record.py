@@ -89,8 +89,8 @@ def record_so_far(folder: Path) -> dict[str, Any]:
     made: dict[str, Any] = {"seed": read_run(folder).seed, "end": None}
     if measured := read_metrics(folder / METRICS):
         last = measured[-1]
-        made |= {name: last[name] for name in ("steps", "seconds") if name in last}
-        if last.get("window"):
+        made |= {name: last[name] for name in ("steps", "seconds")}
+        if last["window"]:
             made["window"] = {"episodes": last["window"], **{name: last[name] for name in OF_THE_WINDOW}}
     if checkpoint := read_checkpoint(folder / CHECKPOINT):
         best, searched = checkpoint.best, checkpoint.searched
