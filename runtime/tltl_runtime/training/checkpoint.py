@@ -20,7 +20,7 @@ from tltlc.record import record
 from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-checkpoint"
-VERSION: Final = 2
+VERSION: Final = 3
 
 
 @record

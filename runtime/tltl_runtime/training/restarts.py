@@ -20,8 +20,11 @@ _WAYS = 6
 """Of the ways with the same end, as many of the shortest are kept, each of another seed."""
 _ENDS = 8
 """Of the ends as many are kept as were found first."""
-_FRESH = 0.03
-"""How many episodes begin at the level's start in any case: one that gets nowhere lasts until the spec's limit."""
+_FRESH = 0.2, 0.97
+"""The least share of decisions in episodes that begin at the level's start, and the greatest share of such episodes.
+
+It is one of decisions since an episode that gets nowhere may last until the spec's limit, or end soon in a violation.
+"""
 _LEAST = 0.005
 """The weight of a part that teaches nothing any more: it may do so again."""
 _REACHED = 0.2
@@ -33,7 +36,7 @@ What is far from anything that was learned gives long episodes without any succe
 then learn from.
 """
 _RATE = 0.1, 0.02
-"""How fast success rates follow the episodes: those of a part, that from the level's start."""
+"""How fast success rates follow the episodes: those of a part, that from the level's start; so do mean lengths."""
 _SPARE = 1.5, 20
 """An episode may take so many times what is left of the way, and so many decisions more."""
 
@@ -43,7 +46,8 @@ class Restarts:
 
     ``ways`` has the shortest ones that are known for each end, since a spec may be met in more than one manner, and the
     shortest of all would hide the others; the agent's own successes join them.  ``rates`` has for each end the success
-    rates from each part of its ways, in [0, 1]; ``passed`` is the success rate from the level's start.
+    rates from each part of its ways, in [0, 1]; ``passed`` is the success rate from the level's start.  ``lengths`` are
+    mean decisions of the agent in an episode, of those from the level's start and of those on ways.
     """
 
     def __init__(self, parts: int, generator: np.random.Generator) -> None:
@@ -52,6 +56,7 @@ class Restarts:
         self.ways: dict[int, list[Way]] = {}
         self.rates: dict[int, NDArray[np.float64]] = {}
         self.passed = 0.0
+        self.lengths = np.full(2, 100.0)
 
     def add(self, way: Way) -> None:
         """Keep a way where it is among the shortest to its end."""
@@ -71,7 +76,7 @@ class Restarts:
     def draw(self) -> Start:
         """Where the next episode begins: the more often at the level's start, the better the agent is from there."""
         seed = int(self._random.integers(2**31))
-        if not self.ways or self._random.random() < _FRESH + (1 - 2 * _FRESH) * self._at_start():
+        if not self.ways or self._random.random() < self._fresh():
             return Start(seed)
         ends = list(self.rates)
         weights = np.concatenate([_weights(rates) for rates in self.rates.values()])
@@ -107,6 +112,8 @@ class Restarts:
         """
         of_part, from_start = _RATE
         success = end is not None
+        kind = int(start.part is not None)
+        self.lengths[kind] += from_start * (len(actions) - len(start.actions) - self.lengths[kind])
         if start.part is None:
             self.passed += from_start * (success - self.passed)
         else:
@@ -125,6 +132,7 @@ class Restarts:
             "way_actions": np.array([action for way in ways for action in way.actions], dtype=np.int8),
             "rates": np.array(list(self.rates.values())),
             "passed": np.array([self.passed]),
+            "lengths": self.lengths.copy(),
         }
 
     def load(self, state: Mapping[str, NDArray[Any]]) -> None:
@@ -136,10 +144,16 @@ class Restarts:
                 self.add(Way(int(seed), own.tolist(), int(end)))
             self.rates = dict(zip(self.rates, state["rates"].copy(), strict=True))
         self.passed = float(state["passed"][0])
+        self.lengths = state["lengths"].copy()
 
-    def _at_start(self) -> float:
-        """How well the agent does from the level's start, where it may have been seldom, or from the starts of ways."""
-        return max(self.passed, float(np.mean([rates[0] for rates in self.rates.values()])))
+    def _fresh(self) -> float:
+        """How likely the next episode begins at the level's start."""
+        share, most = _FRESH
+        from_start, on_ways = self.lengths
+        least = share / (share + (1 - share) * from_start / on_ways)
+        # From the level's start itself there may have been few episodes.
+        passed = max(self.passed, float(np.mean([rates[0] for rates in self.rates.values()])))
+        return float(least + (most - least) * passed)
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -197,6 +197,20 @@ def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
     assert drawn()[None] > 800
 
 
+@pytest.mark.parametrize("length", [30, 90, 900])
+def test_a_fifth_of_the_decisions_is_from_the_levels_start_however_long_episodes_are(length: int) -> None:
+    way = Way(1, [[0] * 5] * 80, 1)
+    restarts = restarts_of([way], 8)
+    decisions = Counter[bool]()
+    for index in range(6000):
+        start = restarts.draw()
+        taken = 40 if start.part else length
+        restarts.ended(start, [*start.actions, *[[0] * 5] * taken], None)
+        if index >= 2000:
+            decisions[start.part is None] += taken
+    assert 0.15 < decisions[True] / decisions.total() < 0.25
+
+
 def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:
     way = Way(9, [[0, 0, 0, 0, index % 2] for index in range(160)], 1)
     restarts = restarts_of([way], 16)
@@ -242,4 +256,5 @@ def test_what_is_kept_of_restarts_is_all_of_them(count: int) -> None:
         end: rates.tolist() for end, rates in restarts.rates.items()
     }
     assert again.passed == restarts.passed
+    assert again.lengths.tolist() == restarts.lengths.tolist()
     assert [again.draw() for _ in range(9)] == [restarts.draw() for _ in range(9)]
