@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import closing, nullcontext
 from pathlib import Path
 from shlex import join, quote
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -26,6 +26,10 @@ from tltlc.spec_file import split
 if TYPE_CHECKING:
     from tltl_runtime.commands.evaluation_files import EvaluationFiles
     from tltl_runtime.evaluation.player import Recorded, Result
+
+
+_MOST_NAMED: Final = 6
+"""Of the files that were removed, as many are named."""
 
 
 @click.command(
@@ -91,6 +95,9 @@ def command(
     if recorded and not folder:
         raise click.UsageError("--record needs the folder for the recordings: --out DIR")
     with Report() as report, learning_for("`tltlc evaluate`"), requests_heard():
+        from tltl_runtime.commands.level_argument import check_no_toml
+
+        check_no_toml(spec)
         from tltl_runtime.commands.evaluation_files import EvaluationFiles
         from tltl_runtime.evaluation.evaluate import results, set_up
         from tltl_runtime.evaluation.player import Task
@@ -108,7 +115,9 @@ def command(
         if name is None:
             _check_known(trained.card.level, path)
         setup = set_up(trained, name, variant, spec, seed, kept)
-        setup = replace(setup, player=f"policy {trained.card.level} {trained.card.fspa.name} {sha256[:8]}")
+        # A level's own spec is mostly called like it.
+        of = dict.fromkeys((trained.card.level, trained.card.fspa.name))
+        setup = replace(setup, player=f"policy {' '.join(of)} {sha256[:8]}")
         report.add(reach_warnings(load_level(setup.level, setup.variant), setup.fspa))
         again = _command(policy, level, spec, seed)
         files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
@@ -222,6 +231,8 @@ def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, w
     else:
         click.echo(text, nl=False)
     if files.removed:
-        click.echo(f"removed {files.removed} files of an evaluation of another policy from {folder}", err=True)
+        names = ", ".join(files.removed[:_MOST_NAMED])
+        more = f" and {count} more" if (count := len(files.removed) - _MOST_NAMED) > 0 else ""
+        click.echo(f"removed from {folder}, of an earlier evaluation: {names}{more}", err=True)
     if wrote := files.write(text):
         click.echo(f"wrote {wrote}", err=True)

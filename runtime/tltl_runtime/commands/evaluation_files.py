@@ -32,8 +32,9 @@ class EvaluationFiles:
 
     ``path`` is the policy's file, ``sha256`` that of its bytes, in hexadecimal, and ``first`` the index of the first
     episode; ``command`` evaluates the same episodes again.  ``folder``, which is made where it is missing, gets
-    recordings and pictures, ``json_file`` the report for programs; both are optional.  What an earlier evaluation of
-    another policy left in the folder is removed with the first result: ``removed`` of its files.
+    recordings and pictures, ``json_file`` the report for programs; both are optional.  The report and the pictures of
+    the ways that an earlier evaluation left in the folder are removed with the first result, and so are the recordings
+    of another policy on this level: ``removed`` has their names.
 
     Raises:
         TltlError: TLT0005, nothing can be written there; of ``add`` and ``write`` too.
@@ -56,7 +57,7 @@ class EvaluationFiles:
         self._played: dict[bool, list[Played]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         self._recorded: list[str] = []
-        self.removed = 0
+        self.removed: tuple[str, ...] = ()
         if folder is not None:
             writable_folder(folder)
         if self._json is not None:
@@ -152,12 +153,12 @@ class EvaluationFiles:
             return "note: the level has changed since the policy was trained on it\n"
         return f"note: the policy was trained on another level, {card.level} {card.variant}\n"
 
-    def _remove_older(self, folder: Path) -> int:
-        """Remove pictures of the ways, and recordings of this level that another policy played: how many files."""
+    def _remove_older(self, folder: Path) -> tuple[str, ...]:
+        """Remove what is written anew, and recordings of this level that another policy played: their names."""
         choices = "|".join(CHOICES.values())
         recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")
-        older = [folder / f"ways-{choice}.png" for choice in CHOICES.values()]
-        for path in folder.iterdir():
+        older = [folder / _REPORT, *(folder / f"ways-{choice}.png" for choice in CHOICES.values())]
+        for path in sorted(folder.iterdir()):
             if (found := recording.fullmatch(path.name)) and self._is_of_another(path):
                 older += [path, folder / f"{found[1]}.png"]
         there = [path for path in older if path.is_file()]
@@ -165,7 +166,7 @@ class EvaluationFiles:
             # One that cannot be removed harms nobody: no other takes its name.
             with suppress(OSError):
                 path.unlink()
-        return sum(not path.exists() for path in there)
+        return tuple(path.name for path in there if not path.exists())
 
     def _is_of_another(self, path: Path) -> bool:
         """Whether a file is a recording of what another policy played, which this evaluation says nothing of."""
@@ -173,7 +174,7 @@ class EvaluationFiles:
             player = read_episode(path).player
         except TltlError:
             return False
-        return player.startswith("policy ") and not player.startswith(f"{self._setup.player}, ")
+        return player.startswith("policy ") and player.partition(",")[0].split()[-1] != self._sha256[:8]
 
     @property
     def _name(self) -> str:

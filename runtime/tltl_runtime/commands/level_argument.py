@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import click
+
 from tltl_runtime.stealth.levels.file import level_names
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.spec_file import split
@@ -12,6 +14,15 @@ from tltlc.spec_file import split
 def names_level(text: str) -> bool:
     """Whether a text that could be a path is ``LEVEL`` or ``LEVEL:VARIANT`` of a level that comes with the package."""
     return not Path(text).exists() and split(text)[0] in level_names()
+
+
+def check_no_toml(spec: str | None, settings: str = "") -> None:
+    """Raise UsageError where a ``.toml`` stands for a spec: it is a level, or what the option ``settings`` takes."""
+    path = split(spec)[0] if spec else ""
+    if path.endswith(".toml"):
+        ways = [f"where it holds settings, write `{settings} {path}`"] if settings else []
+        ways.append(f"where it is a level, `--level {path}`")
+        raise click.UsageError(f"`{path}` is no spec; {', '.join(ways)}", click.get_current_context())
 
 
 def check_there(level: str, variant: str, command: str) -> None:

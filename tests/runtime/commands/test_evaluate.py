@@ -24,7 +24,7 @@ from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.shipped import shipped_policy
-from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.stealth.episodes.file import read_episode, write_episode
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.run import Run as Training
 from tltl_runtime.training.run import write_run
@@ -129,16 +129,36 @@ def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> No
     for name in kept:
         (folder / name).touch()
     again = tltlc(*command, "--record", "none")
+    assert again.err.splitlines()[-2] == (
+        f"removed from {folder}, of an earlier evaluation: evaluation.json, ways-sampled.png, ways-arg-max.png"
+    )
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names])
     mine, other = untrained(), tmp_path / "other.safetensors"
     write_policy(other, Policy(replace(mine.card, training={"seed": 9}), mine.weights()))
     again = tltlc("evaluate", other, *command[2:], "--record", "none")
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names[-3:]])
     assert again.err.splitlines()[-2:] == [
-        f"removed 10 files of an evaluation of another policy from {folder}",
+        f"removed from {folder}, of an earlier evaluation: evaluation.json, ways-sampled.png, ways-arg-max.png, "
+        "cover_and_hide-v0-5-0-arg-max.episode.npz, cover_and_hide-v0-5-0-arg-max.png, "
+        "cover_and_hide-v0-5-0-sampled.episode.npz and 5 more",
         f"wrote {folder}: no recordings, ways-sampled.png, ways-arg-max.png, evaluation.json; "
         "look at ways-sampled.png first",
     ]
+
+
+def test_a_recording_names_its_player_once(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811
+    folder = tmp_path / "runs"
+    found = tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "all")
+    assert found.status == 0, found.err
+    path = folder / "cover_and_hide-v0-0-0-sampled.episode.npz"
+    episode, sha256 = read_episode(path), json.loads((folder / "evaluation.json").read_text())["policy"]["sha256"]
+    assert episode.player == f"policy cover_and_hide {sha256[:8]}, sampled, episode 0"
+    # What this policy played stays, whatever name it had.
+    write_episode(
+        path, replace(episode, player=f"policy cover_and_hide cover_and_hide {sha256[:8]}, sampled, episode 0")
+    )
+    tltlc("evaluate", "cover_and_hide", "--episodes", "1", "--out", folder, "--record", "none")
+    assert path.exists()
 
 
 def test_recordings_need_a_folder(tltlc: Run, policy: Path) -> None:  # noqa: F811
@@ -199,6 +219,11 @@ def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status
         (("POLICY", "--workers", "many"), 2, "error[TLT0700]: invalid value for '--workers': `many` is neither"),
         (("POLICY", "--workers", "10001"), 2, "error[TLT0700]: invalid value for '--workers': `10001` is neither"),
         (("POLICY", "--episodes", "0"), 2, "error[TLT0700]"),
+        (
+            ("POLICY", "--spec", "s.toml"),
+            2,
+            "error[TLT0700]: `s.toml` is no spec; where it is a level, `--level s.toml`",
+        ),
         (("POLICY", "--json", "file/report.json"), 3, "error[TLT0005]"),
         (("POLICY", "--json", "gone/report.json"), 3, "error[TLT0005]: cannot write `gone/report.json`: there is no"),
         (("POLICY", "--out", "-"), 2, "error[TLT0700]: invalid value for '--output'"),

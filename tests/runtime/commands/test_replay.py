@@ -74,6 +74,24 @@ def test_a_summary(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-de
     assert [each.split()[1:3] for each in changes] == [["0", "0.000"], ["1", "0.250"]]
 
 
+def test_how_it_ended_is_said_once(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    write_episode("bad.episode.npz", replace(episode, end="violation", verdict="violated"))
+    assert "  end      violation, after 20 of 600 steps, 3.00 s\n" in tltlc("replay", "bad.episode.npz").out
+
+
+def test_the_end_lies_over_all_other_marks(episode: Episode) -> None:
+    def seen(drawn: Episode) -> int:
+        picture = np.asarray(Image.open(BytesIO(draw_episode(drawn))).convert("RGB"))
+        return int((picture == (0x64, 0x74, 0x8B)).all(axis=2).sum())
+
+    plain = replace(episode, end="limit")
+    *before, last = plain.snapshots
+    states = plain.states.copy()
+    states[-1] = 2
+    crowded = replace(plain, states=states, snapshots=(*before, replace(last, health=0.0)))
+    assert seen(crowded) > 0.95 * seen(plain) > 100
+
+
 def test_a_summary_for_programs(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     found: Outcome = tltlc("replay", FILE, FILE, "--format", "json", "--check")
     first, second = json.loads(found.out)

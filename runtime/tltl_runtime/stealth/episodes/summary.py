@@ -65,10 +65,11 @@ def summary(episode: Episode, notation: Notation = "english") -> dict[str, Any]:
 def summary_text(said: dict[str, Any]) -> str:
     """A summary for people."""
     limit = "" if said["limit_steps"] is None else f" of {said['limit_steps']}"
+    end = said["end"] if said["verdict"] in ("satisfied", "violated") else f"{said['end']}, {said['verdict']}"
     lines = [
         f"  level    {said['level']} {said['variant']}, spec {said['spec']}",
         column("  player   ", f"{said['player']}, seed {said['seed']}"),
-        f"  end      {said['end']}, {said['verdict']}, after {said['steps']}{limit} steps, {said['seconds']:.2f} s",
+        f"  end      {end}, after {said['steps']}{limit} steps, {said['seconds']:.2f} s",
         *([] if said["success"] else [column("  why      ", said["cause"]["text"])]),
         f"  reward   {number(said['reward'], 3)}, progress {share(said['progress'], 3)}",
         f"  health   {share(said['health'])}, in sight of an enemy for {said['seen_steps']} steps",

@@ -93,13 +93,15 @@ def draw_episode(episode: Episode, size: tuple[int, int] | None = None, notation
     _add_way(axes, path, states)
     dot = 9 * shrunk
     marks = [_mark(axes, path[0], "o", "white", "start", dot)]
-    for row in (row for row in range(1, len(states)) if states[row] != states[row - 1]):
+    # The mark of the end, which names its state, lies over all others.
+    for row in (row for row in range(1, len(states) - 1) if states[row] != states[row - 1]):
         _mark(axes, path[row], "o", state_colour(states[row]), str(states[row]), dot)
         axes.annotate(str(states[row]), path[row][:2], color="white", fontsize=6, ha="center", va="center", zorder=7)
     died = next((row for row, shot in enumerate(episode.snapshots) if shot.health <= 0.0), None)
     if died is not None:
-        marks.append(_mark(axes, path[died], "P", "#dc2626", "without health", dot))
-    marks.append(_mark(axes, path[-1], *ENDS[episode.end], f"end: {episode.end}", dot))
+        marks.append(_mark(axes, path[died], "P", "white", "without health", 1.6 * dot))
+    marks.append(_mark(axes, path[-1], *ENDS[episode.end], f"end: {episode.end}, state {states[-1]}", dot))
+    marks[-1].set_zorder(8)
     letters = int(inches[0] * LETTERS_PER_INCH / shrunk)
     lines = [
         Line2D(
