@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from shlex import quote
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 if TYPE_CHECKING:
+    from tltl_runtime.stealth.level import Sensors
+
     _Type = click.ParamType[Any]
 else:
     # Only newer versions of click have a type there.
@@ -50,6 +53,15 @@ def senses_options(command: Function) -> Function:
     for option in reversed(_OPTIONS):
         with_sensors = option(with_sensors)
     return with_sensors  # type: ignore[return-value]
+
+
+def option_of(key: str, sensors: Sensors) -> str:
+    """The option, as a shell takes it, that says of ``entities``, ``variables`` or ``map`` what these sensors have."""
+    if key == "map" and sensors.map is not None:
+        said = f"cell={sensors.map.cell:g},extent={sensors.map.extent},types={','.join(sensors.map.types)}"
+    else:
+        said = ",".join(getattr(sensors, key) or ())
+    return f"--{key} {quote(said)}" if said else f"--no-{key}"
 
 
 class _Names(_Type):

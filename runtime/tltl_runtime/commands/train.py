@@ -115,11 +115,11 @@ def command(
     if resume is not None and folder is not None:
         raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())
     with Report() as report, learning_for("`tltlc train`"), requests_heard():
-        from tltl_runtime.commands.training_run import Asked, new_run, new_settings, resumed_run
-        from tltl_runtime.stealth.levels.file import load_level
-        from tltl_runtime.stealth.supply.feasible import reach_warnings
+        from tltl_runtime.commands.level_argument import check_no_toml
+
+        check_no_toml(spec, settings="--config")
+        from tltl_runtime.commands.training_run import Asked, check_limits, new_run, new_settings, resumed_run
         from tltl_runtime.training.distributed import peers
-        from tltl_runtime.training.record import ended_as, write_record
         from tltl_runtime.training.settings import settings_text
 
         asked = Asked(spec=spec, sensors=sensors, **options)
@@ -128,10 +128,22 @@ def command(
             click.echo(settings_text(settings), nl=False)
             return exits.CLEAN
         run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
-        if resume is not None and (record := ended_as(run)):
-            if peers().rank == 0:
-                click.echo(_over(run, record))
-            return exits.CLEAN if record["end"] == "met" else exits.FINDINGS
+        if resume is not None:
+            from tltl_runtime.training.record import ended_as
+
+            if record := ended_as(run):
+                if peers().rank == 0:
+                    click.echo(_over(run, record))
+                return exits.CLEAN if record["end"] == "met" else exits.FINDINGS
+            check_limits(run)
+        if peers().rank == 0:
+            for line in _begins(run, resume=resume is not None):
+                click.echo(line, err=True)
+        # What comes now takes seconds, these imports among it.
+        from tltl_runtime.stealth.levels.file import load_level
+        from tltl_runtime.stealth.supply.feasible import reach_warnings
+        from tltl_runtime.training.record import write_record
+
         report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
         last = _train(run, resume=resume is not None)
         if peers().rank > 0:
@@ -142,6 +154,22 @@ def command(
             click.echo(line)
         return exits.CLEAN if last.stop == "met" else exits.FINDINGS
     return report.status
+
+
+def _begins(run: Run, *, resume: bool) -> Iterator[str]:
+    """What is trained and where; what becomes of the files of a training that is resumed without its checkpoint."""
+    from tltl_runtime.training.metrics import METRICS
+    from tltl_runtime.training.run import CHECKPOINT, POLICY
+
+    place = f"{Path(run.level).stem} {run.variant}"
+    yield f"training {run.fspa.name} on {place}, seed {run.seed}, in {run.folder}"
+    files = [name for name in (METRICS, POLICY) if (run.folder / name).exists()]
+    if not resume or not files or (run.folder / CHECKPOINT).exists():
+        return
+    fates = {METRICS: "what was measured is lost", POLICY: f"{POLICY} stays until there is a new one"}
+    fate = ", and ".join(fates[name] for name in files)
+    ways = "; Ctrl-C before the end of its search leaves all as it is" if run.settings.exploration.ways else ""
+    yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
 
 
 def _train(run: Run, *, resume: bool) -> Trained:
@@ -195,7 +223,7 @@ def _ended(run: Run, last: Trained) -> Iterator[str]:
 
 def _over(run: Run, record: Mapping[str, Any]) -> str:
     """What there is to say of a training that is resumed and has ended."""
-    from tltl_runtime.commands.training_text import duration
+    from tltl_runtime.commands.training_text import duration, minutes
 
     over, stop = f"the training in `{run.folder}` is over", run.settings.stop
     if record["end"] == "met":
@@ -203,7 +231,7 @@ def _over(run: Run, record: Mapping[str, Any]) -> str:
     if record["end"] == "steps":
         took, limit = f"{record['steps']:,} steps", f"{stop.steps:,}"
     else:
-        took, limit = duration(record["seconds"]), f"{stop.minutes:g} minutes"
+        took, limit = duration(record["seconds"]), minutes(stop.minutes)
     again = f"{_resume(run.folder)} --{record['end']} N"
     return f"{over}, and stays as it is: it took {took}, and its limit is {limit}; to go on, with a higher one: {again}"
 

@@ -6,7 +6,6 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from shlex import quote
 from typing import Final, Protocol
 
@@ -61,16 +60,16 @@ class _Nothing:
 
 
 class _Lines:
-    """What is trained; then a line at the first report, every ten seconds, and at the last."""
+    """A line at the first report, every ten seconds, and at the last."""
 
     def __init__(self, run: Run) -> None:
         self._run = run
         self._next = 0.0
-        self._has_begun = self._has_trained = False
+        self._has_searched = self._has_trained = False
 
     def searched(self, searched: Searched) -> None:
-        if not self._has_begun:
-            self._begin()
+        if not self._has_searched:
+            self._has_searched = True
             exploration = self._run.settings.exploration
             self._print(f"ways to meet the spec are searched first, by chance. {search_end(exploration)}", always=True)
             self._print(SEARCH_IS_LOST, always=True)
@@ -78,7 +77,6 @@ class _Lines:
         self._print(search_line(searched))
 
     def trained(self, report: Report) -> None:
-        self._begin()
         first, self._has_trained = not self._has_trained, True
         if first and report.searched:
             self._print(found_line(report.searched), always=True)
@@ -86,14 +84,6 @@ class _Lines:
             again = f"tltlc train --resume {quote(str(self._run.folder))}"
             self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {again}", always=True)
         self._print(line(report, self._run.settings.stop), always=first or report.stop is not None)
-
-    def _begin(self) -> None:
-        """Say what is trained, once it is sure that it can be."""
-        if self._has_begun:
-            return
-        self._has_begun, run = True, self._run
-        place = f"{Path(run.level).stem} {run.variant}"
-        self._print(f"training {run.fspa.name} on {place}, seed {run.seed}, in {run.folder}", always=True)
 
     def _print(self, text: str, *, always: bool = False) -> None:
         now = time.monotonic()

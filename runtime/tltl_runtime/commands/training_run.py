@@ -10,6 +10,8 @@ from typing import Any, Literal, TypeVar
 import click
 
 from tltl_runtime.commands.level_argument import check_there, names_level
+from tltl_runtime.commands.senses import option_of
+from tltl_runtime.commands.training_text import duration, minutes
 from tltl_runtime.evaluation.evaluate import check_limit
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import level_hash, spec_hash
@@ -19,8 +21,9 @@ from tltl_runtime.stealth.levels.file import level_names, level_path, load_level
 from tltl_runtime.stealth.senses.sensors import chosen
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
+from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.distributed import peers
-from tltl_runtime.training.run import MAY_CHANGE, RUN, Run, leaves, read_level_hash, read_run
+from tltl_runtime.training.run import CHECKPOINT, MAY_CHANGE, RUN, Run, leaves, read_level_hash, read_run
 from tltl_runtime.training.settings import Settings, read_settings
 from tltl_runtime.training.settings_file import read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -101,6 +104,23 @@ def resumed_run(asked: Asked, folder: Path) -> Run:
         help_ = f"leave it out to go on with `{folder}`, or begin another training with --out"
         raise TltlError([Diagnostic("TLT0870", title, help=help_) for title in different])
     return replace(run, settings=_with_limits(settings, asked))
+
+
+def check_limits(run: Run) -> None:
+    """TLT0862 where a training that is resumed gets a limit that it has passed: it would end at once, for good."""
+    stop, before = run.settings.stop, read_run(run.folder).settings.stop
+    checkpoint = None if stop == before else read_checkpoint(run.folder / CHECKPOINT)
+    if checkpoint is None:
+        return
+    passed: list[tuple[str, str]] = []
+    if stop.steps != before.steps and stop.steps <= checkpoint.steps:
+        passed.append((f"done {checkpoint.steps:,} steps", f"{stop.steps:,} steps"))
+    if stop.minutes != before.minutes and 0 < stop.minutes * 60 <= checkpoint.seconds:
+        passed.append((f"gone on for {duration(checkpoint.seconds)}", minutes(stop.minutes)))
+    if passed:
+        help_, where = "give a limit greater than that, or leave it out", f"the training in `{run.folder}`"
+        titles = [f"{where} has {done}, and a limit of {limit} would end it at once" for done, limit in passed]
+        raise TltlError([Diagnostic("TLT0862", title, help=help_) for title in titles])
 
 
 def _at_its_level(run: Run, asked: Asked) -> Run:
@@ -189,8 +209,11 @@ def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
             yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{asked.spec}`"
     if asked.seed is not None and asked.seed != run.seed:
         yield f"{where} has the seed {run.seed}, not {asked.seed}"
-    if asked.sensors and chosen(load_level(run.level, run.variant), asked.sensors) != run.sensors:
-        yield f"{where} senses something else than these options say"
+    sensors = chosen(load_level(run.level, run.variant), asked.sensors) if asked.sensors else run.sensors
+    # What no option speaks of stays the training's own, whatever the level senses.
+    for own, other in ((option_of(key, run.sensors), option_of(key, sensors)) for key in asked.sensors):
+        if own != other:
+            yield f"{where} senses as `{own}` says, not as `{other}`"
     wanted = dict(leaves(to_json(settings)))
     for path, value in leaves(to_json(run.settings)):
         if path not in MAY_CHANGE and value != wanted[path]:

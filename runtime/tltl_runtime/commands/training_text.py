@@ -63,8 +63,9 @@ def confirmation_line(number: int, confirmation: Confirmation) -> str:
 
 
 def seconds_left(report: Report, stop: Stop) -> float:
-    """Seconds until a limit ends the training, at the speed that it had so far."""
-    left = max(0.0, (stop.steps - report.steps) * report.seconds / max(report.steps, 1))
+    """Seconds until a limit ends the training, at the speed that it had after the search."""
+    trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
+    left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))
     return min(left, max(0.0, stop.minutes * 60 - report.seconds)) if stop.minutes else left
 
 
@@ -75,6 +76,11 @@ def duration(seconds: float) -> str:
         return f"{rest} s"
     hours, minutes = divmod(minutes, 60)
     return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s"
+
+
+def minutes(number: float) -> str:
+    """A limit of minutes."""
+    return f"{number:g} minute{'s' * (number != 1)}"
 
 
 def rate(report: Report) -> float:

@@ -18,6 +18,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 from tests.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
 from tests.docs.blocks import DOCS
+from tests.runtime.training.test_settings import GOLDEN
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.search import Searched
@@ -91,13 +92,14 @@ def test_a_training_that_is_over_when_it_is_resumed(tltlc: TltlcFunction, here: 
     run = ("train", EXAMPLE, "--config", "small.toml", "--out", "run")
     assert tltlc(*run).status == 1
     folder = Path("run")
-    before = (folder / "checkpoint.pt").read_bytes()
+    before, begun = (folder / "checkpoint.pt").read_bytes(), (folder / "run.json").read_bytes()
     tltlc("train", "--resume", "run", "--steps", "256")
     assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128, 192, 256]
-    # As where it was killed after its second iteration, and is given a limit that it has reached then.
+    # As where it was killed after its second iteration, with which it had reached its limit.
     (folder / "checkpoint.pt").write_bytes(before)
+    (folder / "run.json").write_bytes(begun)
     (folder / "record.json").unlink()
-    found = tltlc("train", "--resume", "run", "--steps", "128")
+    found = tltlc("train", "--resume", "run")
     assert found.status == 1
     assert "steps/s" not in found.err
     assert [line["steps"] for line in read_metrics(folder / METRICS)] == [64, 128]
@@ -105,6 +107,50 @@ def test_a_training_that_is_over_when_it_is_resumed(tltlc: TltlcFunction, here: 
     events = EventAccumulator("run")
     events.Reload()
     assert [event.step for event in events.Scalars("time/episodes")] == [64, 128]
+
+
+def test_a_limit_that_is_passed_already(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    assert tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run").status == 1
+    # As where it was broken off.
+    Path("run/record.json").unlink()
+    kept = Path("run/run.json").read_bytes()
+    for limit in ("--steps", "127"), ("--minutes", "0.0001"):
+        found = tltlc("train", "--resume", "run", *limit)
+        assert (found.status, found.out) == (1, "")
+        said = re.sub(r"\d+ s,", "S s,", found.err)
+        assert said == (GOLDEN / f"TLT0862_{limit[0][2:]}.txt").read_text(encoding="utf-8")
+    assert Path("run/run.json").read_bytes() == kept
+    on = tltlc("train", "--resume", "run", "--steps", "129", "--minutes", "60")
+    assert "ended by the limit of steps after 192 steps" in on.out, on.err
+    over = tltlc("train", "--resume", "run", "--steps", "999", "--minutes", "0.001")
+    assert "its limit is 0.001 minutes; to go on" in over.out
+
+
+def test_a_checkpoint_that_is_missing(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    assert tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run").status == 1
+    Path("run/checkpoint.pt").unlink()
+    Path("run/record.json").unlink()
+    found = tltlc("train", "--resume", "run")
+    assert found.err.splitlines()[:2] == [
+        "training cover_and_hide on cover_and_hide v0, seed 0, in run",
+        "there is no checkpoint.pt in run: the training begins anew, what was measured is lost, "
+        "and policy.safetensors stays until there is a new one",
+    ]
+    assert [line["steps"] for line in read_metrics(Path("run") / METRICS)] == [64, 128]
+
+
+def test_senses_that_differ_are_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    begun = ("--no-map", "--entities", "s1,exit", "--variables", "health")
+    assert tltlc("train", EXAMPLE, "--config", "small.toml", "--steps", "64", "--out", "it", *begun).status == 1
+    others = ("--map", "cell=1,types=wall,low", "--entities", "s1", "--variables", "distance(exit)")
+    other = tltlc("train", "--resume", "it", *others)
+    assert re.findall(r"^error\[TLT0870\]: the training in `it` senses as (.*)$", other.err, re.MULTILINE) == [
+        "`--entities s1,exit` says, not as `--entities s1`",
+        "`--variables health` says, not as `--variables 'distance(exit)'`",
+        "`--no-map` says, not as `--map cell=1,extent=15,types=wall,low`",
+    ]
+    # What is left out agrees.
+    assert tltlc("train", "--resume", "it", "--no-map", "--steps", "128").status == 1
 
 
 def test_a_training_that_has_ended_stays_as_it_is(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -185,6 +231,7 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction, here: Path) -> None: 
     assert again == Outcome(
         1,
         "",
+        "training soon on cover_and_hide v0, seed 0, in it\n"
         "error[TLT0867]: `it` holds a training already\n"
         "  help: go on with it by `tltlc train --resume it`, or name another place with --out\n",
     )
@@ -197,7 +244,7 @@ def test_a_folder_holds_one_training(tltlc: TltlcFunction, here: Path) -> None: 
         "is on the level `cover_and_hide:v0`, not on `navigation:v1`",
         f"is for the spec `soon`, not for `cover_and_hide` of `{EXAMPLE}`",
         "has the seed 0, not 9",
-        "senses something else than these options say",
+        "senses as `--entities s1,s2,exit,guard` says, not as `--no-entities`",
         "has another `network.hidden` than `big.toml`",
     ]
     assert other.err.count("help: leave it out to go on with `it`, or begin another training with --out") == 5
@@ -242,6 +289,11 @@ def test_a_training_goes_into_no_folder_of_other_files(tltlc: TltlcFunction, her
         (["soon.tltl", "--entities", "s9"], 2, "the level `cover_and_hide` has no entity `s9`"),
         (["soon.tltl", "--config", "large.toml"], 1, "`network` gives a policy of 70 MiB, and a file of one has 64"),
         (["soon.tltl", "--config", "gone.toml"], 3, "cannot read `gone.toml`"),
+        (
+            ["small.toml"],
+            2,
+            "`small.toml` is no spec; where it holds settings, write `--config small.toml`, where it is a",
+        ),
         (["--resume", "gone"], 1, "`gone` cannot be resumed from: there is no training in it"),
         (["vault.tltl"], 2, "there is no level `vault`: `vault.toml` is not there, and none of that name comes with"),
         (["--resume", "gone", "--out", "there"], 2, "--resume goes on in its own folder"),
@@ -280,7 +332,9 @@ def test_a_file_of_settings_changes_what_it_says_and_nothing_else(tltlc: TltlcFu
 def test_what_nobody_can_do_is_said_before_it_is_tried(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     Path("far.tltl").write_text("import spatial\nentity exit\nspec far { limit 5 steps\n reach near(exit) }")
     found = tltlc("train", "far.tltl", "--level", "navigation:v2", "--config", "small.toml", "--steps", "64")
-    assert found.err.startswith("warning[TLT0814]: nobody reaches `exit` in `navigation:v2`")
+    first, warned = found.err.splitlines()[:2]
+    assert first == "training far on navigation v2, seed 0, in training/navigation-v2-far-0"
+    assert warned.startswith("warning[TLT0814]: nobody reaches `exit` in `navigation:v2`")
 
 
 def test_the_level_beside_the_spec_comes_first(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811

@@ -54,6 +54,14 @@ def test_the_nearer_limit_counts(stop: Stop) -> None:
     assert seconds_left(report, replace(stop, steps=1, minutes=9.0)) == 0.0
 
 
+def test_the_time_that_is_left_is_that_of_the_training_without_its_search(stop: Stop) -> None:
+    report, searched = a_report(10), Searched(6400, 3200, 600.0, 1200, (80,), complete=True)
+    after = replace(report, seconds=report.seconds + 600.0, searched=searched)
+    assert seconds_left(after, stop) == pytest.approx(seconds_left(report, stop))
+    # Those of the search count for the limit of minutes.
+    assert seconds_left(after, replace(stop, minutes=11.0)) == pytest.approx(40.0)
+
+
 def test_a_line_of_a_confirmation(stop: Stop) -> None:
     assert confirmation_line(92, Confirmation(100, 100)) == "confirmed: the policy met it in 100 fresh episodes, too"
     refused = a_report(92, confirmation=Confirmation(12, 100))

@@ -100,6 +100,15 @@ def test_the_file_of_defaults_has_every_setting_and_no_other() -> None:
     assert {name for name in get_type_hints(Settings) if name not in KINDS} == set(KINDS[""])
 
 
+def test_the_words_on_settings_are_true_of_other_values_too(tmp_path: Path) -> None:
+    said = settings_text(_read(tmp_path, '[ppo]\nentropy_schedule = "fixed"\n'))
+    assert "with their defaults" not in said
+    schedule = (
+        'entropy_schedule = "fixed"          # of that weight: "fading" as the pass rate rises, to nothing at 1, or'
+    )
+    assert f'{schedule} "fixed"' in said.splitlines()
+
+
 def test_the_default_network_is_that_of_policies() -> None:
     assert read_settings().network == Network()
 
