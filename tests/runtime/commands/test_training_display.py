@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.training.reports import a_report
-from tltl_runtime.commands.training_text import confirmation_line, duration, found_line, line, search_line, seconds_left
+from tltl_runtime.commands.training_text import (
+    confirmation_line,
+    duration,
+    found_line,
+    line,
+    minutes,
+    search_line,
+    seconds_left,
+)
 from tltl_runtime.training.report import Confirmation
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Stop, read_settings
@@ -74,3 +82,7 @@ def test_a_line_of_a_confirmation(stop: Stop) -> None:
 )
 def test_spans_of_time(seconds: float, said: str) -> None:
     assert duration(seconds) == said
+
+
+def test_limits_of_minutes() -> None:
+    assert [minutes(each) for each in (0.5, 1.0, 30.0)] == ["0.5 minutes", "1 minute", "30 minutes"]
