@@ -69,7 +69,7 @@ def end_of(infos: Mapping[str, Any], row: int) -> int:
 class Searched:
     """How far a search is: decisions (those played again apart), places that were reached, lengths of the ways.
 
-    It is ``complete`` where it ended by its own rule.
+    It is ``complete`` where it ended by its own rule.  In ``seconds`` are those of one before that a limit broke off.
     """
 
     steps: int

@@ -112,8 +112,9 @@ class _Training:
             met=False,
         )
         if searched:
-            # Of one that a limit had broken off, the seconds count, too.
             seconds = own.broadcast(self._state.seconds + searched.seconds)
+            if before := self._state.searched:
+                searched = replace(searched, seconds=before.seconds + searched.seconds)
             self._state = replace(self._state, searched=searched, seconds=seconds)
         if searched or begun is None:
             self._state = replace(self._state, processes=tuple(own.gather(_own(runner))))

@@ -497,13 +497,15 @@ def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypa
 
     changes = {"exploration__ways": 10, "exploration__steps": 4000}
     run = run_in(folder / "found", **changes, stop__minutes=0.005)
-    list(train(run))
+    (first,) = train(run)
+    assert first.searched is not None
     monkeypatch.setattr(Runner, "iterations", stopped)
     with pytest.raises(KeyboardInterrupt):
         next(train(replace(run, settings=run_in(folder, **changes).settings), resume=True))
     searched = _checkpoint(run).searched
     assert searched is not None
     assert (searched.complete, searched.steps) == (True, 4000)
+    assert searched.seconds > first.searched.seconds + 0.3
 
 
 @pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])
