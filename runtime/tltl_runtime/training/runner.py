@@ -51,6 +51,10 @@ class Runner(OnPolicyRunner):
     ) -> None:
         with redirect_stdout(io.StringIO()):
             super().__init__(env, train_cfg, log_dir, device)
+        if not self.is_distributed:
+            # Convolutions of small maps take two thirds of the time so; rsl-rl cannot average such gradients.
+            for model in (self.alg.actor, self.alg.critic):
+                model.to(memory_format=torch.channels_last)
         for group in self.alg.optimizer.param_groups:
             if "fused" in group:
                 # The same steps in a tenth of the time.

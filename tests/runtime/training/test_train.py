@@ -19,7 +19,7 @@ from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
-from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.checkpoint import VERSION, Checkpoint, read_checkpoint, write_checkpoint
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.record import write_record
@@ -334,7 +334,7 @@ def _other_settings(run: Run) -> Run:
 
 def _newer(run: Run) -> Run:
     content = torch.load(run.folder / CHECKPOINT, weights_only=True)
-    torch.save({**content, "version": 3}, run.folder / CHECKPOINT)
+    torch.save({**content, "version": VERSION + 1}, run.folder / CHECKPOINT)
     return run
 
 
@@ -508,16 +508,17 @@ def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypa
     assert searched.seconds > first.searched.seconds + 0.3
 
 
-@pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])
-def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str, last: float) -> None:
-    run = run_in(
-        folder / schedule, ppo__entropy_schedule=schedule, classes__runner="tests.runtime.training.runs:Weighing"
-    )
+@pytest.mark.parametrize(
+    ("bonus", "rate", "last"), [("fading", "fixed", (0.0084, 3e-4)), ("fixed", "fading", (0.01, 2.568e-4))]
+)
+def test_what_fades_as_the_spec_is_met(folder: Path, bonus: str, rate: str, last: tuple[float, float]) -> None:
+    schedules = {"ppo__entropy_schedule": bonus, "ppo__learning_rate_schedule": rate}
+    run = run_in(folder / bonus, **schedules, classes__runner="tests.runtime.training.runs:Weighing")
     first, *_, report = train(_judged_by(run, SOON))
     assert report.window.pass_rate == 1.0
     # A success in each of a few episodes says little: the windows have a hundred.
-    assert first.iteration.losses["weight"] == 0.01
-    assert report.iteration.losses["weight"] == pytest.approx(last)
+    assert first.iteration.losses == {"weight": 0.01, "rate": 3e-4}
+    assert tuple(report.iteration.losses.values()) == pytest.approx(last)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as other systems do")
