@@ -29,7 +29,6 @@ class Ppo:
     learning_rate: float
     entropy: float
     entropy_schedule: Literal["fading", "fixed"]
-    learning_rate_schedule: Literal["fading", "fixed"]
     clip: float
     lam: float
     gamma: float
@@ -170,7 +169,7 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
             "entropy_coef": ppo.entropy,
             "learning_rate": ppo.learning_rate,
             "max_grad_norm": ppo.max_gradient,
-            # It fades by the pass rate, or not at all: `adaptive` would choose another by the policy's change.
+            # The paper's learning rate stays as it is: `adaptive` would choose another.
             "schedule": "fixed",
             "desired_kl": None,
             "rnd_cfg": None,

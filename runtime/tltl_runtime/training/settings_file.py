@@ -109,7 +109,6 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "learning_rate": Number(0.0, 1.0, open=True),
         "entropy": Number(0.0, 10.0),
         "entropy_schedule": OneOf(("fading", "fixed")),
-        "learning_rate_schedule": OneOf(("fading", "fixed")),
         "clip": Number(0.0, 10.0, open=True),
         "lam": Number(0.0, 1.0),
         "gamma": Number(0.0, 1.0, open=True),

@@ -93,7 +93,7 @@ class _Training:
             runner.alg.load(begun.algorithm, None, strict=True)
             runner.current_learning_iteration = begun.iteration
             self._windows.load(begun.window, begun.unbroken)
-            self._fade()
+            self._fade_entropy()
             if own.rank < len(begun.processes):
                 _set_own(begun.processes[own.rank], runner)
         self._state = begun or Checkpoint(
@@ -165,7 +165,7 @@ class _Training:
         finished = tuple(each for each in by_turns if each)
         iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
         self._windows.add(finished)
-        self._fade()
+        self._fade_entropy()
         best = self._best() if finished else self._state.best
         confirmation = self._confirmation(best, iteration.number) if best and self._windows.met else None
         if confirmation and not confirmation.passed:
@@ -202,17 +202,12 @@ class _Training:
             self._save()
         return report
 
-    def _fade(self) -> None:
-        """The more often the spec is met, the less is tried and changed: the weight of the entropy bonus goes to
-        nothing, and the learning rate to a tenth.
-        """
+    def _fade_entropy(self) -> None:
+        """Weigh the entropy bonus the less, the more often the spec is met: then there is less to try."""
         ppo, stop = self._run.settings.ppo, self._stop
-        met = self._windows.window.successes / (stop.windows * stop.episodes)
         if ppo.entropy_schedule == "fading":
+            met = self._windows.window.successes / (stop.windows * stop.episodes)
             self._runner.alg.entropy_coef = ppo.entropy * (1 - met)
-        if ppo.learning_rate_schedule == "fading":
-            for group in self._runner.alg.optimizer.param_groups:
-                group["lr"] = ppo.learning_rate * (1 - 0.9 * met)
 
     def _best(self) -> Best | None:
         """The best policy so far: that which played the end of the last window, where none before did better."""

@@ -88,12 +88,11 @@ class Failing(Runner):
 
 
 class Weighing(Runner):
-    """A runner that tells the weight of the entropy bonus and the learning rate in place of the losses."""
+    """A runner that tells the weight of the bonus for undecided actions among the losses."""
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
-            (rate,) = (group["lr"] for group in self.alg.optimizer.param_groups)
-            yield replace(iteration, losses={"weight": self.alg.entropy_coef, "rate": rate})
+            yield replace(iteration, losses={"weight": self.alg.entropy_coef})
 
 
 def _say(**values: Any) -> None:

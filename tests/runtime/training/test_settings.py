@@ -36,7 +36,6 @@ checkpoint_s = 0.5
 learning_rate = 1e-5
 entropy = 0.0
 entropy_schedule = "fixed"
-learning_rate_schedule = "fixed"
 clip = 0.3
 lam = 0.9
 gamma = 0.5

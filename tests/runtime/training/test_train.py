@@ -508,17 +508,16 @@ def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypa
     assert searched.seconds > first.searched.seconds + 0.3
 
 
-@pytest.mark.parametrize(
-    ("bonus", "rate", "last"), [("fading", "fixed", (0.0084, 3e-4)), ("fixed", "fading", (0.01, 2.568e-4))]
-)
-def test_what_fades_as_the_spec_is_met(folder: Path, bonus: str, rate: str, last: tuple[float, float]) -> None:
-    schedules = {"ppo__entropy_schedule": bonus, "ppo__learning_rate_schedule": rate}
-    run = run_in(folder / bonus, **schedules, classes__runner="tests.runtime.training.runs:Weighing")
+@pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])
+def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str, last: float) -> None:
+    run = run_in(
+        folder / schedule, ppo__entropy_schedule=schedule, classes__runner="tests.runtime.training.runs:Weighing"
+    )
     first, *_, report = train(_judged_by(run, SOON))
     assert report.window.pass_rate == 1.0
     # A success in each of a few episodes says little: the windows have a hundred.
-    assert first.iteration.losses == {"weight": 0.01, "rate": 3e-4}
-    assert tuple(report.iteration.losses.values()) == pytest.approx(last)
+    assert first.iteration.losses["weight"] == 0.01
+    assert report.iteration.losses["weight"] == pytest.approx(last)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as other systems do")
