@@ -41,7 +41,7 @@ SOURCE = ".source.json"
 """Behind the name of a training's folder, beside it: the code with which it was begun, or resumed for the last time."""
 
 Settings = Mapping[str, Mapping[str, str | int]]
-"""Settings of a training that differ from the defaults, by table and key."""
+"""Settings of a training that differ from the defaults, by table and key; those of no table are under ""."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ ABLATIONS: Mapping[str, Ablation] = {
     "no semantic map": Ablation(options=("--no-map",)),
     "no imitation of ways": Ablation({"exploration": {"imitation": 0}}),
     "no search for ways": Ablation({"exploration": {"ways": 0}}),
-    "two threads that learn": Ablation({"threads": 2}),
+    "two threads that learn": Ablation({"": {"threads": 2}}),
 }
 
 
@@ -235,7 +235,8 @@ def settings_text(*settings: Settings) -> str:
         for table, values in each.items():
             merged.setdefault(table, {}).update(values)
     lines = {table: [f"{key} = {json.dumps(value)}\n" for key, value in merged[table].items()] for table in merged}
-    return "".join(f"[{table}]\n{''.join(lines[table])}" for table in lines)
+    # TOML has those of no table before all tables.
+    return "".join((f"[{table}]\n" if table else "") + "".join(lines[table]) for table in sorted(lines, key=bool))
 
 
 def _tltlc(*arguments: object) -> int:

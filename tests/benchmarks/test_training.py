@@ -97,6 +97,20 @@ def test_settings_of_the_plan_and_of_an_ablation_come_together() -> None:
     assert text == ('[rollout]\nenvs = 4\nsteps = 32\n[exploration]\nsteps = 64\nways = 0\n[reward]\nmode = "edge"\n')
 
 
+@pytest.mark.parametrize("name", training.ABLATIONS)
+def test_the_settings_of_an_ablation_are_ones_that_a_training_takes(name: str, tmp_path: Path) -> None:
+    for package in training.NEEDED:
+        pytest.importorskip(package)
+    from tltl_runtime.training.settings import read_settings
+
+    ablation = training.ABLATIONS[name]
+    (tmp_path / "settings.toml").write_text(training.settings_text(training.QUICK.settings, ablation.settings))
+    changed = read_settings(tmp_path / "settings.toml")
+    assert changed.rollout.envs == 4
+    (tmp_path / "settings.toml").write_text(training.settings_text(training.QUICK.settings))
+    assert (changed == read_settings(tmp_path / "settings.toml")) == (not ablation.settings)
+
+
 def test_what_is_missed_is_named() -> None:
     records = {"navigation 1": trained(1.0, 12.0), "branching 2": trained(0.95, 30.1, "minutes")}
     first, speed, share = training_report.goals(records)

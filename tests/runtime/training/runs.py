@@ -16,7 +16,8 @@ from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
-from tltl_runtime.training.run import Run
+from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint
+from tltl_runtime.training.run import CHECKPOINT, Run, identity
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.settings import read_settings
 from tltl_runtime.training.train import train
@@ -48,6 +49,13 @@ def run_in(folder: Path, spec: str | None = None, **changes: Any) -> Run:
         else:
             settings = replace(settings, **{key: value})
     return Run(folder, task.fspa, task.params, "cover_and_hide", "v0", level.sensors, settings, 3)
+
+
+def checkpoint_of(run: Run) -> Checkpoint:
+    """The checkpoint that a training has left."""
+    checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
+    assert checkpoint is not None
+    return checkpoint
 
 
 class Telling(Runner):

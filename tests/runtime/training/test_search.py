@@ -123,21 +123,16 @@ def test_an_episode_that_was_prepared_meanwhile_is_the_same(prepared: int) -> No
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills a process as other systems do")
-def test_a_lost_worker_is_told_with_the_seeds_that_episodes_began_with(env: WorkerVectorEnv) -> None:
-    starts = iter([Start(seed, [[0] * 5] * 3) for seed in range(10, 18)])
-    episodes = Episodes(env, lambda: next(starts))
-    episodes.step(np.zeros((4, 5), dtype=np.int64))
-    (worker,) = env.worker_pids
-    assert worker is not None
-    os.kill(worker, signal.SIGKILL)
-    with pytest.raises(WorkerError) as found:
-        episodes.step(np.zeros((4, 5), dtype=np.int64))
-    told = [(each.env, each.seed, each.episode, each.step) for each in found.value.playing]
-    assert told == [(row, 10 + row, 1, 5) for row in range(4)]
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="kills a process as other systems do")
-def test_a_worker_that_is_lost_while_others_begin_is_told_with_their_seeds(env: WorkerVectorEnv) -> None:
+@pytest.mark.parametrize(
+    ("begun", "told"),
+    [
+        ([], [(0, 10, 1, 5), (1, 11, 1, 5), (2, 12, 1, 5), (3, 13, 1, 5)]),
+        ([0, 3], [(0, 14, 1, 3), (1, 11, 1, 4), (2, 12, 1, 4), (3, 17, 1, 3)]),
+    ],
+)
+def test_a_lost_worker_is_told_with_the_seeds_that_episodes_began_with(
+    env: WorkerVectorEnv, begun: list[int], told: list[tuple[int, ...]]
+) -> None:
     starts = iter([Start(seed, [[0] * 5] * 3) for seed in range(10, 20)])
     episodes = Episodes(env, lambda: next(starts))
     episodes.step(np.zeros((4, 5), dtype=np.int64))
@@ -145,9 +140,9 @@ def test_a_worker_that_is_lost_while_others_begin_is_told_with_their_seeds(env: 
     assert worker is not None
     os.kill(worker, signal.SIGKILL)
     with pytest.raises(WorkerError) as found:
-        episodes.cut(np.array([True, False, False, True]))
-    told = [(each.env, each.seed, each.episode, each.step) for each in found.value.playing]
-    assert told == [(0, 14, 1, 3), (1, 11, 1, 4), (2, 12, 1, 4), (3, 17, 1, 3)]
+        # It is lost in a step, or where some are to begin anew.
+        episodes.cut(np.isin(range(4), begun)) if begun else episodes.step(np.zeros((4, 5), dtype=np.int64))
+    assert [(each.env, each.seed, each.episode, each.step) for each in found.value.playing] == told
 
 
 def test_a_place_counts_once(env: WorkerVectorEnv) -> None:

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import torch
 
-from tests.runtime.training.runs import run_in
+from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import OTHER, compare
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
-from tltl_runtime.training.checkpoint import VERSION, Checkpoint, read_checkpoint, write_checkpoint
-from tltl_runtime.training.folder import held
+from tltl_runtime.training.checkpoint import Checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.record import write_record
 from tltl_runtime.training.report import Confirmation, Report
@@ -51,30 +49,12 @@ CHANCE = "import stealth\nspec chance { level cover_and_hide\n limit 2 steps\n a
 """A spec that an agent that has learned nothing meets in one of four episodes or so."""
 
 
-@pytest.fixture(name="folder", scope="module")
-def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("trainings")
-
-
-@pytest.fixture(name="whole", scope="module")
-def _whole(folder: Path) -> tuple[Run, list[Report]]:
-    """A training of three iterations."""
-    run = run_in(folder / "whole")
-    return run, list(train(run))
-
-
 def _numbers(reports: list[Report]) -> list[Any]:
     return [(each.iteration.number, each.iteration.losses, each.steps, each.window) for each in reports]
 
 
-def _checkpoint(run: Run) -> Checkpoint:
-    checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
-    assert checkpoint is not None
-    return checkpoint
-
-
 def _assert_equal_weights(one: Run, other: Run) -> None:
-    first, second = _checkpoint(one).algorithm, _checkpoint(other).algorithm
+    first, second = checkpoint_of(one).algorithm, checkpoint_of(other).algorithm
     for part in ("actor_state_dict", "critic_state_dict"):
         assert first[part].keys() == second[part].keys()
         assert all(torch.equal(first[part][name], second[part][name]) for name in first[part])
@@ -129,7 +109,7 @@ def test_a_training_that_is_left_goes_on_after_its_last_iteration(folder: Path) 
     assert not next(reports).checkpointed
     next(reports)
     reports.close()
-    assert (_checkpoint(run).iteration, _checkpoint(run).steps) == (2, 128)
+    assert (checkpoint_of(run).iteration, checkpoint_of(run).steps) == (2, 128)
     # What a process that was killed had measured beyond its checkpoint is measured again.
     beyond = {**read_metrics(run.folder / METRICS)[-1], "iteration": 3}
     with (run.folder / METRICS).open("a") as file:
@@ -149,7 +129,7 @@ def test_a_lower_limit_ends_a_training_with_a_policy(folder: Path) -> None:
     assert not (run.folder / POLICY).exists()
     (last,) = train(replace(run, settings=run_in(folder, stop__steps=64).settings), resume=True)
     assert (last.steps, last.stop) == (64, "steps")
-    weights, now = read_policy(run.folder / POLICY).weights(), _checkpoint(run).algorithm["actor_state_dict"]
+    weights, now = read_policy(run.folder / POLICY).weights(), checkpoint_of(run).algorithm["actor_state_dict"]
     assert all(torch.equal(weights[name], now[name].to(torch.float16)) for name in now)
 
 
@@ -170,7 +150,7 @@ def test_a_training_that_is_broken_off_while_it_saves_saves_again(
     monkeypatch.setattr("tltl_runtime.training.train.write_checkpoint", broken_off)
     with pytest.raises(KeyboardInterrupt):
         next(reports)
-    assert _checkpoint(run).iteration == 2
+    assert checkpoint_of(run).iteration == 2
 
 
 def test_a_training_goes_on_until_its_policy_is_confirmed(folder: Path) -> None:
@@ -229,7 +209,7 @@ def test_a_training_that_was_resumed_begins_on_the_ways_that_it_knew(folder: Pat
     assert first[-1].searched is not None
     assert first[-1].searched.lengths[:2] == (8, 8)
     assert first[-1].replayed > 0
-    kept = _checkpoint(run).processes[0]
+    kept = checkpoint_of(run).processes[0]
     assert kept["way_lengths"].tolist() == [8] * len(kept["way_seeds"])
     shutil.copytree(run.folder, folder / "ways-2")
     resumed = [list(train(run_of(name, 256), resume=True)) for name in ("ways", "ways-2")]
@@ -237,7 +217,7 @@ def test_a_training_that_was_resumed_begins_on_the_ways_that_it_knew(folder: Pat
     assert [each.iteration.number for each in resumed[0]] == [3, 4]
     assert resumed[0][-1].searched == first[-1].searched
     assert resumed[0][-1].replayed == resumed[1][-1].replayed > first[-1].replayed
-    assert {*kept["way_seeds"].tolist()} <= {*_checkpoint(run).processes[0]["way_seeds"].tolist()}
+    assert {*kept["way_seeds"].tolist()} <= {*checkpoint_of(run).processes[0]["way_seeds"].tolist()}
 
 
 def test_the_best_policy_is_the_one_that_played_the_end_of_its_window(folder: Path) -> None:
@@ -247,7 +227,7 @@ def test_the_best_policy_is_the_one_that_played_the_end_of_its_window(folder: Pa
     report = next(report for report in reports if report.best_pass_rate is not None)
     reports.close()
     assert report.window.count
-    checkpoint = _checkpoint(run)
+    checkpoint = checkpoint_of(run)
     assert checkpoint.best is not None
     assert checkpoint.best.score[0] == report.best_pass_rate
     weights = read_policy(run.folder / POLICY).weights()
@@ -287,190 +267,6 @@ def test_a_checkpoint_depends_on_all_settings_but_those_that_may_change(folder: 
         assert (identity(changed) == identity(run)) == (name in MAY_CHANGE), name
 
 
-# --- what is refused --------------------------------------------------------------------------------
-
-
-@pytest.fixture(name="copy")
-def _copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, whole: tuple[Run, list[Report]]) -> Iterator[Run]:
-    """A copy of the whole training, in the folder `run`."""
-    shutil.copytree(whole[0].folder, tmp_path / "run")
-    monkeypatch.chdir(tmp_path)
-    return replace(whole[0], folder=Path("run"))
-
-
-def _torn(run: Run) -> Run:
-    data = (run.folder / CHECKPOINT).read_bytes()
-    (run.folder / CHECKPOINT).write_bytes(data[: len(data) // 2])
-    return run
-
-
-def _flipped(run: Run) -> Run:
-    data = bytearray((run.folder / CHECKPOINT).read_bytes())
-    data[len(data) // 2] ^= 1
-    (run.folder / CHECKPOINT).write_bytes(data)
-    return run
-
-
-class _Harmful:
-    def __reduce__(self) -> tuple[Callable[[str], object], tuple[str]]:
-        return Path, ("harm",)
-
-
-def _harmful(run: Run) -> Run:
-    torch.save({"format": "tltl-checkpoint", "version": 1, "run": _Harmful()}, run.folder / CHECKPOINT)
-    return run
-
-
-def _other_seed(run: Run) -> Run:
-    return replace(run, seed=4)
-
-
-def _other_settings(run: Run) -> Run:
-    """As of a version that took the hash of its settings otherwise."""
-    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
-    torch.save({**content, "run": {**content["run"], "settings": "0" * 64}}, run.folder / CHECKPOINT)
-    return run
-
-
-def _newer(run: Run) -> Run:
-    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
-    torch.save({**content, "version": VERSION + 1}, run.folder / CHECKPOINT)
-    return run
-
-
-def _partial(run: Run) -> Run:
-    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
-    del content["window"]
-    torch.save(content, run.folder / CHECKPOINT)
-    return run
-
-
-@pytest.mark.parametrize(
-    ("name", "change"),
-    [
-        ("TLT0864", _torn),
-        ("TLT0864_flipped", _flipped),
-        ("TLT0864_harmful", _harmful),
-        ("TLT0864_seed", _other_seed),
-        ("TLT0864_settings", _other_settings),
-        ("TLT0864_newer", _newer),
-        ("TLT0864_partial", _partial),
-    ],
-)
-def test_a_checkpoint_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Run], Run]) -> None:
-    with pytest.raises(TltlError) as caught:
-        next(train(change(copy), resume=True))
-    compare(name, caught.value)
-
-
-def test_without_a_checkpoint_a_training_begins_anew(copy: Run) -> None:
-    (copy.folder / CHECKPOINT).unlink()
-    assert next(train(copy, resume=True)).iteration.number == 1
-
-
-def test_a_new_training_writes_over_no_other(copy: Run) -> None:
-    with pytest.raises(TltlError) as caught:
-        next(train(copy))
-    compare("TLT0867", caught.value)
-
-
-def test_two_trainings_in_one_folder_are_refused(copy: Run) -> None:
-    with held(copy.folder), pytest.raises(TltlError) as caught:
-        next(train(copy, resume=True))
-    compare("TLT0865", caught.value)
-
-
-def test_a_folder_that_cannot_be_written_to_is_resumed_from_nowhere_else(copy: Run) -> None:
-    (copy.folder / ".lock").unlink()
-    (copy.folder / ".lock").mkdir()
-    with pytest.raises(TltlError) as caught:
-        next(train(copy, resume=True))
-    compare("TLT0005_resumed", caught.value)
-
-
-def _with_ppo(document: Any, **changes: Any) -> Any:
-    """The description with other settings of PPO, without those that are None."""
-    ppo = {name: each for name, each in {**document["settings"]["ppo"], **changes}.items() if each is not None}
-    return {**document, "settings": {**document["settings"], "ppo": ppo}}
-
-
-@pytest.mark.parametrize(
-    ("name", "change"),
-    [
-        ("TLT0863", lambda document: None),
-        ("TLT0863_other", lambda document: []),
-        ("TLT0863_key", lambda document: {name: each for name, each in document.items() if name != "seed"}),
-        ("TLT0863_value", lambda document: _with_ppo(document, epochs="three")),
-        ("TLT0863_older", lambda document: _with_ppo(document, entropy_schedule=None)),
-        ("TLT0863_gone", lambda document: _with_ppo(document, momentum=0.9)),
-    ],
-)
-def test_a_description_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Any], Any]) -> None:
-    path = copy.folder / RUN
-    changed = change(json.loads(path.read_text()))
-    path.write_text("{" if changed is None else json.dumps(changed))
-    with pytest.raises(TltlError) as caught:
-        read_run(copy.folder)
-    compare(name, caught.value)
-
-
-@pytest.mark.parametrize(
-    ("name", "changes"),
-    [
-        ("TLT0862_module", {"classes__runner": "nowhere:Runner"}),
-        ("TLT0862_class", {"classes__algorithm": "MLPModel"}),
-        ("TLT0862_device", {"device": "cuda:31"}),
-    ],
-)
-def test_what_there_is_not_is_said_before_anything_is_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, changes: dict[str, Any]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(TltlError) as caught:
-        next(train(run_in(Path("run"), **changes)))
-    compare(name, caught.value)
-    assert not Path("run", RUN).exists()
-
-
-@pytest.mark.parametrize(("name", "device"), [("TLT0862_one_device", "cuda:0"), ("TLT0862_devices", "cuda")])
-def test_processes_of_torchrun_take_a_device_each(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, device: str
-) -> None:
-    for variable, value in (("WORLD_SIZE", 128), ("LOCAL_WORLD_SIZE", 64), ("RANK", 0), ("LOCAL_RANK", 0)):
-        monkeypatch.setenv(variable, str(value))
-    with pytest.raises(TltlError) as caught:
-        next(train(run_in(tmp_path / "run", device=device)))
-    if not torch.cuda.is_available():
-        compare(name, caught.value)
-    assert not (tmp_path / "run").exists()
-
-
-def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) -> None:
-    run = run_in(folder / "diverged", classes__runner="tests.runtime.training.runs:Diverging")
-    with pytest.raises(TltlError) as caught:
-        list(train(run))
-    compare("TLT0866", caught.value)
-    assert _checkpoint(run).iteration == 1
-
-
-def test_an_environment_that_gives_no_numbers_ends_the_training(folder: Path) -> None:
-    run = run_in(folder / "failing", classes__runner="tests.runtime.training.runs:Failing")
-    with pytest.raises(TltlError) as caught:
-        list(train(run))
-    (diagnostic,) = caught.value.diagnostics
-    assert diagnostic.code == "TLT0854"
-    assert diagnostic.title.startswith("iteration 2: The observation group 'entities'")
-    assert _checkpoint(run).iteration == 1
-
-
-def test_a_policy_whose_weights_are_too_large_is_refused(folder: Path) -> None:
-    run = run_in(folder / "large", classes__runner="tests.runtime.training.runs:Growing")
-    with pytest.raises(TltlError) as caught:
-        list(train(run))
-    compare("TLT0866_weight", caught.value)
-    assert _checkpoint(run).iteration < 3
-
-
 def test_a_limit_of_minutes_ends_the_search_too(folder: Path) -> None:
     run = run_in(folder / "short", exploration__ways=10, exploration__steps=10**9, stop__minutes=0.005)
     (report,) = train(run)
@@ -502,7 +298,7 @@ def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypa
     monkeypatch.setattr(Runner, "iterations", stopped)
     with pytest.raises(KeyboardInterrupt):
         next(train(replace(run, settings=run_in(folder, **changes).settings), resume=True))
-    searched = _checkpoint(run).searched
+    searched = checkpoint_of(run).searched
     assert searched is not None
     assert (searched.complete, searched.steps) == (True, 4000)
     assert searched.seconds > first.searched.seconds + 0.3
@@ -518,21 +314,3 @@ def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str,
     # A success in each of a few episodes says little: the windows have a hundred.
     assert first.iteration.losses["weight"] == 0.01
     assert report.iteration.losses["weight"] == pytest.approx(last)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as other systems do")
-def test_a_failure_to_write_leaves_the_older_checkpoint(copy: Run) -> None:
-    import resource
-
-    path = copy.folder / CHECKPOINT
-    before = path.read_bytes()
-    checkpoint = _checkpoint(copy)
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) // 2, hard))
-    try:
-        with pytest.raises(TltlError, match="TLT0005"):
-            write_checkpoint(path, checkpoint)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-    assert path.read_bytes() == before
-    assert not list(copy.folder.glob("*.tmp"))

@@ -1,0 +1,24 @@
+"""A training that several modules look at."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.training.runs import run_in
+from tltl_runtime.training.report import Report
+from tltl_runtime.training.run import Run
+from tltl_runtime.training.train import train
+
+
+@pytest.fixture(name="folder", scope="module")
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("trainings")
+
+
+@pytest.fixture(name="whole", scope="module")
+def _whole(folder: Path) -> tuple[Run, list[Report]]:
+    """A training of three iterations."""
+    run = run_in(folder / "whole")
+    return run, list(train(run))

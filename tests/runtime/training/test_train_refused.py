@@ -1,0 +1,227 @@
+"""Trainings that are refused, and what becomes of their files."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch
+
+from tests.runtime.training.runs import checkpoint_of, run_in
+from tests.runtime.training.test_settings import compare
+from tltl_runtime.training.checkpoint import VERSION, write_checkpoint
+from tltl_runtime.training.folder import held
+from tltl_runtime.training.report import Report
+from tltl_runtime.training.run import (
+    CHECKPOINT,
+    RUN,
+    Run,
+    read_run,
+)
+from tltl_runtime.training.train import train
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
+
+
+@pytest.fixture(name="copy")
+def _copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, whole: tuple[Run, list[Report]]) -> Iterator[Run]:
+    """A copy of the whole training, in the folder `run`."""
+    shutil.copytree(whole[0].folder, tmp_path / "run")
+    monkeypatch.chdir(tmp_path)
+    return replace(whole[0], folder=Path("run"))
+
+
+def _torn(run: Run) -> Run:
+    data = (run.folder / CHECKPOINT).read_bytes()
+    (run.folder / CHECKPOINT).write_bytes(data[: len(data) // 2])
+    return run
+
+
+def _flipped(run: Run) -> Run:
+    data = bytearray((run.folder / CHECKPOINT).read_bytes())
+    data[len(data) // 2] ^= 1
+    (run.folder / CHECKPOINT).write_bytes(data)
+    return run
+
+
+class _Harmful:
+    def __reduce__(self) -> tuple[Callable[[str], object], tuple[str]]:
+        return Path, ("harm",)
+
+
+def _harmful(run: Run) -> Run:
+    torch.save({"format": "tltl-checkpoint", "version": 1, "run": _Harmful()}, run.folder / CHECKPOINT)
+    return run
+
+
+def _other_seed(run: Run) -> Run:
+    return replace(run, seed=4)
+
+
+def _other_settings(run: Run) -> Run:
+    """As of a version that took the hash of its settings otherwise."""
+    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
+    torch.save({**content, "run": {**content["run"], "settings": "0" * 64}}, run.folder / CHECKPOINT)
+    return run
+
+
+def _newer(run: Run) -> Run:
+    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
+    torch.save({**content, "version": VERSION + 1}, run.folder / CHECKPOINT)
+    return run
+
+
+def _partial(run: Run) -> Run:
+    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
+    del content["window"]
+    torch.save(content, run.folder / CHECKPOINT)
+    return run
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("TLT0864", _torn),
+        ("TLT0864_flipped", _flipped),
+        ("TLT0864_harmful", _harmful),
+        ("TLT0864_seed", _other_seed),
+        ("TLT0864_settings", _other_settings),
+        ("TLT0864_newer", _newer),
+        ("TLT0864_partial", _partial),
+    ],
+)
+def test_a_checkpoint_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Run], Run]) -> None:
+    with pytest.raises(TltlError) as caught:
+        next(train(change(copy), resume=True))
+    compare(name, caught.value)
+
+
+def test_without_a_checkpoint_a_training_begins_anew(copy: Run) -> None:
+    (copy.folder / CHECKPOINT).unlink()
+    assert next(train(copy, resume=True)).iteration.number == 1
+
+
+def test_a_new_training_writes_over_no_other(copy: Run) -> None:
+    with pytest.raises(TltlError) as caught:
+        next(train(copy))
+    compare("TLT0867", caught.value)
+
+
+def test_two_trainings_in_one_folder_are_refused(copy: Run) -> None:
+    with held(copy.folder), pytest.raises(TltlError) as caught:
+        next(train(copy, resume=True))
+    compare("TLT0865", caught.value)
+
+
+def test_a_folder_that_cannot_be_written_to_is_resumed_from_nowhere_else(copy: Run) -> None:
+    (copy.folder / ".lock").unlink()
+    (copy.folder / ".lock").mkdir()
+    with pytest.raises(TltlError) as caught:
+        next(train(copy, resume=True))
+    compare("TLT0005_resumed", caught.value)
+
+
+def _with_ppo(document: Any, **changes: Any) -> Any:
+    """The description with other settings of PPO, without those that are None."""
+    ppo = {name: each for name, each in {**document["settings"]["ppo"], **changes}.items() if each is not None}
+    return {**document, "settings": {**document["settings"], "ppo": ppo}}
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("TLT0863", lambda document: None),
+        ("TLT0863_other", lambda document: []),
+        ("TLT0863_key", lambda document: {name: each for name, each in document.items() if name != "seed"}),
+        ("TLT0863_value", lambda document: _with_ppo(document, epochs="three")),
+        ("TLT0863_older", lambda document: _with_ppo(document, entropy_schedule=None)),
+        ("TLT0863_gone", lambda document: _with_ppo(document, momentum=0.9)),
+    ],
+)
+def test_a_description_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Any], Any]) -> None:
+    path = copy.folder / RUN
+    changed = change(json.loads(path.read_text()))
+    path.write_text("{" if changed is None else json.dumps(changed))
+    with pytest.raises(TltlError) as caught:
+        read_run(copy.folder)
+    compare(name, caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("TLT0862_module", {"classes__runner": "nowhere:Runner"}),
+        ("TLT0862_class", {"classes__algorithm": "MLPModel"}),
+        ("TLT0862_device", {"device": "cuda:31"}),
+    ],
+)
+def test_what_there_is_not_is_said_before_anything_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, changes: dict[str, Any]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(TltlError) as caught:
+        next(train(run_in(Path("run"), **changes)))
+    compare(name, caught.value)
+    assert not Path("run", RUN).exists()
+
+
+@pytest.mark.parametrize(("name", "device"), [("TLT0862_one_device", "cuda:0"), ("TLT0862_devices", "cuda")])
+def test_processes_of_torchrun_take_a_device_each(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, device: str
+) -> None:
+    for variable, value in (("WORLD_SIZE", 128), ("LOCAL_WORLD_SIZE", 64), ("RANK", 0), ("LOCAL_RANK", 0)):
+        monkeypatch.setenv(variable, str(value))
+    with pytest.raises(TltlError) as caught:
+        next(train(run_in(tmp_path / "run", device=device)))
+    if not torch.cuda.is_available():
+        compare(name, caught.value)
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_training_that_diverges_ends_before_its_checkpoint_does(folder: Path) -> None:
+    run = run_in(folder / "diverged", classes__runner="tests.runtime.training.runs:Diverging")
+    with pytest.raises(TltlError) as caught:
+        list(train(run))
+    compare("TLT0866", caught.value)
+    assert checkpoint_of(run).iteration == 1
+
+
+def test_an_environment_that_gives_no_numbers_ends_the_training(folder: Path) -> None:
+    run = run_in(folder / "failing", classes__runner="tests.runtime.training.runs:Failing")
+    with pytest.raises(TltlError) as caught:
+        list(train(run))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TLT0854"
+    assert diagnostic.title.startswith("iteration 2: The observation group 'entities'")
+    assert checkpoint_of(run).iteration == 1
+
+
+def test_a_policy_whose_weights_are_too_large_is_refused(folder: Path) -> None:
+    run = run_in(folder / "large", classes__runner="tests.runtime.training.runs:Growing")
+    with pytest.raises(TltlError) as caught:
+        list(train(run))
+    compare("TLT0866_weight", caught.value)
+    assert checkpoint_of(run).iteration < 3
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits the size of files as other systems do")
+def test_a_failure_to_write_leaves_the_older_checkpoint(copy: Run) -> None:
+    import resource
+
+    path = copy.folder / CHECKPOINT
+    before = path.read_bytes()
+    checkpoint = checkpoint_of(copy)
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) // 2, hard))
+    try:
+        with pytest.raises(TltlError, match="TLT0005"):
+            write_checkpoint(path, checkpoint)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_bytes() == before
+    assert not list(copy.folder.glob("*.tmp"))
