@@ -68,14 +68,15 @@ def set_up(
     """
     card = policy.card
     name = level or card.level
-    place = load_level(name, variant or (card.variant if level is None else "v0"))
+    chosen = variant or (card.variant if level is None else "v0")
+    place = load_level(name, chosen)
     offered = level_params(place)
     own = {key: value for key, value in card.params.items() if key not in offered} if spec is None else {}
     task = load_task(card.fspa if spec is None else spec, own, offered=offered)
     check_policy(card, place, task.fspa)
     check_fit(place, task.fspa, card.fspa if spec is None else spec)
     check_limit(task.fspa)
-    return Setup(policy, name, place.variant, task.fspa, seed, task.params, recorded)
+    return Setup(policy, name, chosen, task.fspa, seed, task.params, recorded)
 
 
 def check_limit(fspa: Fspa) -> None:

@@ -30,7 +30,7 @@ def spec_hash(fspa: Fspa) -> str:
 
 def level_hash(level: Level) -> str:
     """SHA-256, in hexadecimal, of what is in a level; what it is called, made for and read from does not count."""
-    aside = ("name", "variant", "doc", "spec", "files")
+    aside = ("name", "variant", "doc", "spec", "files", "regions")
     return _hash({name: value for name, value in to_json(level).items() if name not in aside})
 
 

@@ -128,6 +128,14 @@ class Exit:
 
 
 @record
+class Region:
+    """A part of a level that reports call by its name."""
+
+    name: str
+    box: Box
+
+
+@record
 class Start:
     """Where the player begins, on its feet; ``spread`` is the greatest distance by which an episode moves it."""
 
@@ -180,6 +188,8 @@ class Level:
     files: tuple[tuple[str, str], ...]
     signals: tuple[tuple[str, str], ...] = ()
     """Further names of signals, for specs that call them otherwise: (``open_right``, ``open(right)``)."""
+    regions: tuple[Region, ...] = ()
+    """Those that the level names, then the parts that it uses."""
 
 
 def entity_names(level: Level) -> tuple[str, ...]:

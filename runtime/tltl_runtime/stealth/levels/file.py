@@ -10,9 +10,10 @@ import hashlib
 import re
 from pathlib import Path
 
-from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Solid, entity_names
+from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
 from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
+from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.stealth.levels.room import check_room
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
@@ -44,6 +45,9 @@ def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
 
 def load_level(name_or_path: str, variant: str = "v0") -> Level:
     """A level that comes with the package, by name, or one in a ``.toml`` file, in one of its variants.
+
+    ``VARIANT+OVERLAY`` is a variant with one more overlay, and so on: one of those that variants name, or the path of
+    its ``.toml`` file.
 
     :func:`read_level` also tells what looks like a mistake and is none.
 
@@ -92,22 +96,23 @@ class _Loading:
         self.variants = self._variants()
 
     def level(self, variant: str) -> Level:
-        """The level in a variant."""
-        if variant not in self.variants:
-            title = f"the level `{self.path.stem}` has no variant `{variant}`"
+        """The level in a variant, with the overlays that are added to it."""
+        base, *added = variant.split("+")
+        if base not in self.variants:
+            title = f"the level `{self.path.stem}` has no variant `{base}`"
             label = self.table.place("variants")
-            raise TltlError([Diagnostic("TLT0800", title, (label,), suggestion(variant, self.variants))])
+            raise TltlError([Diagnostic("TLT0800", title, (label,), suggestion(base, self.variants))])
         table, places = self.table, self.places
         doc, spec = table.text("doc"), made_for(table, self.path)
         bounds = self._bounds()
         start = table.table("start")
-        uses, assets = self._assets(variant)
+        uses, assets = self._assets(base, added)
         kinds = {
             name: parts.enemy_kind(part, name)
             for name, part in assets.items()
             if part.text("type", one_of=("enemy", "part")) == "enemy"
         }
-        used_solids, used_movers = self._used(uses, assets, kinds)
+        used_solids, used_movers, used_regions = self._used(uses, assets, kinds)
         switches = parts.switches(table, places)
         barriers = parts.barriers(table, places)
         exits = parts.exits(table, places)
@@ -115,7 +120,7 @@ class _Loading:
         movers = [*used_movers, *parts.movers(table, places)]
         level = Level(
             name=self.path.stem,
-            variant=variant,
+            variant="+".join((base, *(Path(name).stem for name in added))),
             doc=doc,
             bounds=bounds,
             start=parts.start(start if start is not None else Table(self.root, "the start", [])),
@@ -130,6 +135,7 @@ class _Loading:
             spec=spec,
             files=tuple(self.files),
             signals=self._signals(),
+            regions=(*named_regions(table), *used_regions),
         )
         names = entity_names(level)
         level = replace(level, sensors=parts.sensors(table.table("sensors", needed=False), names, places))
@@ -179,8 +185,8 @@ class _Loading:
             self.log.append(Diagnostic("TLT0803", "the bounds hold no floor", (table.place("at"),), help_))
         return box
 
-    def _assets(self, variant: str) -> tuple[list[Table], dict[str, Table]]:
-        """The level's uses of parts, and its assets by name, with the overlays of the variant."""
+    def _assets(self, variant: str, added: list[str]) -> tuple[list[Table], dict[str, Table]]:
+        """The level's uses of parts, and its assets by name, with the overlays of the variant and those added to it."""
         uses = self.table.tables("use")
         wanted = [(use, "asset") for use in uses]
         wanted += [(Table(enemy, "`[[enemy]]`", []), "kind") for enemy in self._listed("enemy")]
@@ -190,11 +196,13 @@ class _Loading:
             if name and name not in found and (path := self._shared("assets", name, table.place(key))):
                 found[name] = self._read(path, f"assets/{name}.toml")
         trees: dict[str, Tree] = {name: entry.value for name, entry in found.items()}
-        for name in self.variants[variant]:
-            label = self.table.entries["variants"].value[variant].label
-            if path := self._shared("overlays", name, label):
-                change = self._read(path, f"overlays/{name}.toml")
-                self.changes.append(str(change.value["doc"].value) if "doc" in change.value else name)
+        named = self.table.entries["variants"].value[variant].label if self.variants[variant] else self.table.label
+        overlays = [(name, self._shared("overlays", name, named)) for name in self.variants[variant]]
+        overlays += [(name, self._added(name)) for name in added]
+        for name, path in overlays:
+            if path is not None:
+                change = self._read(path, f"overlays/{path.name}")
+                self.changes.append(str(change.value["doc"].value) if "doc" in change.value else Path(name).stem)
                 trees = overlay.apply(change.value, trees, self.log)
         self._raise()
         assets = {
@@ -210,6 +218,10 @@ class _Loading:
         items = entry.value if entry is not None and isinstance(entry.value, list) else []
         return [item for item in items if isinstance(item, Entry)]
 
+    def _added(self, name: str) -> Path | None:
+        """The file of an overlay that is added to a variant."""
+        return Path(name) if name.endswith(".toml") else self._shared("overlays", name, self.table.place("variants"))
+
     def _shared(self, folder: str, name: str, label: Label) -> Path | None:
         """The file of an asset or overlay, beside the level or in the package."""
         for place in (self.path.parent / folder, LEVELS / folder):
@@ -222,11 +234,12 @@ class _Loading:
 
     def _used(
         self, uses: list[Table], assets: dict[str, Table], kinds: dict[str, EnemyKind]
-    ) -> tuple[list[Solid], list[Mover]]:
+    ) -> tuple[list[Solid], list[Mover], list[Region]]:
         """What the parts that the level uses bring with them."""
         solids: list[Solid] = []
         prefixes: dict[str, Table] = {}
         movers: list[Mover] = []
+        regions: list[Region] = []
         for use in uses:
             asset = use.text("asset")
             prefix, shift = use.text("name", asset) + "_", use.point("at", (0.0, 0.0, 0.0))
@@ -240,14 +253,17 @@ class _Loading:
             if asset in kinds:
                 self.log.append(wrong(use.entries["asset"], "asset", 'the name of an asset with `type = "part"`'))
                 continue
-            solids += parts.solids(assets[asset], self.places, shift, prefix)
-            movers += parts.movers(assets[asset], self.places, shift, prefix)
+            its = parts.solids(assets[asset], self.places, shift, prefix)
+            moving = parts.movers(assets[asset], self.places, shift, prefix)
             assets[asset].done()
+            solids += its
+            movers += moving
+            regions += part_regions(prefix[:-1], its, moving)
         for enemy in self._listed("enemy"):
             kind = enemy.value.get("kind")
             if kind is not None and kind.value in [name for name in assets if name not in kinds]:
                 self.log.append(wrong(kind, "kind", 'the name of an asset with `type = "enemy"`'))
-        return solids, movers
+        return solids, movers, regions
 
     def _signals(self) -> tuple[tuple[str, str], ...]:
         table = self.table.table("signals", needed=False)

@@ -1,0 +1,1 @@
+"""Regression tests: suites of cases, verdicts by statistics, explanations and reports."""

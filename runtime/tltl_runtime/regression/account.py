@@ -1,0 +1,154 @@
+"""The account of an episode: what verdicts count, what explanations tell, what pictures draw of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from tltl_runtime.evaluation.play import Played
+from tltl_runtime.stealth.episodes.cause import Kind, cause
+from tltl_runtime.stealth.episodes.episode import End, Episode
+from tltl_runtime.stealth.level import Point
+from tltlc.expression import Signal, nodes
+from tltlc.monitor.guards import bounding_atom, robustness
+from tltlc.monitor.tables import tables
+from tltlc.record import record
+
+_SEEN_S: Final = 3.0
+"""Seconds before the end in which who saw the player counts."""
+
+_DISTANCE: Final = re.compile(r"distance\((.+)\)\Z")
+
+
+@record
+class Arrival:
+    """A state of the automaton that was entered: at which decision, and where the player's feet were."""
+
+    state: int
+    step: int
+    place: Point
+
+
+@record
+class Nearest:
+    """How near an episode came to leaving the state in which it failed, towards acceptance.
+
+    ``atom`` is the one that was the limit at the best moment, ``robustness`` the guard's then, in [-1, 1], ``place``
+    where that was.  Where the atom speaks of one distance, ``target`` is to what and ``distance`` how far it was, in
+    metres.
+    """
+
+    atom: str
+    robustness: float
+    place: Point
+    target: str | None = None
+    distance: float | None = None
+
+
+@record
+class Account:
+    """How episode ``index`` of a case went.
+
+    ``progress``, ``reward``, ``steps`` and ``unmet`` are as in
+    :class:`~tltl_runtime.evaluation.play.Played`; ``arrivals`` begin with the first sample.  ``cause``, ``by`` and
+    ``place`` say how the episode ended, ``seen_by`` who saw the player in the seconds before.  ``way`` has the
+    player's x and y, in metres, and the automaton's state each second.
+    """
+
+    index: int
+    seed: int
+    success: bool
+    end: End
+    progress: float
+    reward: float
+    steps: int
+    unmet: int
+    cause: Kind
+    by: tuple[str, ...]
+    place: Point
+    seen_by: tuple[str, ...]
+    arrivals: tuple[Arrival, ...]
+    nearest: Nearest | None
+    way: tuple[tuple[float, float, int], ...]
+
+
+def account(played: Played, episode: Episode) -> Account:
+    """The account of an episode that was played and recorded."""
+    found = cause(episode)
+    return Account(
+        index=played.index,
+        seed=played.seed,
+        success=played.success,
+        end=played.end,
+        progress=played.progress,
+        reward=played.reward,
+        steps=played.steps,
+        unmet=played.unmet,
+        cause=found.kind,
+        by=found.by,
+        place=_rounded(found.place),
+        seen_by=() if played.success else _seen_by(episode, found.time),
+        arrivals=_arrivals(episode),
+        nearest=None if played.success else _nearest(episode, played.unmet),
+        way=_way(episode),
+    )
+
+
+def _arrivals(episode: Episode) -> tuple[Arrival, ...]:
+    states = episode.states.tolist()
+    entered = [step for step in range(len(states)) if step == 0 or states[step] != states[step - 1]]
+    return tuple(Arrival(states[step], step, _place(episode, step)) for step in entered)
+
+
+def _seen_by(episode: Episode, time: float) -> tuple[str, ...]:
+    """The enemies that saw the player shortly before, in the level's order."""
+    recent = [shot for shot in episode.snapshots if time - _SEEN_S <= shot.time <= time]
+    return tuple(
+        enemy.name for row, enemy in enumerate(episode.level.enemies) if any(shot.sees[row] for shot in recent)
+    )
+
+
+def _nearest(episode: Episode, state: int) -> Nearest | None:
+    """None where no edge that leaves the state leads nearer to acceptance."""
+    fspa = episode.fspa
+    guards = [edge.guard for edge in tables(fspa).improving[state]]
+    steps = [step for step in range(len(episode.actions)) if episode.states[step] == state]
+    if not guards or not steps:
+        return None
+    atoms: Sequence[list[float]] = episode.atoms.tolist()
+    best, step = max((max(robustness(guard, atoms[step]) for guard in guards), -step) for step in steps)
+    row = -step
+    atom = fspa.atoms[bounding_atom(guards, atoms[row])]
+    target, distance = _distance(episode, atom.name, row)
+    return Nearest(atom.name, round(best, 4), _place(episode, row + 1), target, distance)
+
+
+def _distance(episode: Episode, atom: str, row: int) -> tuple[str | None, float | None]:
+    """What an atom measures the distance to, and that distance after decision ``row``; None where it does not."""
+    (expression,) = (each.expression for each in episode.fspa.atoms if each.name == atom)
+    names = {node.name for node in nodes(expression) if isinstance(node, Signal)}
+    match = _DISTANCE.match(next(iter(names))) if len(names) == 1 else None
+    if match is None:
+        return None, None
+    column = [signal.name for signal in episode.fspa.signals].index(match[0])
+    return match[1], round(float(episode.signals[row + 1, column]), 2)
+
+
+def _way(episode: Episode) -> tuple[tuple[float, float, int], ...]:
+    found, due = [], 0.0
+    for step, shot in enumerate(episode.snapshots):
+        if shot.time >= due - 1e-9 or step == len(episode.actions):
+            x, y, _ = shot.player.position
+            found.append((round(x, 2), round(y, 2), int(episode.states[step])))
+            due = shot.time + 1.0
+    return tuple(found)
+
+
+def _place(episode: Episode, step: int) -> Point:
+    return _rounded(episode.snapshots[step].player.position)
+
+
+def _rounded(point: Point) -> Point:
+    x, y, z = point
+    return round(x, 2), round(y, 2), round(z, 2)

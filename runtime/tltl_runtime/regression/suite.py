@@ -1,0 +1,207 @@
+"""Suites: TOML files that list the cases of a regression test (``docs/regression.md`` describes every key)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
+from tltl_runtime.stealth.levels.file import level_path, load_level, variants
+from tltl_runtime.stealth.levels.made_for import shown
+from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
+from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.files import read_source
+from tltlc.record import record
+from tltlc.source import Span
+from tltlc.spec_file import split
+
+SHIPPED: Final = Path(__file__).with_name("shipped") / "suite.toml"
+"""The suite that comes with the package: its three levels, each in its three variants."""
+
+LEAST_EPISODES: Final = 25
+"""No verdict comes of fewer episodes, which an explanation needs, too; those of the paper's Table I."""
+
+_MOST_EPISODES: Final = 10_000
+_HELP: Final = 'values are written as in `episodes = 100`, texts as in `level = "navigation"`'
+
+
+@record
+class Thresholds:
+    """What counts as played as designed.
+
+    A case passes where its pass rate is certainly at least ``pass_rate``, and fails where it is certainly at most
+    ``fail_rate``, both in [0, 1].  ``progress`` and ``reward`` are the least changes of the mean that count.
+    """
+
+    pass_rate: float = 0.85
+    fail_rate: float = 0.5
+    progress: float = 0.05
+    reward: float = 0.05
+
+
+@record
+class Case:
+    """What is played and judged: a policy, on a level in a variant, by a spec.
+
+    ``level`` and ``variant`` are what :func:`~tltl_runtime.stealth.levels.file.load_level` takes, ``reference`` is the
+    variant whose figures it is compared with, ``spec`` ``FILE:NAME`` or None for the policy's.  ``episodes`` are
+    played at the most.
+    """
+
+    name: str
+    level: str
+    variant: str
+    reference: str
+    spec: str | None
+    policy: Path
+    episodes: int
+    thresholds: Thresholds
+
+
+@record
+class Suite:
+    """Cases that are judged together.
+
+    ``seed`` is that of the episodes; ``error`` bounds the probability that any of the verdicts is wrong, in (0, 1).
+    """
+
+    path: Path
+    seed: int
+    error: float
+    cases: tuple[Case, ...]
+
+
+def read_suite(path: Path) -> Suite:
+    """The suite in a file; paths in it are relative to it.
+
+    Raises:
+        TltlError: all that is wrong, as far as it can be told at once.  TLT0801 no TOML; TLT0802 an unknown key;
+            TLT0803 a missing key, a value of the wrong kind or out of range; TLT0804 two cases of one name; TLT0805
+            there is no such file; TLT0853 no policy comes with the level; what ``load_level`` raises.
+    """
+    source = read_source(path, shown(path))
+    log: list[Diagnostic] = []
+    table = Table(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
+    seed = table.whole("seed", low=0, high=2**31 - 1) if "seed" in table.entries else 0
+    error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
+    episodes = _episodes(table, 200)
+    thresholds = _thresholds(table, Thresholds())
+    cases = [_case(each, path.parent, episodes, thresholds) for each in table.tables("case")]
+    table.done()
+    if not cases and not log:
+        log.append(Diagnostic("TLT0803", "the suite has no cases", (table.label,), "give one, under `[[case]]`"))
+    found: dict[str, Label] = {}
+    for case, label in [each for each in cases if each is not None]:
+        if case.name in found:
+            title, help_ = f"two cases are called `{case.name}`", "give one of them another `name`"
+            log.append(Diagnostic("TLT0804", title, (label, found[case.name]), help_))
+        found[case.name] = label
+    if log:
+        raise TltlError(log)
+    return Suite(path, seed, error, tuple(case for case, _ in filter(None, cases)))
+
+
+def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> tuple[Case, Label] | None:
+    before = len(table.log)
+    level = _level(table, folder)
+    variant = table.text("variant", "")
+    overlays = _overlays(table, folder)
+    reference = table.text("reference", "")
+    spec = _spec(table, folder)
+    episodes, thresholds = _episodes(table, episodes), _thresholds(table, thresholds)
+    name = table.text("name", "")
+    policy = _policy(table, folder, level)
+    table.done()
+    if len(table.log) > before or policy is None:
+        return None
+    try:
+        there = variants(level)
+        first = reference or there[0]
+        played = "+".join((variant or there[0], *overlays))
+        made = load_level(level, played)
+        load_level(level, first)
+    except TltlError as error:
+        table.log += error.diagnostics
+        return None
+    name = name or f"{made.name}:{made.variant}"
+    return Case(name, level, played, first, spec, policy, episodes, thresholds), table.label
+
+
+def _level(table: Table, folder: Path) -> str:
+    level = table.text("level")
+    if not level:
+        return ""
+    if level.endswith(".toml"):
+        return str(folder / level)
+    try:
+        level_path(level)
+    except TltlError as error:
+        (found,) = error.diagnostics
+        table.log.append(Diagnostic(found.code, found.title, (table.place("level"),), found.help))
+    return level
+
+
+def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
+    """What is added to the variant: names, or paths from here."""
+    entry = table.entries.get("overlay")
+    single = entry is not None and isinstance(entry.value, str)
+    names = (table.text("overlay"),) if single else table.names("overlay", ())
+    found = []
+    for name in names:
+        path = folder / name
+        if name.endswith(".toml") and not path.is_file():
+            table.log.append(_missing("overlay", name, table.place("overlay")))
+        found.append(str(path) if name.endswith(".toml") else name)
+    return tuple(found)
+
+
+def _spec(table: Table, folder: Path) -> str | None:
+    text = table.text("spec", "")
+    if not text:
+        return None
+    file, name = split(text)
+    if not (folder / file).is_file():
+        table.log.append(_missing("spec", file, table.place("spec")))
+    return f"{folder / file}:{name}" if name else str(folder / file)
+
+
+def _policy(table: Table, folder: Path, level: str) -> Path | None:
+    """The policy's file, or the folder of its training; by default what comes with the level."""
+    named = table.text("policy", "")
+    if not named or named in shipped_policies():
+        found = shipped_policy(named or level)
+        if found is None and level and not table.log:
+            title, label = f"no policy comes with the level `{level}`", table.place("level")
+            help_ = f'name one that was trained, e.g. `policy = "training/{Path(level).stem}"`'
+            table.log.append(Diagnostic("TLT0853", title, (label,), help_))
+        return found
+    path = folder / named
+    if not path.exists():
+        table.log.append(_missing("policy", named, table.place("policy"), tuple(shipped_policies())))
+    return path
+
+
+def _episodes(table: Table, default: int) -> int:
+    if "episodes" not in table.entries:
+        return default
+    return table.whole("episodes", low=LEAST_EPISODES, high=_MOST_EPISODES)
+
+
+def _thresholds(table: Table, defaults: Thresholds) -> Thresholds:
+    found = table.table("thresholds", needed=False)
+    if found is None:
+        return defaults
+    values = [found.number(key, getattr(defaults, key), low=0.0, high=1.0, unit="") for key in defaults.__match_args__]
+    found.done()
+    made = Thresholds(*values)
+    if made.fail_rate > made.pass_rate:
+        key = "fail_rate" if "fail_rate" in found.entries else "pass_rate"
+        entry = found.entries[key]
+        table.log.append(wrong(entry, key, f"a `fail_rate` of {made.pass_rate:g}, the `pass_rate`, at the most"))
+    return made
+
+
+def _missing(what: str, name: str, label: Label, known: tuple[str, ...] = ()) -> Diagnostic:
+    help_ = suggestion(name, known) if known else "paths are relative to the suite"
+    return Diagnostic("TLT0805", f"there is no {what} `{name}`", (label,), help_)
