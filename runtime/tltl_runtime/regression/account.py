@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import Final
 
 from tltl_runtime.evaluation.play import Played
+from tltl_runtime.regression.stages import target_of
 from tltl_runtime.stealth.episodes.cause import Kind, cause
 from tltl_runtime.stealth.episodes.episode import End, Episode
 from tltl_runtime.stealth.level import Point
-from tltlc.expression import Signal, nodes
 from tltlc.monitor.guards import bounding_atom, robustness
 from tltlc.monitor.tables import tables
 from tltlc.record import record
 
 _SEEN_S: Final = 3.0
 """Seconds before the end in which who saw the player counts."""
-
-_DISTANCE: Final = re.compile(r"distance\((.+)\)\Z")
 
 
 @record
@@ -119,20 +116,18 @@ def _nearest(episode: Episode, state: int) -> Nearest | None:
     atoms: Sequence[list[float]] = episode.atoms.tolist()
     best, step = max((max(robustness(guard, atoms[step]) for guard in guards), -step) for step in steps)
     row = -step
-    atom = fspa.atoms[bounding_atom(guards, atoms[row])]
-    target, distance = _distance(episode, atom.name, row)
-    return Nearest(atom.name, round(best, 4), _place(episode, row + 1), target, distance)
+    atom = bounding_atom(guards, atoms[row])
+    target, distance = _distance(episode, atom, row)
+    return Nearest(fspa.atoms[atom].name, round(best, 4), _place(episode, row + 1), target, distance)
 
 
-def _distance(episode: Episode, atom: str, row: int) -> tuple[str | None, float | None]:
+def _distance(episode: Episode, atom: int, row: int) -> tuple[str | None, float | None]:
     """What an atom measures the distance to, and that distance after decision ``row``; None where it does not."""
-    (expression,) = (each.expression for each in episode.fspa.atoms if each.name == atom)
-    names = {node.name for node in nodes(expression) if isinstance(node, Signal)}
-    match = _DISTANCE.match(next(iter(names))) if len(names) == 1 else None
-    if match is None:
+    target = target_of(episode.fspa.atoms[atom])
+    if target is None:
         return None, None
-    column = [signal.name for signal in episode.fspa.signals].index(match[0])
-    return match[1], round(float(episode.signals[row + 1, column]), 2)
+    column = [signal.name for signal in episode.fspa.signals].index(f"distance({target})")
+    return target, round(float(episode.signals[row + 1, column]), 2)
 
 
 def _way(episode: Episode) -> tuple[tuple[float, float, int], ...]:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
-from tltl_runtime.stealth.levels.file import level_path, load_level, variants
+from tltl_runtime.stealth.levels.file import level_path, variants
 from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
@@ -78,7 +78,7 @@ def read_suite(path: Path) -> Suite:
     Raises:
         TltlError: all that is wrong, as far as it can be told at once.  TLT0801 no TOML; TLT0802 an unknown key;
             TLT0803 a missing key, a value of the wrong kind or out of range; TLT0804 two cases of one name; TLT0805
-            there is no such file; TLT0853 no policy comes with the level; what ``load_level`` raises.
+            there is no such file; TLT0800 there is no such level or variant; TLT0853 no policy comes with the level.
     """
     source = read_source(path, shown(path))
     log: list[Diagnostic] = []
@@ -115,17 +115,24 @@ def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> 
     table.done()
     if len(table.log) > before or policy is None:
         return None
+    there = _variants(table, level)
+    for key, given in (("variant", variant), ("reference", reference)):
+        if given and given not in there:
+            title = f"the level `{level}` has no variant `{given}`"
+            table.log.append(Diagnostic("TLT0800", title, (table.place(key),), suggestion(given, there)))
+    base = variant or there[0]
+    name = name or f"{Path(level).stem}:{'+'.join((base, *(Path(each).stem for each in overlays)))}"
+    played = "+".join((base, *overlays))
+    return Case(name, level, played, reference or there[0], spec, policy, episodes, thresholds), table.label
+
+
+def _variants(table: Table, level: str) -> tuple[str, ...]:
+    """The variants of a level; of one that does not load any more, which is its case's finding, what is asked for."""
     try:
-        there = variants(level)
-        first = reference or there[0]
-        played = "+".join((variant or there[0], *overlays))
-        made = load_level(level, played)
-        load_level(level, first)
-    except TltlError as error:
-        table.log += error.diagnostics
-        return None
-    name = name or f"{made.name}:{made.variant}"
-    return Case(name, level, played, first, spec, policy, episodes, thresholds), table.label
+        return variants(level)
+    except TltlError:
+        asked = (table.entries[key].value for key in ("reference", "variant") if key in table.entries)
+        return (*asked, "v0")
 
 
 def _level(table: Table, folder: Path) -> str:
@@ -133,6 +140,8 @@ def _level(table: Table, folder: Path) -> str:
     if not level:
         return ""
     if level.endswith(".toml"):
+        if not (folder / level).is_file():
+            table.log.append(_missing("level", level, table.place("level")))
         return str(folder / level)
     try:
         level_path(level)

@@ -18,8 +18,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from statistics import fmean
-from typing import Final, Literal, Protocol
+from typing import Final, Literal
 
+from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.confidence import change_p_value, rate_interval
 from tltl_runtime.regression.suite import LEAST_EPISODES, Thresholds
 from tltlc.record import record
@@ -27,17 +28,6 @@ from tltlc.record import record
 Verdict = Literal["pass", "review", "fail"]
 
 _FIGURES: Final = ("progress", "reward")
-
-
-class Outcome(Protocol):
-    """What a verdict counts of an episode."""
-
-    @property
-    def success(self) -> bool: ...
-    @property
-    def progress(self) -> float: ...
-    @property
-    def reward(self) -> float: ...
 
 
 @record
@@ -70,7 +60,7 @@ def looks(episodes: int) -> tuple[int, ...]:
 
 
 def judge(
-    now: Sequence[Outcome], before: Sequence[Outcome], episodes: int, thresholds: Thresholds, error: float
+    now: Sequence[Account], before: Sequence[Account], episodes: int, thresholds: Thresholds, error: float
 ) -> Judgement | None:
     """The verdict on the episodes ``now``, of ``episodes`` at the most; None where more have to be played.
 
@@ -93,7 +83,7 @@ def judge(
 
 
 def _changes(
-    now: Sequence[Outcome], before: Sequence[Outcome], thresholds: Thresholds, error: float, episodes: int
+    now: Sequence[Account], before: Sequence[Account], thresholds: Thresholds, error: float, episodes: int
 ) -> tuple[Change, ...]:
     """The figures that have changed; of a baseline of fewer episodes only these are compared."""
     count = min(len(now), len(before))

@@ -1,0 +1,120 @@
+"""The baseline of a suite: what its policies did on the levels as they were designed, in a file beside the suite."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from shlex import quote
+from typing import Any, Final
+
+from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.refusals import Refusals
+from tltl_runtime.regression.account import Account
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import read_bytes
+from tltlc.record import record
+from tltlc.writing import write_file
+
+FORMAT: Final = "tltl-baseline"
+VERSION: Final = 1
+MAX_BYTES: Final = 1 << 28
+
+_REFUSALS: Final = Refusals(
+    "a baseline", "TLT0900", "TLT0901", "TLT0902", again="record it again with `tltlc baseline`"
+)
+
+
+@record
+class Played:
+    """What was played: a policy on a level in a variant, judged by a spec, with the seed of the episodes.
+
+    ``level`` and ``spec`` are names; the hashes are those of :mod:`tltl_runtime.policies.identity`, and ``policy`` is
+    the SHA-256 of its file.  ``files`` are those that the level was made of, with their SHA-256.
+    """
+
+    level: str
+    variant: str
+    spec: str
+    policy: str
+    seed: int
+    level_hash: str
+    spec_hash: str
+    files: tuple[tuple[str, str], ...]
+    versions: Mapping[str, str]
+
+
+@record
+class Reference:
+    """What was played, and the accounts of its episodes, from number 0 on."""
+
+    played: Played
+    accounts: tuple[Account, ...]
+
+
+def baseline_path(suite: Path) -> Path:
+    """Where the baseline of a suite lies: ``NAME.baseline.json`` beside ``NAME.toml``."""
+    return suite.with_name(f"{suite.stem}.baseline.json")
+
+
+def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
+    """Write the baseline of a suite; raises TltlError, TLT0005."""
+    document = {"format": FORMAT, "version": VERSION, "references": to_json(references)}
+    # A line for each episode, so that what a change of it changes can be read.
+    text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    write_file(path, text.replace('{"index":', '\n{"index":') + "\n", "name another place with --output")
+
+
+def read_baseline(path: Path) -> tuple[Reference, ...]:
+    """The baseline in a file.
+
+    Raises:
+        TltlError: TLT0001 it cannot be read; TLT0900 it is no baseline; TLT0901 of another version; TLT0902 something
+            in it is not as it must be.
+    """
+    name = str(path)
+    try:
+        document: Any = json.loads(read_bytes(path, name, MAX_BYTES))
+    except (ValueError, RecursionError) as error:
+        raise _REFUSALS.unreadable(name, f"it is not JSON: {error!s:.60}") from None
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise _REFUSALS.unreadable(name, "it is something else")
+    _REFUSALS.check_version(name, document.get("version"), VERSION)
+    try:
+        return from_json(_Document, document, "baseline").references
+    except (RecordJsonError, RecursionError) as error:
+        raise _REFUSALS.broken(name, str(error)) from None
+
+
+def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Path) -> Reference:
+    """What the baseline has of the same level, variant, spec, policy and seed; the level may be another one by now.
+
+    Raises:
+        TltlError: TLT0903, there is none.
+    """
+    there = [each for each in references if _same(each.played, wanted, ("level", "variant"))]
+    known = [each for each in there if _same(each.played, wanted, ("policy", "spec_hash", "seed"))]
+    if known:
+        return known[0]
+    title = f"the baseline has no figures of `{wanted.level}:{wanted.variant}`"
+    if there:
+        names = {"policy": "policy", "spec_hash": "spec", "seed": "seed"}
+        other = [what for name, what in names.items() if not _same(there[0].played, wanted, (name,))]
+        title += f" with this {other[0]}"
+    raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
+
+
+def baseline_command(suite: Path) -> str:
+    """What records the baseline of a suite, to be pasted."""
+    return f"tltlc baseline {quote(str(suite))}"
+
+
+@record
+class _Document:
+    format: str
+    version: int
+    references: tuple[Reference, ...]
+
+
+def _same(one: Played, other: Played, names: tuple[str, ...]) -> bool:
+    return all(getattr(one, name) == getattr(other, name) for name in names)

@@ -1,0 +1,105 @@
+"""The report on a case: verdict, figures, reasons and accounts, as it is written and read again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.baseline import Played
+from tltl_runtime.regression.explain import Finding, findings
+from tltl_runtime.regression.play import Result
+from tltl_runtime.regression.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.suite import Case
+from tltl_runtime.regression.verdict import Change, Verdict
+from tltl_runtime.stealth.levels.file import load_level
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import record
+
+
+@record
+class Figures:
+    """Over ``episodes``: the pass rate with its Wilson interval of 95 %, progress and reward."""
+
+    episodes: int
+    pass_rate: float
+    pass_interval: tuple[float, float]
+    progress: Spread
+    reward: Spread
+    steps: Spread
+
+
+@record
+class CaseReport:
+    """What a case came to; of one that cannot be played there are ``reasons`` alone.
+
+    ``certain`` and ``rate_interval`` are those of a :class:`~tltl_runtime.regression.verdict.Judgement`, ``baseline``
+    has the figures that it is compared with, ``explanation`` sentences with the episodes that they speak of.
+    """
+
+    name: str
+    level: str
+    variant: str
+    verdict: Verdict
+    reasons: tuple[str, ...]
+    certain: bool = True
+    rate_interval: tuple[float, float] = (0.0, 1.0)
+    figures: Figures | None = None
+    baseline: Figures | None = None
+    changes: tuple[Change, ...] = ()
+    explanation: tuple[Finding, ...] = ()
+    played: Played | None = None
+    reference: Played | None = None
+    accounts: tuple[Account, ...] = ()
+    recordings: tuple[tuple[int, str], ...] = ()
+    """Of which episodes there are recordings, and the names of their files."""
+
+
+def report_on(result: Result) -> CaseReport:
+    """The report on a case that was played."""
+    case, setup = result.ready.case, result.ready.setup
+    now = [each.account for each in result.episodes]
+    before = result.reference.accounts
+    level = load_level(setup.level, setup.variant)
+    told = findings(level, setup.fspa, now, before)
+    return CaseReport(
+        name=case.name,
+        level=level.name,
+        variant=level.variant,
+        verdict=result.judgement.verdict,
+        certain=result.judgement.certain,
+        rate_interval=result.judgement.rate_interval,
+        figures=figures(now),
+        baseline=figures(before),
+        changes=result.judgement.changes,
+        reasons=(
+            *reasons(result.judgement, case.thresholds, now, before),
+            *obstacles(level, setup.fspa),
+            *(finding.text for finding in told),
+            *edits(result.ready.played, result.reference.played, setup.level, setup.variant),
+        ),
+        explanation=told,
+        played=result.ready.played,
+        reference=result.reference.played,
+        accounts=tuple(now),
+    )
+
+
+def report_on_broken(case: Case, error: TltlError) -> CaseReport:
+    """The report on a case that cannot be played any more, which is a failure of the level and not of the suite."""
+    said = tuple(f"{each.code}: {each.title}" + (f" ({each.help})" if each.help else "") for each in error.diagnostics)
+    return CaseReport(case.name, Path(case.level).stem, case.variant, "fail", ("it cannot be played any more", *said))
+
+
+def figures(accounts: Sequence[Account]) -> Figures:
+    """The figures over some episodes; raises ValueError where there are none."""
+    passed = sum(each.success for each in accounts)
+    return Figures(
+        episodes=len(accounts),
+        pass_rate=passed / len(accounts),
+        pass_interval=wilson(passed, len(accounts)),
+        progress=spread_of([each.progress for each in accounts]),
+        reward=spread_of([each.reward for each in accounts]),
+        steps=spread_of([float(each.steps) for each in accounts]),
+    )

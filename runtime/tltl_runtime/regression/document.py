@@ -1,0 +1,55 @@
+"""The report on a suite for programs, as JSON data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from tltl_runtime.record_json import to_json
+from tltl_runtime.regression.case_report import CaseReport, Figures
+from tltl_runtime.regression.suite import Suite
+
+FORMAT: Final = "tltl-regression"
+VERSION: Final = 1
+
+_OF_EPISODES: Final = ("index", "seed", "success", "end", "progress", "reward", "steps", "cause", "by", "place")
+
+
+def document(suite: Suite, reports: Sequence[CaseReport], *, complete: bool) -> dict[str, Any]:
+    """The report on a suite; ``complete`` says whether all of its cases were judged that were asked for."""
+    verdicts = [report.verdict for report in reports]
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "suite": suite.path.name,
+        "seed": suite.seed,
+        "error": suite.error,
+        "complete": complete,
+        "verdicts": {verdict: verdicts.count(verdict) for verdict in ("pass", "review", "fail")},
+        "cases": [_case(report) for report in reports],
+    }
+
+
+def _case(report: CaseReport) -> dict[str, Any]:
+    figures, played = report.figures, report.played
+    return {
+        "name": report.name,
+        "level": report.level,
+        "variant": report.variant,
+        "spec": played.spec if played else None,
+        "verdict": report.verdict,
+        "certain": report.certain,
+        **(_figures(figures) if figures else dict.fromkeys(Figures.__match_args__)),
+        "rate_interval": list(report.rate_interval),
+        "baseline": None if report.baseline is None else _figures(report.baseline),
+        "changes": to_json(report.changes),
+        "reasons": list(report.reasons),
+        "explanation": to_json(report.explanation),
+        "played": to_json(played),
+        "accounts": [{name: to_json(getattr(each, name)) for name in _OF_EPISODES} for each in report.accounts],
+    }
+
+
+def _figures(figures: Figures) -> dict[str, Any]:
+    found: dict[str, Any] = to_json(figures)
+    return found

@@ -1,0 +1,158 @@
+"""Explanations: what a policy does otherwise than in the baseline, in sentences that name episodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from statistics import fmean
+from typing import Final
+
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.places import obstacle, place_name
+from tltl_runtime.regression.stages import chain, deed
+from tltl_runtime.stealth.level import Level, Region
+from tltlc.automaton.fspa import Fspa
+from tltlc.record import record
+
+_DIFFERENT: Final = 0.2
+"""Shares of episodes that differ by less are told of as alike."""
+
+_SLOWER: Final = 1.15
+"""Mean lengths of successes whose ratio is less are alike."""
+
+_FEW: Final = 3
+"""Ends are told of that so many episodes have, or one in ten; of more kinds than that, the most frequent."""
+
+
+@record
+class Finding:
+    """A sentence, and the indices of the episodes that it speaks of."""
+
+    text: str
+    episodes: tuple[int, ...]
+
+
+def findings(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> tuple[Finding, ...]:
+    """How the episodes go, stage by stage, and how those end that fail; against the baseline's.
+
+    ``level`` is the one that was played now.
+    """
+    return (
+        *_stages(fspa, now, before),
+        *_ends(level, fspa, now, before),
+        *_lengths(now, before),
+        *_regions(level, now, before),
+    )
+
+
+def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
+    """Up to which stage the episodes come; one sentence for all that is as before, one for the first that is not."""
+    done: list[str] = []
+    for state in chain(fspa)[:-1]:
+        distance = fspa.states[state].distance or 0
+        came, used = (_passed(fspa, accounts, distance) for accounts in (now, before))
+        if abs(len(came) / len(now) - len(used) / len(before)) < _DIFFERENT:
+            if len(came) / len(now) > 1 - _DIFFERENT:
+                done.append(deed(fspa, state))
+            continue
+        first = f"{_joined(done)} as before, then " if done else ""
+        failed = tuple(each.index for each in now if each not in came)
+        text = f"{first}{deed(fspa, state)} in {_of(len(came), now)}; before: in {_of(len(used), before)}"
+        yield Finding(text, failed)
+        return
+    if done:
+        yield Finding(f"{_joined(done)} as before", ())
+
+
+def _passed(fspa: Fspa, accounts: Sequence[Account], distance: int) -> list[Account]:
+    """The episodes that came nearer to acceptance than ``distance``."""
+    return [each for each in accounts if min(_distances(fspa, each)) < distance]
+
+
+def _distances(fspa: Fspa, account: Account) -> list[int]:
+    found = [fspa.states[arrival.state].distance for arrival in account.arrivals]
+    return [distance for distance in found if distance is not None] or [fspa.spec_size]
+
+
+def _ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
+    """How the failed episodes end, the most frequent first."""
+    groups: dict[tuple[object, ...], list[Account]] = {}
+    for each in now:
+        if not each.success:
+            groups.setdefault(_kind(level, each), []).append(each)
+    often = sorted(groups.items(), key=lambda item: -len(item[1]))
+    for kind, accounts in often[:_FEW]:
+        if len(accounts) < _FEW and 10 * len(accounts) < len(now):
+            continue
+        used = sum(not each.success and _kind(level, each) == kind for each in before)
+        text = f"{_end(level, accounts)} in {_of(len(accounts), now)}; before: in {_of(used, before)}"
+        yield Finding(text + _approach(accounts), tuple(each.index for each in accounts))
+
+
+def _kind(level: Level, account: Account) -> tuple[object, ...]:
+    return account.unmet, account.cause, account.by, place_name(level, account.place)
+
+
+def _end(level: Level, accounts: Sequence[Account]) -> str:
+    first = accounts[0]
+    where = place_name(level, first.place)
+    by = f" by {_names(first.by)}" if first.by else ""
+    seen = [name for name in first.seen_by if name not in first.by]
+    saw = f", seen by {_names(seen)}" if seen else ""
+    if first.cause == "killed":
+        return f"dies {where}{by}{saw}"
+    if first.cause == "violated":
+        return f"breaks the spec {where} ({', '.join(first.by)}){saw}"
+    solid = obstacle(level, [each.place for each in accounts])
+    return f"is {where} when time is up" + (f", at `{solid}`" if solid else "")
+
+
+def _approach(accounts: Sequence[Account]) -> str:
+    """How near the best of the episodes came to what it did not reach."""
+    near = [each.nearest for each in accounts if each.nearest]
+    if not near:
+        return ""
+    best = max(near, key=lambda each: each.robustness)
+    if best.target is not None:
+        return f"; closest approach to `{best.target}`: {best.distance:.1f} m"
+    return f"; the limit is `{best.atom}`, {best.robustness:+.2f} at best"
+
+
+def _lengths(now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
+    new, old = ([each.steps for each in accounts if each.success] for accounts in (now, before))
+    if new and old:
+        ratio = fmean(new) / fmean(old)
+        if not 1 / _SLOWER < ratio < _SLOWER:
+            how = "longer" if ratio > 1 else "shorter"
+            text = f"successes are {how}: {fmean(new):.0f} steps on average; before: {fmean(old):.0f}"
+            yield Finding(text, tuple(each.index for each in now if each.success))
+
+
+def _regions(level: Level, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
+    """The regions that more of the successful episodes pass through than before, or fewer."""
+    new, old = ([each for each in accounts if each.success] for accounts in (now, before))
+    if min(len(new), len(old)) < _FEW:
+        return
+    for region in level.regions:
+        there, used_to = ([each for each in accounts if _visits(each, region)] for accounts in (new, old))
+        share, used = len(there) / len(new), len(used_to) / len(old)
+        if abs(share - used) >= 2 * _DIFFERENT:
+            name = region.name.replace("_", " ")
+            text = f"{share:.0%} of the successful episodes pass through the {name}; before: {used:.0%}"
+            yield Finding(text, tuple(each.index for each in there))
+
+
+def _visits(account: Account, region: Region) -> bool:
+    (x0, y0, _), (x1, y1, _) = region.box.low, region.box.high
+    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y, _ in account.way)
+
+
+def _of(count: int, accounts: Sequence[Account]) -> str:
+    return f"{count} of {len(accounts)} episodes"
+
+
+def _names(names: Sequence[str]) -> str:
+    return " and ".join(f"`{name}`" for name in names)
+
+
+def _joined(words: Sequence[str]) -> str:
+    return ", ".join(words)

@@ -1,0 +1,104 @@
+"""The cases of a suite are played: against their baseline until the verdict is certain, or to record it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Generator
+from contextlib import closing
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.evaluation.evaluate import Pool, results, set_up
+from tltl_runtime.evaluation.player import Setup, Task
+from tltl_runtime.policies.file import MAX_BYTES, from_bytes
+from tltl_runtime.policies.identity import level_hash, spec_hash
+from tltl_runtime.regression.account import Account, account
+from tltl_runtime.regression.baseline import Played, Reference
+from tltl_runtime.regression.suite import Case
+from tltl_runtime.regression.verdict import Judgement, judge
+from tltl_runtime.stealth.episodes.file import from_bytes as episode_from_bytes
+from tltl_runtime.stealth.episodes.versions import versions
+from tltl_runtime.stealth.levels.file import load_level
+from tltlc.files import read_bytes
+from tltlc.record import record
+
+_PLAYER: Final = "policy"
+
+
+@record
+class Ready:
+    """A case that can be played: the evaluation, and what is recorded of what it depends on."""
+
+    case: Case
+    setup: Setup
+    played: Played
+
+
+@record
+class Recorded:
+    """An episode that was played: its account, and the bytes of its recording."""
+
+    account: Account
+    recording: bytes
+
+
+@record
+class Result:
+    """A case that was judged by the episodes that were played, in their order."""
+
+    ready: Ready
+    reference: Reference
+    judgement: Judgement
+    episodes: tuple[Recorded, ...]
+
+
+def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
+    """A case made ready to play, by default in its own variant; raises TltlError for all that does not fit."""
+    path = _policy_file(case.policy)
+    data = read_bytes(path, str(path), MAX_BYTES)
+    policy = from_bytes(data, str(path))
+    setup = set_up(policy, case.level, variant or case.variant, case.spec, seed, "all")
+    level = load_level(setup.level, setup.variant)
+    sha256 = hashlib.sha256(data).hexdigest()
+    played = Played(
+        level=level.name,
+        variant=level.variant,
+        spec=setup.fspa.name,
+        policy=sha256,
+        seed=seed,
+        level_hash=level_hash(level),
+        spec_hash=spec_hash(setup.fspa),
+        files=level.files,
+        versions=versions(),
+    )
+    return Ready(case, setup, played)
+
+
+def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
+    """The case's episodes as they are played; closing the iterator ends the workers."""
+    tasks = [Task(index) for index in range(made.case.episodes)]
+    with closing(results(made.setup, tasks, pool)) as playing:
+        for each in playing:
+            yield Recorded(account(each.played, episode_from_bytes(each.recording, _PLAYER)), each.recording)
+
+
+def judged(made: Ready, reference: Reference, error: float, pool: Pool, told: Callable[[int, Account], None]) -> Result:
+    """Play a case until its verdict is certain; ``told`` gets the number of episodes so far and the last one."""
+    found: list[Recorded] = []
+    with closing(episodes(made, pool)) as playing:
+        for each in playing:
+            found.append(each)
+            told(len(found), each.account)
+            now = [recorded.account for recorded in found]
+            judgement = judge(now, reference.accounts, made.case.episodes, made.case.thresholds, error)
+            if judgement:
+                return Result(made, reference, judgement, tuple(found))
+    raise AssertionError("the last episode settles every verdict")
+
+
+def _policy_file(path: Path) -> Path:
+    if not path.is_dir():
+        return path
+    from tltl_runtime.training.run import POLICY
+
+    return path / POLICY

@@ -1,0 +1,52 @@
+"""Why a case has its verdict: sentences for people, the weightiest first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.baseline import Played
+from tltl_runtime.regression.suite import Thresholds
+from tltl_runtime.regression.verdict import Judgement
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.levels.file import changes
+from tltl_runtime.stealth.supply.feasible import reach_warnings
+from tltlc.automaton.fspa import Fspa
+
+
+def reasons(
+    judgement: Judgement, thresholds: Thresholds, now: Sequence[Account], before: Sequence[Account]
+) -> Iterator[str]:
+    """What the statistics say."""
+    passed, used = (sum(each.success for each in accounts) for accounts in (now, before))
+    low, high = (f"{end:.0%}" for end in judgement.rate_interval)
+    good, bad = f"{thresholds.pass_rate:.0%}", f"{thresholds.fail_rate:.0%}"
+    met = f"met in {passed} of {len(now)} episodes, before in {used} of {len(before)}"
+    if judgement.verdict == "fail":
+        yield f"{met}: certainly in less than {bad}"
+    elif judgement.rate_interval[0] >= thresholds.pass_rate:
+        yield f"{met}: certainly in {good} or more"
+    elif judgement.certain and judgement.rate_interval[1] < thresholds.pass_rate:
+        yield f"{met}: certainly in {bad} to {good}"
+    else:
+        yield f"{met}: {low} to {high} can be said for certain, and {good} are asked for"
+    for change in judgement.changes:
+        how = "lower" if change.now < change.before else "higher"
+        yield f"{change.figure} is {how}, {change.now:.2f} on average; before: {change.before:.2f}"
+
+
+def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
+    """What nobody can reach in the level, whoever plays."""
+    for warning in reach_warnings(level, fspa):
+        if warning.code == "TLT0814":
+            yield f"{warning.title}: {warning.help}"
+
+
+def edits(now: Played, before: Played, level: str, variant: str) -> Iterator[str]:
+    """Which files are others than in the baseline, and what overlays say that they change."""
+    old = dict(before.files)
+    files = [name for name, sha256 in now.files if old.get(name) != sha256]
+    files += [name for name in old if name not in dict(now.files)]
+    if files:
+        yield f"changed since the baseline: {', '.join(files)}"
+    yield from changes(level, variant)
