@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-
 
 @contextmanager
 def level_faults() -> Iterator[None]:
@@ -14,10 +12,9 @@ def level_faults() -> Iterator[None]:
     try:
         yield
     except RuntimeError as error:
-        # Not before it is needed: it loads the physics.
-        from tltl_runtime.stealth.world.physics import WorldError
+        from tltl_runtime.stealth.world.faults import player_fault
 
-        if not isinstance(error, WorldError) or error.body != "player":
+        fault = player_fault(error)
+        if fault is None:
             raise
-        help_ = "make its bounds higher than a jump leads, 1 m; `tltlc check --level` tells where one gets"
-        raise TltlError([Diagnostic("TLT0806", str(error), help=help_)]) from error
+        raise fault from error

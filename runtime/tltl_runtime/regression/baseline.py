@@ -11,6 +11,8 @@ from typing import Any, Final
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.refusals import Refusals
 from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.suite import SHIPPED
+from tltl_runtime.stealth.levels.made_for import shown
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
 from tltlc.record import record
@@ -86,6 +88,15 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
         raise _REFUSALS.broken(name, str(error)) from None
 
 
+def baseline_of(suite: Path) -> tuple[Reference, ...]:
+    """The baseline beside a suite; TLT0903 where there is none, and errors as of :func:`read_baseline`."""
+    path = baseline_path(suite)
+    if not path.exists():
+        title = f"the suite `{shown(suite)}` has no baseline: there is no `{shown(path)}`"
+        raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
+    return read_baseline(path)
+
+
 def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Path) -> Reference:
     """What the baseline has of the same level, variant, spec, policy and seed; the level may be another one by now.
 
@@ -106,7 +117,7 @@ def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Path)
 
 def baseline_command(suite: Path) -> str:
     """What records the baseline of a suite, to be pasted."""
-    return f"tltlc baseline {quote(str(suite))}"
+    return "tltlc baseline" if suite == SHIPPED else f"tltlc baseline {quote(shown(suite))}"
 
 
 @record

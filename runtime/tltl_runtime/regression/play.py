@@ -54,7 +54,7 @@ class Result:
 
 def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
     """A case made ready to play, by default in its own variant; raises TltlError for all that does not fit."""
-    path = _policy_file(case.policy)
+    path = policy_file(case.policy)
     data = read_bytes(path, str(path), MAX_BYTES)
     policy = from_bytes(data, str(path))
     setup = set_up(policy, case.level, variant or case.variant, case.spec, seed, "all")
@@ -96,7 +96,8 @@ def judged(made: Ready, reference: Reference, error: float, pool: Pool, told: Ca
     raise AssertionError("the last episode settles every verdict")
 
 
-def _policy_file(path: Path) -> Path:
+def policy_file(path: Path) -> Path:
+    """The policy of a case: a file, or that in the folder of a training."""
     if not path.is_dir():
         return path
     from tltl_runtime.training.run import POLICY

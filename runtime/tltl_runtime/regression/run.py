@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.held_folder import held
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Played, Reference, reference_of
@@ -16,7 +17,9 @@ from tltl_runtime.regression.case_report import CaseReport, report_on, report_on
 from tltl_runtime.regression.play import Ready, Result, episodes, judged, ready
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.episodes.file import SUFFIX
-from tltlc.diagnostics.diagnostic import TltlError
+from tltl_runtime.stealth.world.faults import player_fault
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reason
 from tltlc.record import record, replace
 from tltlc.writing import write_files
 
@@ -25,16 +28,23 @@ _VERSION: Final = 1
 _RECORDINGS: Final = 3
 """Of how many episodes of each finding there are recordings."""
 
+_WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
+
 Told = Callable[[Case, int, Account], None]
 """Is told of a case the number of episodes so far, and the last one."""
 
 
 @record
 class Done:
-    """A case that is over; ``kept``: it was played by an earlier run, of which nothing has changed."""
+    """A case that is over; ``kept``: it was played by an earlier run, of which nothing has changed.
+
+    ``ready`` and ``reference`` are what was played and compared with, None for a case that could not be played.
+    """
 
     report: CaseReport
     kept: bool
+    ready: Ready | None = None
+    reference: Reference | None = None
 
 
 def regress(
@@ -42,26 +52,39 @@ def regress(
 ) -> Generator[Done]:
     """Judge some cases of a suite, in their order, each as soon as it is over.
 
-    What was played is kept below ``folder``; a case of which nothing has changed since is not played again.
+    What was played is kept below ``folder``, which is this run's until it ends; a case of which nothing has changed
+    since is not played again.  A case that cannot be played fails, and the others go on.
 
     Raises:
-        TltlError: TLT0903, the baseline lacks a case, before anything is played; TLT0005; what playing raises.
+        TltlError: before anything is played, TLT0903 where the baseline lacks a case, and TLT0005 and TLT0904 for the
+            folder; then what playing raises.
     """
     made = [(case, *_prepared(suite, case, references)) for case in cases]
-    error = suite.error / len(suite.cases)
-    for case, prepared, fault in made:
-        if prepared is None:
-            assert fault is not None
-            yield Done(report_on_broken(case, fault), kept=False)
-            continue
-        one, reference = prepared
-        place, identity = folder / _folder_name(case), _identity(one, reference, error)
-        kept = _kept(place, identity)
-        if kept:
-            yield Done(kept, kept=True)
-            continue
-        result = judged(one, reference, error, pool, lambda count, last, case=case: told(case, count, last))  # type: ignore[misc]
-        yield Done(_write(place, identity, result), kept=False)
+    title = f"another run of `tltlc regress` plays in `{folder}`"
+    busy = Diagnostic("TLT0904", title, help="wait for its end, or name another folder with --out")
+    with held(folder, busy, _WRITABLE):
+        for case, prepared, fault in made:
+            if prepared is None:
+                assert fault is not None
+                yield Done(report_on_broken(case, fault), kept=False)
+            else:
+                yield _done(suite, *prepared, folder, pool, told)
+
+
+def forget(cases: Sequence[Case], folder: Path) -> None:
+    """Have the next :func:`regress` play some cases anew, whatever is kept of them in ``folder``; raises TLT0005."""
+    for case in cases:
+        path = case_folder(folder, case.name) / _REPORT
+        try:
+            path.unlink(missing_ok=True)
+        except OSError as error:
+            title = f"cannot remove `{path}`: {reason(error)}"
+            raise TltlError([Diagnostic("TLT0005", title, help=_WRITABLE)]) from None
+
+
+def case_folder(folder: Path, name: str) -> Path:
+    """Where a run in ``folder`` keeps what it played of the case of that name."""
+    return folder / "".join(each if each.isalnum() or each in "-_+." else "-" for each in name)
 
 
 def record_baseline(suite: Suite, pool: Pool, told: Told) -> Iterator[Reference]:
@@ -91,8 +114,21 @@ def _prepared(
     return (one, reference_of(references, wanted, suite.path)), None
 
 
-def _folder_name(case: Case) -> str:
-    return "".join(each if each.isalnum() or each in "-_+." else "-" for each in case.name)
+def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Pool, told: Told) -> Done:
+    """A case as an earlier run has left it, or played now."""
+    case, error = one.case, suite.error / len(suite.cases)
+    place, identity = case_folder(folder, case.name), _identity(one, reference, error)
+    kept = _kept(place, identity)
+    if kept:
+        return Done(kept, kept=True, ready=one, reference=reference)
+    try:
+        result = judged(one, reference, error, pool, lambda count, last: told(case, count, last))
+    except RuntimeError as problem:
+        fault = player_fault(problem)
+        if fault is None:
+            raise
+        return Done(report_on_broken(case, fault), kept=False)
+    return Done(_write(place, identity, result), kept=False, ready=one, reference=reference)
 
 
 def _identity(one: Ready, reference: Reference, error: float) -> str:
@@ -136,7 +172,5 @@ def _write(place: Path, identity: str, result: Result) -> CaseReport:
     named = {index: f"{index}{SUFFIX}" for index in sorted({*spoken_of, *successes[:1]})}
     report = replace(report, recordings=tuple(named.items()))
     text = json.dumps(to_json(_Document(identity, report)), ensure_ascii=False) + "\n"
-    write_files(
-        place, {**{name: by_index[index] for index, name in named.items()}, _REPORT: text}, "name another place"
-    )
+    write_files(place, {**{name: by_index[index] for index, name in named.items()}, _REPORT: text}, _WRITABLE)
     return report

@@ -12,7 +12,7 @@ from tltlc.files import read_source
 LEVELS: Final = Path(__file__).parents[2] / "levels"
 """The folder of the levels that come with the package."""
 
-_SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
+SPECS: Final = (LEVELS.parent / "examples", LEVELS.parents[2] / "examples")
 """Where their specs lie: in an installed package, and in a checkout."""
 
 
@@ -29,7 +29,7 @@ def made_for(table: Table, level: Path) -> str:
         table.log.append(wrong(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
         return ""
     label = table.place("spec")
-    path = next((folder / file for folder in (level.parent, *_SPECS) if (folder / file).is_file()), None)
+    path = next((folder / file for folder in (level.parent, *SPECS) if (folder / file).is_file()), None)
     if path is None:
         help_ = f"put it beside `{level.name}`"
         table.log.append(Diagnostic("TLT0805", f"there is no spec file `{file}`", (label,), help_))
@@ -43,7 +43,7 @@ def made_for(table: Table, level: Path) -> str:
 
 def comes_with_the_package(spec: str) -> bool:
     """Whether a file of specs is one that shipped levels are made for."""
-    return Path(spec).resolve().parent in [folder.resolve() for folder in _SPECS]
+    return Path(spec).resolve().parent in [folder.resolve() for folder in SPECS]
 
 
 def shown(path: Path) -> str:

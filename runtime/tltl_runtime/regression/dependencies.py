@@ -1,0 +1,181 @@
+"""What a case depends on: from the files of its level, spec, policy and suite to the cases that a change concerns.
+
+Nothing has to load: of a file with mistakes counts what can be read of it.  A case too many costs minutes and one too
+few hides a finding, so that all counts that may matter.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from tltl_runtime.regression.baseline import baseline_path
+from tltl_runtime.regression.play import policy_file
+from tltl_runtime.regression.suite import Case, Suite
+from tltl_runtime.stealth.levels.file import level_path
+from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.grammar.parser import parse
+from tltlc.grammar.tree import Import
+from tltlc.project import project_for
+from tltlc.record import record
+from tltlc.resolve.imports import standard_library
+from tltlc.source import SourceFile
+from tltlc.spec_file import split
+from tltlc.toml_text import parse as parse_toml
+
+_QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
+_SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
+
+
+@record
+class Selection:
+    """The cases that depend on what has changed, those that do not, and names on which no case depends."""
+
+    cases: tuple[Case, ...]
+    left_out: tuple[Case, ...]
+    unknown: tuple[str, ...]
+
+
+def select(suite: Suite, changed: Sequence[str]) -> Selection:
+    """The cases that depend on something of ``changed``.
+
+    A name is a file's path or its end (``assets/guard.toml``, ``guard.toml``), either without the ending, too
+    (``guard``), or the path of a folder.
+    """
+    of = {case.name: dependencies(suite, case) for case in suite.cases}
+    concerned = {case.name for case in suite.cases if any(_is_meant(name, of[case.name]) for name in changed)}
+    known = {path for paths in of.values() for path in paths}
+    return Selection(
+        tuple(case for case in suite.cases if case.name in concerned),
+        tuple(case for case in suite.cases if case.name not in concerned),
+        tuple(name for name in dict.fromkeys(changed) if not _is_meant(name, known)),
+    )
+
+
+def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
+    """The files that a case depends on, as absolute paths.
+
+    Those that would take the place of another one count, too, so that it matters when they are made or deleted.
+    """
+    found = [suite.path, baseline_path(suite.path), policy_file(case.policy)]
+    found += _level_files(level_path(case.level), case.variant)
+    if case.spec is not None:
+        found += _spec_files(Path(split(case.spec)[0]))
+    return tuple(dict.fromkeys(path.resolve() for path in found))
+
+
+def _is_meant(name: str, paths: Iterable[Path]) -> bool:
+    given = Path(name)
+    place, parts = given.resolve(), given.parts
+    return any(
+        place == path
+        or place in path.parents
+        or path.parts[-len(parts) :] == parts
+        or (*path.parts[-len(parts) : -1], path.name.partition(".")[0]) == parts
+        for path in paths
+    )
+
+
+def _level_files(level: Path, variant: str) -> Iterator[Path]:
+    """The level, the assets and overlays of the variant, and the spec that it is made for."""
+    yield level
+    base, *added = variant.split("+")
+    text = _text(level)
+    table = _table(text)
+    if table is None:
+        words = [first or second for first, second in _QUOTED.findall(text.text)] if text else []
+        assets, overlays, specs = words, words, words
+    else:
+        things = [each.get("asset") for each in _tables(table.get("use"))]
+        things += [each.get("kind") for each in _tables(table.get("enemy"))]
+        named = table.get("variants")
+        listed = named.get(base) if isinstance(named, dict) else None
+        assets, specs = _texts(things), _texts([table.get("spec")])
+        overlays = _texts(listed if isinstance(listed, list) else [])
+    places = (level.parent, LEVELS)
+    yield from _shared(assets, "assets", places, sure=table is not None)
+    yield from _shared(overlays, "overlays", places, sure=table is not None)
+    yield from (Path(name) for name in added if name.endswith(".toml"))
+    yield from _shared([name for name in added if not name.endswith(".toml")], "overlays", places, sure=True)
+    for match in filter(None, map(_SPEC.match, specs)):
+        for path in _first(folder / match[1] for folder in (level.parent, *SPECS)):
+            yield from _spec_files(path)
+
+
+def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: bool) -> Iterator[Path]:
+    """The files of assets or overlays; of names that may be something else, the files that there are."""
+    for name in names:
+        paths = [place / folder / f"{name}.toml" for place in places]
+        if sure or any(map(_is_file, paths)):
+            yield from _first(paths)
+
+
+def _spec_files(spec: Path) -> Iterator[Path]:
+    """A spec's file, what it imports, directly or not, and nothing twice."""
+    waiting, seen = [spec], {spec.resolve()}
+    while waiting:
+        path = waiting.pop()
+        yield path
+        for imported in _imports(path):
+            if imported.resolve() not in seen:
+                seen.add(imported.resolve())
+                waiting.append(imported)
+
+
+def _imports(spec: Path) -> Iterator[Path]:
+    text = _text(spec)
+    if text is None or spec.suffix != ".tltl":
+        return
+    try:
+        libraries = project_for(str(spec)).libraries
+    except TltlError:
+        libraries = ()
+    for declaration in parse(text)[0].declarations:
+        if not isinstance(declaration, Import):
+            continue
+        if declaration.is_path:
+            yield spec.parent / declaration.target
+        else:
+            name = declaration.target.replace(".", "/") + ".tltl"
+            yield from _first(folder / name for folder in (spec.parent, *libraries, standard_library()))
+
+
+def _first(paths: Iterable[Path]) -> Iterator[Path]:
+    """The paths up to the first one that is a file: those before it would take its place."""
+    for path in paths:
+        yield path
+        if _is_file(path):
+            return
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def _text(path: Path) -> SourceFile | None:
+    try:
+        return read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
+    except TltlError:
+        return None
+
+
+def _table(text: SourceFile | None) -> dict[str, Any] | None:
+    try:
+        return parse_toml(text, "TLT0801", "") if text else {}
+    except TltlError:
+        return None
+
+
+def _tables(value: Any) -> list[dict[str, Any]]:
+    return [each for each in value if isinstance(each, dict)] if isinstance(value, list) else []
+
+
+def _texts(values: Iterable[Any]) -> list[str]:
+    return [value for value in values if isinstance(value, str) and value]
