@@ -1,0 +1,124 @@
+"""The cells of our Table I: a model plays 100 episodes of a level in a variant; what was played is kept in a folder."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from hashlib import sha256
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.evaluation.evaluate import Pool, evaluate
+from tltl_runtime.evaluation.statistics import spread_of
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.regression.paper_table import RUNS, Figures, Model
+from tltl_runtime.stealth.episodes.outcome import outcome
+from tltl_runtime.stealth.episodes.versions import versions
+from tltl_runtime.stealth.levels.file import load_level
+from tltlc.record import record
+from tltlc.writing import write_file
+
+EPISODES: Final = 100
+SEED: Final = 25_000
+"""Of the evaluations; no training begins an episode with one of theirs but by chance."""
+
+
+@record
+class Went:
+    """How an episode went."""
+
+    success: bool
+    progress: float
+    reward: float
+
+
+@record
+class Cell:
+    """The episodes of a model on a level in a variant, and the hash of what they depend on."""
+
+    identity: str
+    episodes: tuple[Went, ...]
+
+
+def figures(cell: Cell, runs: int = EPISODES) -> Figures:
+    """The figures of a cell over its first ``runs`` episodes."""
+    first = cell.episodes[:runs]
+    return Figures(
+        runs=len(first),
+        pass_rate=sum(each.success for each in first) / len(first),
+        progress=spread_of([each.progress for each in first]),
+        reward=spread_of([each.reward for each in first]),
+    )
+
+
+def measured(folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool) -> Cell:
+    """A cell that ``folder`` has, or that is played now and kept there; the expert plays where there is no ``policy``.
+
+    Raises:
+        TltlError: what playing raises; TLT0005.
+    """
+    path = folder / f"{level}-{variant}-{model}.json"
+    identity = _identity(level, variant, policy)
+    if (kept := _kept(path, identity)) is not None:
+        return kept
+    episodes = tuple(_by_policy(policy, level, variant, pool) if policy else _by_expert(level, variant, pool))
+    cell = Cell(identity, episodes)
+    write_file(path, json.dumps(to_json(cell)) + "\n")
+    return cell
+
+
+def _identity(level: str, variant: str, policy: Path | None) -> str:
+    played = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
+    parts = [level_hash(load_level(level, variant)), played, EPISODES, SEED, dict(versions())]
+    return sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+
+
+def _kept(path: Path, identity: str) -> Cell | None:
+    try:
+        cell = from_json(Cell, json.loads(path.read_text(encoding="utf-8")), "cell")
+    except (OSError, ValueError, RecordJsonError, RecursionError):
+        # It is played again.
+        return None
+    return cell if cell.identity == identity else None
+
+
+def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[Went]:
+    for each in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool):
+        yield Went(each.success, each.progress, each.reward)
+
+
+def _by_expert(level: str, variant: str, pool: Pool) -> Sequence[Went]:
+    """The careful expert's episodes, whose seeds follow each other; in this process, or in several."""
+    from tltl_runtime.vector.cores import cores
+
+    workers = cores() if pool == "ray" or pool == 0 else pool
+    parts = [(level, variant, tuple(range(SEED + first, SEED + EPISODES, workers))) for first in range(workers)]
+    if workers == 1:
+        return _expert_part(*parts[0])
+    with ProcessPoolExecutor(workers, get_context("spawn")) as executor:
+        played = list(executor.map(_expert_part, *zip(*parts, strict=True)))
+    return [played[index % workers][index // workers] for index in range(EPISODES)]
+
+
+def _expert_part(level: str, variant: str, seeds: tuple[int, ...]) -> list[Went]:
+    from tltl_runtime.stealth.env import make_env
+    from tltl_runtime.stealth.expert.expert import Expert, play_episode
+    from tltl_runtime.stealth.recording import RecordEpisode
+
+    env = RecordEpisode(make_env(level, variant))
+    expert = Expert(env)
+    found = []
+    for seed in seeds:
+        play_episode(env, expert, seed)
+        went = outcome(env.episode)
+        found.append(Went(went.success, went.progress, went.reward))
+    env.close()
+    return found
+
+
+def short_and_long(cell: Cell) -> tuple[Figures, Figures]:
+    """The figures of as many episodes as the paper has, and of all."""
+    return figures(cell, RUNS), figures(cell)
