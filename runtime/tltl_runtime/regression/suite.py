@@ -22,7 +22,10 @@ SHIPPED: Final = Path(__file__).with_name("shipped") / "suite.toml"
 LEAST_EPISODES: Final = 25
 """No verdict comes of fewer episodes, which an explanation needs, too; those of the paper's Table I."""
 
-_MOST_EPISODES: Final = 10_000
+MOST_EPISODES: Final = 300
+"""Are played of a case at the most, where its suite says nothing else."""
+
+_LIMIT: Final = 10_000
 _HELP: Final = 'values are written as in `episodes = 100`, texts as in `level = "navigation"`'
 
 
@@ -85,7 +88,7 @@ def read_suite(path: Path) -> Suite:
     table = Table(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
     seed = table.whole("seed", low=0, high=2**31 - 1) if "seed" in table.entries else 0
     error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
-    episodes = _episodes(table, 200)
+    episodes = _episodes(table, MOST_EPISODES)
     thresholds = _thresholds(table, Thresholds())
     cases = [_case(each, path.parent, episodes, thresholds) for each in table.tables("case")]
     table.done()
@@ -194,7 +197,7 @@ def _policy(table: Table, folder: Path, level: str) -> Path | None:
 def _episodes(table: Table, default: int) -> int:
     if "episodes" not in table.entries:
         return default
-    return table.whole("episodes", low=LEAST_EPISODES, high=_MOST_EPISODES)
+    return table.whole("episodes", low=LEAST_EPISODES, high=_LIMIT)
 
 
 def _thresholds(table: Table, defaults: Thresholds) -> Thresholds:
