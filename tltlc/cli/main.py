@@ -30,6 +30,7 @@ BUILT_IN: Final = {
 OF_THE_RUNTIME: Final = {
     "demonstrate": "Have the scripted expert play a level, and record it.",
     "play": "Play a level with the keyboard, and record it.",
+    "record": "Record demonstrations that meet a spec, for an agent to imitate.",
     "replay": "Show recorded episodes: how they went, plans, films, signals.",
     "train": "Train an agent until it meets a spec.",
     "evaluate": "Have a trained policy play, and report how often it meets the spec.",

@@ -12,7 +12,6 @@ from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.notation import notation_option
 from tltl_runtime.commands.options import output_folder, seed_option
-from tltl_runtime.texts import number, share
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.spec_file import split
@@ -57,10 +56,11 @@ def command(
     why those failed that did.  What is there stays: another episode of the same name becomes LEVEL-VARIANT-SEED-2 and
     so on.  The exit status is 1 where an episode does not succeed.
     """
+    from tltl_runtime.commands.episode_text import episode_line
     from tltl_runtime.stealth.env import make_env
-    from tltl_runtime.stealth.expert.expert import Expert, play_episode
     from tltl_runtime.stealth.recording import RecordEpisode
     from tltl_runtime.stealth.supply.feasible import reach_warnings
+    from tltl_runtime.training.demonstrations import expert_episodes
 
     with Report() as report, requests_heard():
         file, variant = split(level)
@@ -68,13 +68,10 @@ def command(
         played = succeeded = 0
         try:
             report.add(reach_warnings(env.get_wrapper_attr("level"), env.get_wrapper_attr("task").fspa))
-            expert = Expert(env, careful=not careless)
-            for number in range(seed, seed + episodes):
-                play_episode(env, expert, number)
-                episode = env.episode
+            for episode in expert_episodes(env, range(seed, seed + episodes), careful=not careless):
                 path = _write(folder, episode, film, notation)
                 played, succeeded = played + 1, succeeded + episode.success
-                click.echo(_line(episode, path))
+                click.echo(episode_line(episode, str(path)))
         except KeyboardInterrupt:
             click.echo(f"stopped: {played} of {episodes} episodes were recorded", err=True)
             raise
@@ -100,13 +97,3 @@ def _write(folder: Path, episode: Episode, film: str | None, notation: Notation)
         span = (0.0, episode.snapshots[-1].time)
         write_film(folder / f"{name}.{film}", episode, span, Film(notation=notation))
     return path
-
-
-def _line(episode: Episode, path: Path) -> str:
-    """How an episode went."""
-    from tltl_runtime.stealth.episodes.cause import cause
-
-    steps, seconds = len(episode.actions), episode.snapshots[-1].time
-    ended = f"seed {episode.seed}: {episode.end} after {steps} steps, {seconds:.2f} s"
-    line = f"{ended}, progress {share(episode.progress[-1])}, return {number(episode.rewards.sum(), 3)}: {path}"
-    return line if episode.success else f"{line}\n  {cause(episode).text}"

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from tltl_runtime.stealth.levels.file import level_names
+from tltl_runtime.task import read_spec
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.spec_file import split
 
@@ -32,3 +33,21 @@ def check_there(level: str, variant: str, command: str) -> None:
         title = f"the level's file `{level}` is not there any more"
         help_ = f"put it back, or say where it is now: `{command} --level FILE.toml{other}`"
         raise TltlError([Diagnostic("TLT0001", title, help=help_)])
+
+
+def own_level(spec: str, how: str = "with --level") -> str:
+    """The level that a spec is about by its own word: a file beside it, or one that comes with the package.
+
+    ``how`` to name one goes into messages.  Raises UsageError where the spec names none, TltlError where there is none.
+    """
+    fspa, _ = read_spec(spec)
+    if fspa.level is None:
+        message = f"`{fspa.name}` does not say which level it is about: name one {how}"
+        raise click.UsageError(message, click.get_current_context())
+    beside = Path(split(spec)[0]).parent / f"{fspa.level}.toml"
+    if beside.is_file():
+        return str(beside)
+    if fspa.level not in level_names():
+        title = f"there is no level `{fspa.level}`: `{beside}` is not there, and none of that name comes with tltlc"
+        raise TltlError([Diagnostic("TLT0800", title, help=f"name its file {how}")])
+    return fspa.level

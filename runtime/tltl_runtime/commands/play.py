@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
-import sys
+from functools import partial
 from pathlib import Path
-from typing import Final
 
 import click
 
+from tltl_runtime.commands.at_keyboard import keyboard_options, play_at_keyboard
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.recording_files import RecordingFiles
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.file import SUFFIX
-from tltl_runtime.stealth.keyboard import KeyboardPlayer
-from tltl_runtime.stealth.pictures.camera import VIEWS, View
+from tltl_runtime.stealth.pictures.camera import View
 from tltl_runtime.stealth.pictures.hud import KEYS
-from tltl_runtime.stealth.pictures.render import Renderer
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.stealth.supply.feasible import reach_warnings
-from tltl_runtime.stealth.window.window import Window
-from tltlc.cli.report import show
 from tltlc.spec_file import split
-
-CROUCHES: Final = ("hold", "toggle")
-_SIZE: Final = (640, 400)
 
 
 @click.command(
@@ -54,8 +46,7 @@ Examples:
     type=click.Path(path_type=Path),
     help=f"Where to record: NAME{SUFFIX}, or a folder, made where it is missing.  Older recordings stay.",
 )
-@click.option("--view", type=click.Choice(VIEWS), default="third_person", show_default=True)
-@click.option("--crouch", type=click.Choice(CROUCHES), default="hold", show_default=True, help="What C does.")
+@keyboard_options
 @level_faults()
 def command(level: str, spec: str | None, seed: int | None, out: Path | None, view: View, crouch: str) -> None:
     """Play a level with the keyboard, in real time, in a window.
@@ -72,17 +63,6 @@ def _play(
 ) -> None:
     env = RecordEpisode(make_env(path, variant or "v0", spec), "keyboard")
     try:
-        shown = env.unwrapped.level  # type: ignore[attr-defined]
-        files = RecordingFiles(out, f"{shown.name}-{shown.variant}")
-        # A spec that asks for what the level does not have is told before there is a window.
-        env.reset()
-        show(reach_warnings(shown, env.get_wrapper_attr("task").fspa), "text", sys.stderr)
-        window = Window(f"{shown.name} {shown.variant}", _SIZE, side=True, sticky_crouch=crouch == "toggle")
-        renderer = Renderer(shown, *_SIZE)
-        try:
-            KeyboardPlayer(env, window, renderer, view, files).play(seed)
-        finally:
-            renderer.close()
-            window.close()
+        play_at_keyboard(env, partial(RecordingFiles, out), seed=seed, view=view, crouch=crouch)
     finally:
         env.close()

@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeVar
 
 import click
 
-from tltl_runtime.commands.level_argument import check_there, names_level
+from tltl_runtime.commands.level_argument import check_there, names_level, own_level
 from tltl_runtime.commands.senses import option_of
 from tltl_runtime.commands.training_text import duration, minutes
 from tltl_runtime.evaluation.evaluate import check_limit
@@ -17,7 +17,7 @@ from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.env import check_fit, spec_of
-from tltl_runtime.stealth.levels.file import level_names, level_path, load_level
+from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.senses.sensors import chosen
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
@@ -60,7 +60,7 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     if asked.level is not None:
         path, variant = split(asked.level)
     elif asked.spec is not None:
-        path, variant = _own_level(asked.spec), None
+        path, variant = own_level(asked.spec), None
     else:
         raise _usage("say what to train for: a spec, a level, or both")
     settings = new_settings(asked)
@@ -132,20 +132,6 @@ def _at_its_level(run: Run, asked: Asked) -> Run:
     if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
         return run
     return replace(run, level=path, variant=variant or "v0")
-
-
-def _own_level(spec: str) -> str:
-    """The level that a spec is about by its own word: a file beside it, or one that comes with the package."""
-    fspa, _ = read_spec(spec)
-    if fspa.level is None:
-        raise _usage(f"`{fspa.name}` does not say which level it is about: name one with --level")
-    beside = Path(split(spec)[0]).parent / f"{fspa.level}.toml"
-    if beside.is_file():
-        return str(beside)
-    if fspa.level not in level_names():
-        title = f"there is no level `{fspa.level}`: `{beside}` is not there, and none of that name comes with tltlc"
-        raise TltlError([Diagnostic("TLT0800", title, help="name its file with --level")])
-    return fspa.level
 
 
 def _check_folder(folder: Path) -> None:

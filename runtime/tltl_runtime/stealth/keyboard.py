@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from time import monotonic
 from typing import Any, Final, Protocol
 
@@ -40,17 +41,25 @@ _SOON: Final = 1 / 60
 class KeyboardPlayer:
     """Plays episodes of ``env`` in ``window``, drawn by ``renderer``; what was played is handed to ``recordings``.
 
+    It ends when the player stops, or where it is ``enough`` after an episode.
+
     Each episode is saved once: at its end, when it is begun again, and when it is stopped in whatever way, an
     exception such as KeyboardInterrupt included.  While it goes on, what there is is kept every few seconds.
     """
 
     def __init__(
-        self, env: RecordEpisode, window: Window, renderer: Renderer, view: View, recordings: Recordings
+        self,
+        env: RecordEpisode,
+        window: Window,
+        renderer: Renderer,
+        view: View,
+        recordings: Recordings,
+        enough: Callable[[], bool] = lambda: False,
     ) -> None:
         game = env.unwrapped
         assert isinstance(game, GameEnv)
         self._env, self._game, self._window, self._renderer = env, game.game, window, renderer
-        self._recordings = recordings
+        self._recordings, self._enough = recordings, enough
         self._view = view
         self._unsaved = False
 
@@ -59,7 +68,7 @@ class KeyboardPlayer:
         going = True
         try:
             while going:
-                going = self._episode(seed)
+                going = self._episode(seed) and not self._enough()
                 seed = None
         finally:
             self._save()
