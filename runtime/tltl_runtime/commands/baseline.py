@@ -38,19 +38,28 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
     Of each level that is the variant with which its cases are compared, by default the first one.
     """
     with Report() as report, learning_for("`tltlc baseline`"), requests_heard():
+        from tltl_runtime.commands.regression_display import RegressionDisplay
         from tltl_runtime.regression.baseline import baseline_path, write_baseline
         from tltl_runtime.regression.run import record_baseline
         from tltl_runtime.regression.suite import SHIPPED, read_suite
+        from tltlc.writing import replaced
 
         read = read_suite(suite or SHIPPED)
-        references = tuple(record_baseline(read, workers, lambda *_: None))
-        for each in references:
-            passed, count = sum(account.success for account in each.accounts), len(each.accounts)
-            click.echo(
-                f"{each.played.level}:{each.played.variant}: {each.played.spec} met in {passed} of {count} episodes"
-            )
         wrote = path or baseline_path(read.path)
-        write_baseline(wrote, references)
+        references = []
+        try:
+            # The place may refuse: better to know before minutes of play.
+            with replaced(wrote, "name another place with --output") as temporary, RegressionDisplay() as display:
+                for each in record_baseline(read, workers, display):
+                    display.over()
+                    references.append(each)
+                    passed, count = sum(account.success for account in each.accounts), len(each.accounts)
+                    met = f"{each.played.spec} met in {passed} of {count} episodes"
+                    click.echo(f"{each.played.level}:{each.played.variant}: {met}")
+                write_baseline(temporary, tuple(references))
+        except KeyboardInterrupt:
+            click.echo(f"stopped: nothing was written, and `{wrote}` is as it was", err=True)
+            raise
         click.echo(f"wrote {wrote}", err=True)
         return exits.CLEAN
     return report.status

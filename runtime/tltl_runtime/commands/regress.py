@@ -2,38 +2,85 @@
 
 from __future__ import annotations
 
-import json
+import os
+from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import Any
+from shlex import join, quote
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from tltl_runtime.commands.changed_option import ChangedCommand
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
-from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.workers import WorkersType
 from tltlc.cli import exits
 from tltlc.cli.report import Report
+from tltlc.record import record
+
+if TYPE_CHECKING:
+    from tltl_runtime.commands.regression_files import Outcome
+    from tltl_runtime.regression.baseline import Reference
+    from tltl_runtime.regression.dependencies import Selection
+    from tltl_runtime.regression.run import Done
+    from tltl_runtime.regression.suite import Case, Suite
+
+
+def _file(*, dash: bool = False) -> click.Path:
+    return click.Path(path_type=Path, allow_dash=dash, dir_okay=False)
+
+
+@record
+class _Wanted:
+    """What was asked for: the suite as it was named, where its files go, and how it is played."""
+
+    suite: Path | None
+    changed: tuple[str, ...] | None
+    folder: Path
+    json_file: Path | None
+    junit_file: Path | None
+    html_file: Path | None
+    github: bool
+    fresh: bool
+    workers: Any
+
+    @property
+    def is_json(self) -> bool:
+        """Whether standard output is for the report as JSON alone."""
+        return str(self.json_file) == "-"
 
 
 @click.command(
+    cls=ChangedCommand,
     epilog="""\b
 Examples:
   tltlc regress
   tltlc regress suite.toml --html report.html
   tltlc regress suite.toml --json - > report.json
-"""
+  tltlc regress suite.toml --changed assets/guard.toml
+  tltlc regress suite.toml --junit report.xml --github --changed $(git diff --name-only main)
+""",
 )
 @click.argument("suite", metavar="[SUITE]", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--changed",
+    metavar="ASSET…",
+    multiple=True,
+    help="Only the cases that depend on one of these files; it takes every word up to the next option.",
+)
 @click.option(
     "--json",
     "json_file",
     metavar="FILE",
-    type=click.Path(path_type=Path, allow_dash=True, dir_okay=False),
+    type=_file(dash=True),
     help="Write the report as JSON, too; `-` prints it in place of the text.",
 )
+@click.option("--junit", "junit_file", metavar="FILE", type=_file(), help="Write it as JUnit XML, too.")
+@click.option("--html", "html_file", metavar="FILE", type=_file(), help="Write the page here, too.")
+@click.option("--github", is_flag=True, help="Print findings as annotations of GitHub Actions, too.")
+@click.option("--fresh", is_flag=True, help="Play cases again of which nothing has changed since they were played.")
 @click.option(
     "--workers",
     metavar="N|ray",
@@ -41,39 +88,117 @@ Examples:
     default=0,
     help="Processes that play (default: one a core), or those of a Ray cluster.",
 )
-@output_folder("The folder for what was played (default: regression/SUITE).")
-@level_faults()
-def command(suite: Path | None, json_file: Path | None, workers: Any, folder: Path | None) -> int:
+@output_folder("The folder for the page and for what was played (default: regression/SUITE).")
+def command(
+    suite: Path | None,
+    changed: tuple[str, ...],
+    json_file: Path | None,
+    junit_file: Path | None,
+    html_file: Path | None,
+    github: bool,
+    fresh: bool,
+    workers: Any,
+    folder: Path | None,
+) -> int:
     """Have trained policies play the cases of a suite, and report which levels still play as designed.
 
-    SUITE is a TOML file; without one, the levels that come with tltlc are played in all of their variants.  The exit
-    status is 0 where all cases pass, and 1 where one is to be reviewed or fails.
+    SUITE is a TOML file; without one, the levels that come with tltlc are played in all of their variants.  A case of
+    which nothing has changed since it was played is not played again.  The exit status is 0 where all cases pass, and
+    1 where one is to be reviewed or fails.
     """
+    if github and str(json_file) == "-":
+        raise click.UsageError("--github and `--json -` both need standard output: write the JSON to a file")
+    named = tuple(filter(None, changed)) if changed else None
+    place = folder or Path("regression") / (suite.stem if suite else "shipped")
+    wanted = _Wanted(suite, named, place, json_file, junit_file, html_file, github, fresh, workers)
     with Report() as report, learning_for("`tltlc regress`"), requests_heard():
-        from tltl_runtime.commands.regression_text import case_lines, sum_line
-        from tltl_runtime.regression.baseline import baseline_path, read_baseline
-        from tltl_runtime.regression.document import document
-        from tltl_runtime.regression.run import regress
+        from tltl_runtime.regression.baseline import baseline_of
+        from tltl_runtime.regression.run import forget
         from tltl_runtime.regression.suite import SHIPPED, read_suite
-        from tltlc.writing import write_file
 
         read = read_suite(suite or SHIPPED)
-        references = read_baseline(baseline_path(read.path))
-        place = folder or Path("regression") / (suite.stem if suite else "shipped")
-        width = max(len(case.name) for case in read.cases)
-        as_json = str(json_file) == "-"
-        reports = []
-        with closing(regress(read, read.cases, references, place, workers, lambda *_: None)) as running:
-            for done in running:
-                reports.append(done.report)
-                for line in case_lines(done.report, width, kept=done.kept):
-                    click.echo(line, err=as_json)
-        click.echo(sum_line(reports), err=as_json)
-        if json_file:
-            text = json.dumps(document(read, reports, complete=True), indent=2, ensure_ascii=False) + "\n"
-            if as_json:
-                click.echo(text, nl=False)
-            else:
-                write_file(json_file, text, "name another place with --json")
-        return exits.CLEAN if all(each.verdict == "pass" for each in reports) else exits.FINDINGS
+        cases, left_out = _chosen(read, named)
+        references = baseline_of(read.path) if cases else ()
+        if fresh:
+            forget(cases, place)
+        found: list[Done] = []
+        try:
+            _play(read, cases, references, wanted, found)
+        except KeyboardInterrupt:
+            _stopped(wanted, len(found), len(cases))
+            raise
+        finally:
+            if found or not cases:
+                _tell(_outcome(read, found, len(cases), left_out), wanted)
+        return exits.CLEAN if all(done.report.verdict == "pass" for done in found) else exits.FINDINGS
     return report.status
+
+
+def _chosen(suite: Suite, changed: Sequence[str] | None) -> tuple[tuple[Case, ...], tuple[str, ...]]:
+    """The cases to be judged, and the names of those that are left out, which standard error tells."""
+    if changed is None:
+        return suite.cases, ()
+    from tltl_runtime.regression.dependencies import select
+
+    found: Selection = select(suite, changed)
+    if found.unknown:
+        click.echo(f"no case depends on {', '.join(found.unknown)}", err=True)
+    left_out = tuple(case.name for case in found.left_out)
+    if left_out:
+        click.echo(f"left out, since nothing has changed that they depend on: {', '.join(left_out)}", err=True)
+    return found.cases, left_out
+
+
+def _play(
+    suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...], wanted: _Wanted, found: list[Done]
+) -> None:
+    """Play the cases; each that is over is told at once, and added to ``found``."""
+    from tltl_runtime.commands.regression_display import RegressionDisplay
+    from tltl_runtime.commands.regression_text import case_lines
+    from tltl_runtime.regression.run import regress
+
+    width = max((len(case.name) for case in cases), default=0)
+    with (
+        RegressionDisplay("at most") as display,
+        closing(regress(suite, cases, references, wanted.folder, wanted.workers, display)) as running,
+    ):
+        for done in running:
+            found.append(done)
+            display.over()
+            for line in case_lines(done.report, width, kept=done.kept):
+                click.echo(line, err=wanted.is_json)
+
+
+def _stopped(wanted: _Wanted, count: int, cases: int) -> None:
+    """Say what is left of a run that was ended, and what goes on with it."""
+    words = ["tltlc", "regress", *([str(wanted.suite)] if wanted.suite else [])]
+    words += ["--out", str(wanted.folder)]
+    if wanted.changed is not None:
+        words += ["--changed", *wanted.changed]
+    click.echo(f"stopped: {count} of {cases} cases are judged, and kept; to go on: {join(words)}", err=True)
+
+
+def _outcome(suite: Suite, found: Sequence[Done], cases: int, left_out: tuple[str, ...]) -> Outcome:
+    from tltl_runtime.commands.regression_files import Outcome
+
+    return Outcome(suite, tuple(found), len(found) == cases, left_out)
+
+
+def _tell(outcome: Outcome, wanted: _Wanted) -> None:
+    """Sum up, and write what was asked for; the page, which takes longest, at the end."""
+    from tltl_runtime.commands.regression_files import json_text, write_page, write_reports
+    from tltl_runtime.commands.regression_text import sum_line
+
+    reports = [done.report for done in outcome.cases]
+    click.echo(sum_line(reports), err=wanted.is_json)
+    if wanted.is_json:
+        click.echo(json_text(outcome), nl=False)
+    if wanted.github:
+        from tltl_runtime.regression.github import annotations
+
+        for line in annotations(outcome.suite, reports, Path(os.environ.get("GITHUB_WORKSPACE") or ".")):
+            click.echo(line)
+    write_reports(outcome, None if wanted.is_json else wanted.json_file, wanted.junit_file)
+    if outcome.cases or wanted.html_file:
+        page = write_page(outcome, wanted.folder, wanted.html_file)
+        click.echo(f"wrote {quote(str(page))}: open it in a browser", err=True)

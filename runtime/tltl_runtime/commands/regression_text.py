@@ -21,6 +21,8 @@ def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
 
 def sum_line(reports: Sequence[CaseReport]) -> str:
     """How many cases have which verdict."""
+    if not reports:
+        return "no case was to be played"
     counts = [(sum(each.verdict == verdict for each in reports), verdict) for verdict in _COLORS]
     return f"{len(reports)} case{'s' * (len(reports) != 1)}: " + ", ".join(
         f"{count} {verdict}" for count, verdict in counts if count

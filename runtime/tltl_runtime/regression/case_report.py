@@ -14,7 +14,7 @@ from tltl_runtime.regression.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.suite import Case
 from tltl_runtime.regression.verdict import Change, Verdict
 from tltl_runtime.stealth.levels.file import load_level
-from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
 
 
@@ -88,8 +88,17 @@ def report_on(result: Result) -> CaseReport:
 
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     """The report on a case that cannot be played any more, which is a failure of the level and not of the suite."""
-    said = tuple(f"{each.code}: {each.title}" + (f" ({each.help})" if each.help else "") for each in error.diagnostics)
-    return CaseReport(case.name, Path(case.level).stem, case.variant, "fail", ("it cannot be played any more", *said))
+    said = ("it cannot be played any more", *map(_said, error.diagnostics))
+    return CaseReport(case.name, Path(case.level).stem, case.variant, "fail", said)
+
+
+def _said(found: Diagnostic) -> str:
+    """A diagnostic in one line, with its place."""
+    where = ""
+    if found.labels:
+        label = found.labels[0]
+        where = f"{label.source.name}:{label.source.position(label.span.start)[0]}: "
+    return f"{where}{found.code}, {found.title}" + (f" ({found.help})" if found.help else "")
 
 
 def figures(accounts: Sequence[Account]) -> Figures:

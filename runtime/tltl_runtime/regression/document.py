@@ -15,8 +15,14 @@ VERSION: Final = 1
 _OF_EPISODES: Final = ("index", "seed", "success", "end", "progress", "reward", "steps", "cause", "by", "place")
 
 
-def document(suite: Suite, reports: Sequence[CaseReport], *, complete: bool) -> dict[str, Any]:
-    """The report on a suite; ``complete`` says whether all of its cases were judged that were asked for."""
+def document(
+    suite: Suite, reports: Sequence[CaseReport], *, complete: bool, left_out: Sequence[str] = ()
+) -> dict[str, Any]:
+    """The report on a suite.
+
+    ``complete`` says whether all of its cases were judged that were asked for; ``left_out`` are the names of those that
+    were not, since nothing has changed that they depend on.
+    """
     verdicts = [report.verdict for report in reports]
     return {
         "format": FORMAT,
@@ -25,6 +31,7 @@ def document(suite: Suite, reports: Sequence[CaseReport], *, complete: bool) -> 
         "seed": suite.seed,
         "error": suite.error,
         "complete": complete,
+        "left_out": list(left_out),
         "verdicts": {verdict: verdicts.count(verdict) for verdict in ("pass", "review", "fail")},
         "cases": [_case(report) for report in reports],
     }

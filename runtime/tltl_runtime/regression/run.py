@@ -88,10 +88,13 @@ def case_folder(folder: Path, name: str) -> Path:
 
 
 def record_baseline(suite: Suite, pool: Pool, told: Told) -> Iterator[Reference]:
-    """Play all episodes of each level, variant, spec and policy that the suite's cases are compared with."""
+    """Play all episodes of each level, variant, spec and policy that the suite's cases are compared with.
+
+    Raises:
+        TltlError: something does not fit, before anything is played; what playing raises.
+    """
     played: list[Played] = []
-    for case in suite.cases:
-        one = ready(case, suite.seed, case.reference)
+    for case, one in [(case, ready(case, suite.seed, case.reference)) for case in suite.cases]:
         if one.played in played:
             continue
         played.append(one.played)

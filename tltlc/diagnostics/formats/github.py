@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 
@@ -12,6 +12,12 @@ _COMMANDS = {"error": "error", "warning": "warning", "note": "notice"}
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
     """One command per line and diagnostic."""
     return "".join(_command(diagnostic) + "\n" for diagnostic in diagnostics)
+
+
+def workflow_command(name: str, text: str, properties: Mapping[str, str | int]) -> str:
+    """The command ``::NAME PROPERTIES::TEXT``, without a line's end; both are escaped as the service asks."""
+    listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
+    return f"::{name} {listed}::{_data(text)}"
 
 
 def _command(diagnostic: Diagnostic) -> str:
@@ -27,9 +33,8 @@ def _command(diagnostic: Diagnostic) -> str:
             # The service takes columns only within one line; its end column belongs to the range.
             properties |= {"col": column, "endColumn": max(column, end_column - 1)}
     properties["title"] = diagnostic.code
-    listed = ",".join(f"{name}={_property(str(value))}" for name, value in properties.items())
     text = "\n".join(part for part in (diagnostic.title, remark, diagnostic.help) if part)
-    return f"::{_COMMANDS[diagnostic.severity]} {listed}::{_data(text)}"
+    return workflow_command(_COMMANDS[diagnostic.severity], text, properties)
 
 
 def _data(text: str) -> str:
