@@ -8,6 +8,7 @@ long one plays, exceeds 1/e but with probability e, whenever one stops (J. Ville
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from math import asin, log, pi, sqrt
 from typing import Final
 
@@ -55,6 +56,7 @@ def change_p_value(before: Sequence[float], now: Sequence[float]) -> float:
     return float(np.exp(-max([0.0, *_log_means(stakes).tolist()])))
 
 
+@lru_cache(maxsize=1 << 16)
 def _lower_end(successes: int, failures: int, error: float) -> float:
     """The greatest rate of which, as of all lower ones, it is certain that it is too low."""
     if successes == 0:

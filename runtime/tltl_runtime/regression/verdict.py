@@ -21,6 +21,7 @@ certain, by the rate or by the figures, whatever the pass rate is.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from operator import attrgetter
 from statistics import fmean
 from typing import Final, Literal, Protocol
 
@@ -123,4 +124,4 @@ def _changes(
 
 
 def _values(outcomes: Sequence[Outcome], figure: str) -> list[float]:
-    return [float(getattr(each, figure)) for each in outcomes]
+    return list(map(attrgetter(figure), outcomes))

@@ -1,0 +1,83 @@
+"""The simulation of verdicts: what is drawn, how it is judged, and what is told of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from benchmarks import verdicts, verdicts_report
+from benchmarks.store import Store
+from benchmarks.verdicts import ERROR, Plan, Play, Scenario, drawn, in_suite, judged, measured
+
+np = pytest.importorskip("numpy")
+
+
+@pytest.mark.parametrize(
+    ("pairing", "least", "most"), [("identical", 1.0, 1.0), ("half", 0.4, 0.6), ("independent", 0, 0)]
+)
+def test_equal_seeds_give_as_many_equal_episodes_as_is_said(
+    pairing: verdicts.Pairing, least: float, most: float
+) -> None:
+    now, before = drawn(Scenario(Play(0.9), Play(0.9), pairing), np.random.default_rng(1))
+    same = [new == old for new, old in zip(now, before, strict=True)]
+    assert least <= np.mean(same) <= most
+
+
+def test_episodes_are_drawn_as_the_scenario_says() -> None:
+    now, before = drawn(Scenario(Play(0.6, 0.5, 0.01), Play(1.0)), np.random.default_rng(1))
+    assert all(each.success and each.progress == 1.0 for each in before)
+    assert np.mean([each.success for each in now]) == pytest.approx(0.6, abs=0.1)
+    assert np.mean([each.reward for each in now if each.success]) == pytest.approx(0.5, abs=0.005)
+    assert {each.progress for each in now if not each.success} == {0.25, 0.5, 0.75}
+    assert np.mean([each.reward for each in before]) == pytest.approx(0.79, abs=0.02)
+
+
+@pytest.mark.parametrize(("rate", "verdict"), [(1.0, "pass"), (0.0, "fail")])
+def test_what_is_clear_is_judged_early_and_for_certain(rate: float, verdict: str) -> None:
+    now, before = drawn(Scenario(Play(rate), Play(1.0)), np.random.default_rng(1))
+    judgement, episodes = judged(now, before, ERROR / 9)
+    assert (judgement.verdict, judgement.certain) == (verdict, True)
+    assert episodes < 100
+
+
+def test_a_quick_run_is_resumed_and_gives_the_same_figures(tmp_path: Path) -> None:
+    scenarios = (Scenario(Play(0.99), Play(0.99)), Scenario(Play(0.99, 0.6), Play(0.99)))
+    plan = Plan(scenarios=scenarios, trials=6, few=4, sizes=(1, 9))
+    store, said = Store(tmp_path / "results.json"), list[str]()
+    for _ in range(2):
+        verdicts.measure(store, 0.0, said.append, plan)
+    assert [line.partition(":")[0] for line in said] == [each.name for each in scenarios]
+    records = store.section(verdicts.SECTION)
+    assert [record["trials"] for record in records.values()] == [6, 4]
+    for scenario in scenarios:
+        assert records[scenario.name] == measured(scenario, records[scenario.name]["trials"], (1, 9))
+    for record in records.values():
+        for shares in record["suites"].values():
+            assert sum(shares[verdict] for verdict in ("pass", "review", "fail")) == pytest.approx(1.0, abs=1e-4)
+    text = verdicts_report.section(records)
+    assert "| 0.99 | independent | 6 | 9 |" in text
+    assert "| reward 0.79 to 0.6, ± 0.05 | 4 | 1 |" in text
+
+
+def test_a_suite_has_what_any_of_its_cases_has() -> None:
+    assert in_suite(0.01, 1) == pytest.approx(0.01)
+    assert in_suite(0.5, 2) == pytest.approx(0.75)
+    assert in_suite(0.0, 30) == 0.0
+
+
+def test_false_alarms_and_misses_are_goals() -> None:
+    good = {"pass": 1.0, "review": 0.0, "fail": 0.0}
+    alarm = {"pass": 0.99, "review": 0.01, "fail": 0.0}
+
+    def record(rate: float, shares: dict[str, float]) -> dict[str, object]:
+        return {"changed": False, "rates": [rate, rate], "suites": {"1": good if rate > 0.85 else alarm, "9": shares}}
+
+    records = {"0.98 half": record(0.98, alarm), "0.8 identical": record(0.8, {**good, "pass": 0.001})}
+    alarms, misses = verdicts_report.goals(records)
+    assert alarms[1:] == ("most 8.6%, in suites of 9 cases of 0.98 half", "**missed**")
+    assert misses[1:] == ("most 99.0%, in suites of 1 cases of 0.8 identical", "**missed**")
+    fine, missed = verdicts_report.goals({**records, "0.98 half": record(0.97, alarm), "1 half": record(1.0, good)})
+    assert fine[1:] == ("most 0.0%, in suites of 9 cases of 1 half", "met")
+    assert missed[2] == "**missed**"
+    assert list(verdicts_report.goals({})) == []
