@@ -27,10 +27,12 @@ EPISODES = sorted((Path(__file__).parent / "episode").iterdir())
 POLICIES = sorted((Path(__file__).parent / "policy").iterdir())
 TRAININGS = sorted((Path(__file__).parent / "training").iterdir())
 """Messages on policies and trainings, which tests in `tests/runtime/policies` and `tests/runtime/training` compare."""
+SUITES = sorted((Path(__file__).parent / "suite").iterdir())
+"""Messages on suites and baselines, which `tests/runtime/regression/test_messages.py` compares."""
 CODE = re.compile(r"TLT[0-9]{4}")
 NEEDS_ANOTHER_INSTALLATION = {
     *("TLT0712", "TLT0730", "TLT0830", "TLT0850", "TLT0851", "TLT0852", "TLT0854"),
-    *("TLT0870", "TLT0871", "TLT0872", "TLT0873"),
+    *("TLT0870", "TLT0871", "TLT0872", "TLT0873", "TLT0904"),
 }
 """Codes that no file causes; tests/backends, tests/cli and tests/runtime show their messages."""
 
@@ -72,7 +74,7 @@ def test_message(
 
 
 def test_every_code_has_a_golden_message() -> None:
-    cases = (*CASES, *LEVELS, *EPISODES, *POLICIES, *TRAININGS)
+    cases = (*CASES, *LEVELS, *EPISODES, *POLICIES, *TRAININGS, *SUITES)
     assert {case.name[:7] for case in cases} == set(codes()) - NEEDS_ANOTHER_INSTALLATION
 
 

@@ -86,7 +86,7 @@ def read_suite(path: Path) -> Suite:
     source = read_source(path, shown(path))
     log: list[Diagnostic] = []
     table = Table(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
-    seed = table.whole("seed", low=0, high=2**31 - 1) if "seed" in table.entries else 0
+    seed = table.whole("seed", 0, low=0, high=2**31 - 1)
     error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
     episodes = _episodes(table, MOST_EPISODES)
     thresholds = _thresholds(table, Thresholds())
@@ -157,7 +157,7 @@ def _level(table: Table, folder: Path) -> str:
 def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
     """What is added to the variant: names, or paths from here."""
     entry = table.entries.get("overlay")
-    single = entry is not None and isinstance(entry.value, str)
+    single = entry is not None and not isinstance(entry.value, list)
     names = (table.text("overlay"),) if single else table.names("overlay", ())
     found = []
     for name in names:
@@ -195,19 +195,18 @@ def _policy(table: Table, folder: Path, level: str) -> Path | None:
 
 
 def _episodes(table: Table, default: int) -> int:
-    if "episodes" not in table.entries:
-        return default
-    return table.whole("episodes", low=LEAST_EPISODES, high=_LIMIT)
+    return table.whole("episodes", default, low=LEAST_EPISODES, high=_LIMIT)
 
 
 def _thresholds(table: Table, defaults: Thresholds) -> Thresholds:
     found = table.table("thresholds", needed=False)
     if found is None:
         return defaults
+    before = len(table.log)
     values = [found.number(key, getattr(defaults, key), low=0.0, high=1.0, unit="") for key in defaults.__match_args__]
     found.done()
     made = Thresholds(*values)
-    if made.fail_rate > made.pass_rate:
+    if made.fail_rate > made.pass_rate and len(table.log) == before:
         key = "fail_rate" if "fail_rate" in found.entries else "pass_rate"
         entry = found.entries[key]
         table.log.append(wrong(entry, key, f"a `fail_rate` of {made.pass_rate:g}, the `pass_rate`, at the most"))

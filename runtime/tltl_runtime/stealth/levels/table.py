@@ -41,10 +41,10 @@ class Table:
         expected = f"a number from {low:g} to {high:g} {unit}".rstrip()
         return self._read(key, default, expected, lambda value: _is_number(value) and low <= value <= high, low, float)
 
-    def whole(self, key: str, *, low: int, high: int) -> int:
+    def whole(self, key: str, default: int = REQUIRED, *, low: int, high: int) -> int:
         """A whole number in [low, high]."""
         expected = f"a whole number from {low} to {high}"
-        return self._read(key, REQUIRED, expected, lambda v: type(v) is int and low <= v <= high, low, int)
+        return self._read(key, default, expected, lambda v: type(v) is int and low <= v <= high, low, int)
 
     def text(self, key: str, default: str = REQUIRED, one_of: tuple[str, ...] = ()) -> str:
         """A text that is not empty, where ``one_of`` is given one of those."""
