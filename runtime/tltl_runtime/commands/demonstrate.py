@@ -12,9 +12,9 @@ from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.notation import notation_option
 from tltl_runtime.commands.options import output_folder, seed_option
+from tltl_runtime.stealth.levels.place import level_place
 from tltlc.cli import exits
 from tltlc.cli.report import Report
-from tltlc.spec_file import split
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
@@ -63,7 +63,7 @@ def command(
     from tltl_runtime.training.demonstrations import expert_episodes
 
     with Report() as report, requests_heard():
-        file, variant = split(level)
+        file, variant = level_place(level)
         env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
         played = succeeded = 0
         try:

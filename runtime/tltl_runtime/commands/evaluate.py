@@ -21,7 +21,6 @@ from tltl_runtime.commands.options import output_folder, seed_option
 from tltl_runtime.commands.workers import WorkersType
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.spec_file import split
 
 if TYPE_CHECKING:
     from tltl_runtime.commands.evaluation_files import EvaluationFiles
@@ -135,11 +134,12 @@ def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, s
     """The file of the policy, and the level and the variant where it plays; None: where it was trained."""
     from tltl_runtime.commands.level_argument import check_there, names_level
     from tltl_runtime.commands.policy_path import policy_path
+    from tltl_runtime.stealth.levels.place import level_place
     from tltl_runtime.training.run import RUN, read_place
 
-    name, variant = (None, None) if level is None else split(level)
+    name, variant = (None, None) if level is None else level_place(level)
     if policy is not None and names_level(str(policy)):
-        named, its = split(str(policy))
+        named, its = level_place(str(policy))
         return _shipped(named), name or named, variant if name else its
     if policy is None:
         assert name is not None

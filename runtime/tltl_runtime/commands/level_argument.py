@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from tltl_runtime.stealth.levels.file import level_names
+from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.task import read_spec
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.spec_file import split
@@ -14,7 +15,7 @@ from tltlc.spec_file import split
 
 def names_level(text: str) -> bool:
     """Whether a text that could be a path is ``LEVEL`` or ``LEVEL:VARIANT`` of a level that comes with the package."""
-    return not Path(text).exists() and split(text)[0] in level_names()
+    return not Path(text).exists() and level_place(text)[0] in level_names()
 
 
 def check_no_toml(spec: str | None, settings: str = "") -> None:

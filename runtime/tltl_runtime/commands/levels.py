@@ -13,6 +13,7 @@ from tltl_runtime.commands.senses import senses_options
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_names, read_level, variants
 from tltl_runtime.stealth.levels.made_for import shown
+from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.stealth.senses.observation import Senses
 from tltl_runtime.stealth.supply.feasible import check_height, check_reach
 from tltl_runtime.stealth.supply.reach import Reach, reachable
@@ -24,7 +25,6 @@ from tltlc.cli.inputs import Input, open_input
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.spec_file import split
 from tltlc.writing import write_file
 
 
@@ -49,7 +49,7 @@ def command(
         raise click.UsageError(f"--plan writes a .png, not `{plan}`", click.get_current_context())
     check = _Check(inputs, settings, report, sensors)
     seen: list[tuple[Level, Reach]] = []
-    for path, variant in map(split, levels):
+    for path, variant in map(level_place, levels):
         for name in level_names() if path == "all" else (path,):
             try:
                 seen += [check(name, each) for each in ((variant,) if variant else variants(name))]

@@ -13,10 +13,10 @@ from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.recording_files import RecordingFiles
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.file import SUFFIX
+from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.stealth.pictures.camera import View
 from tltl_runtime.stealth.pictures.hud import KEYS
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltlc.spec_file import split
 
 
 @click.command(
@@ -55,7 +55,7 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
     those that you stop, too.  `tltlc replay FILE` shows a recording.
     """
     with requests_heard():
-        _play(*split(level), spec, seed, out, view, crouch)
+        _play(*level_place(level), spec, seed, out, view, crouch)
 
 
 def _play(

@@ -12,9 +12,9 @@ from tltl_runtime.commands.at_keyboard import keyboard_options, play_at_keyboard
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_folder
+from tltl_runtime.stealth.levels.place import level_place
 from tltlc.cli import exits
 from tltlc.cli.report import Report
-from tltlc.spec_file import split
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
@@ -101,7 +101,7 @@ def command(
         click.echo(_there(made, episodes))
         if made.count < episodes:
             return exits.FINDINGS
-        asked = f"--level {shown.name if file == shown.name else quote(file)}:{shown.variant}"
+        asked = f"--level {shown.name if file == shown.name else quote(file)}:{quote(variant)}"
         about = f"{quote(spec)} {asked}" if spec else asked
         click.echo(f"to imitate them: tltlc train {about} --method imitation --demonstrations {quote(str(folder))}")
         return exits.CLEAN
@@ -111,7 +111,7 @@ def command(
 def _place(level: str | None, spec: str | None) -> tuple[str, str]:
     """Level and variant: those that are named, or the level that the spec names."""
     if level is not None:
-        file, variant = split(level)
+        file, variant = level_place(level)
         return file, variant or "v0"
     if spec is None:
         raise click.UsageError("say what to play: a level, or a --spec that names one", click.get_current_context())
