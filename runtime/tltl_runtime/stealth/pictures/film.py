@@ -46,7 +46,7 @@ _PALE: Final = "#e2e8f0"
 _EMPTY: Final = "#334155"
 _GREEN: Final = "#22c55e"
 _RED: Final = "#ef4444"
-_MODES: Final = {"patrol": "#7f1d1d", "chase": "#ff0000", "search": "#f97316", "return": "#64748b"}
+MODES: Final = {"patrol": "#7f1d1d", "chase": "#ff0000", "search": "#f97316", "return": "#64748b"}
 _FONT: Final = Path(matplotlib.get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")
 
 
@@ -116,7 +116,7 @@ def _populate(picture: Image.Image, pixel: Pixel, level: Level, shot: Snapshot, 
         box = _corners(pixel, (x - half_x, y - half_y, z), (x + half_x, y + half_y, z))
         draw.rectangle(box, fill="#7c3aed")
     for place, yaw, mode in zip(shot.enemies, shot.yaws, shot.modes, strict=True):
-        _figure(draw, pixel(place), yaw, 0.35 * metre, _MODES.get(mode, _RED))
+        _figure(draw, pixel(place), yaw, 0.35 * metre, MODES.get(mode, _RED))
     radius = (0.22 if shot.player.crouching else 0.35) * metre
     _figure(draw, pixel(shot.player.position), shot.player.yaw, radius, colour)
 

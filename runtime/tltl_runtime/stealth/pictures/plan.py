@@ -23,13 +23,14 @@ from tltl_runtime.stealth.level import Box, Enemy, Level, Point
 from tltl_runtime.stealth.supply.reach import Reach
 from tltlc.automaton.fspa import Fspa
 
-_SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
+SOLIDS: Final = {"floor": "#f1f5f9", "platform": "#cbd5e1", "low": "#a8a29e", "wall": "#475569"}
+"""By kind, as :data:`BARRIERS`."""
 BARRIERS: Final = {"solid": "#d97706", "laser": "#dc2626"}
 _SOLID_NAMES: Final = {"floor": "floor", "platform": "platform", "low": "low obstacle", "wall": "wall"}
 _BARRIER_NAMES: Final = {"solid": "gate", "laser": "laser"}
 _STATES: Final = ("#2563eb", "#9333ea", "#0d9488", "#ca8a04", "#db2777", "#65a30d", "#0284c7", "#ea580c")
-_INK: Final = "#0f172a"
-_SWITCH, _EXIT, _MOVER, _ROUTE = "#facc15", "#16a34a", "#7c3aed", "#dc2626"
+INK: Final = "#0f172a"
+SWITCH, EXIT, MOVER, ROUTE = "#facc15", "#16a34a", "#7c3aed", "#dc2626"
 _UNREACHED: Final = (0.86, 0.0, 0.0, 0.3)
 ENDS: Final[dict[End, tuple[str, str]]] = {
     "success": ("D", "#16a34a"),
@@ -145,25 +146,25 @@ def _add_reach(axes: Any, reach: Reach) -> None:
 def _key(level: Level) -> list[Any]:
     """What the colours of a level's plan mean, those that there are in it."""
     kinds = {solid.kind for solid in level.solids}
-    handles: list[Any] = [Patch(facecolor=_SOLIDS[kind], label=_SOLID_NAMES[kind]) for kind in _SOLIDS if kind in kinds]
+    handles: list[Any] = [Patch(facecolor=SOLIDS[kind], label=_SOLID_NAMES[kind]) for kind in SOLIDS if kind in kinds]
     barriers = {barrier.kind for barrier in level.barriers}
     handles += [Patch(facecolor=BARRIERS[kind], label=_BARRIER_NAMES[kind]) for kind in BARRIERS if kind in barriers]
     handles.append(Patch(facecolor=_UNREACHED, label="nobody stands there"))
-    handles.append(Line2D([], [], marker="o", linestyle="", color=_INK, label="start"))
+    handles.append(Line2D([], [], marker="o", linestyle="", color=INK, label="start"))
     if level.switches:
-        handles.append(Line2D([], [], marker="o", linestyle="", color=_SWITCH, markersize=10, label="switch"))
+        handles.append(Line2D([], [], marker="o", linestyle="", color=SWITCH, markersize=10, label="switch"))
     if level.exits:
         handles.append(exit_mark())
     if level.enemies:
-        handles.append(Line2D([], [], linestyle="--", color=_ROUTE, label="route of an enemy"))
+        handles.append(Line2D([], [], linestyle="--", color=ROUTE, label="route of an enemy"))
     if level.movers:
-        handles.append(Line2D([], [], linestyle=":", color=_MOVER, label="way of a moving obstacle"))
+        handles.append(Line2D([], [], linestyle=":", color=MOVER, label="way of a moving obstacle"))
     return handles
 
 
 def exit_mark() -> Line2D:
     """The star of an exit, for legends."""
-    return Line2D([], [], marker="*", linestyle="", color=_EXIT, markersize=12, label="exit")
+    return Line2D([], [], marker="*", linestyle="", color=EXIT, markersize=12, label="exit")
 
 
 def natural_size(level: Level) -> tuple[float, float]:
@@ -200,31 +201,31 @@ def level_axes(figure: Figure, level: Level, moving: bool = True, start: bool = 
     for axis in (axes.xaxis, axes.yaxis):
         axis.label.set_size(10 * shrunk)
     for solid in sorted(level.solids, key=lambda solid: solid.box.high[2]):
-        axes.add_patch(_area(solid.box, facecolor=_SOLIDS[solid.kind], edgecolor="#94a3b8", linewidth=0.4))
+        axes.add_patch(_area(solid.box, facecolor=SOLIDS[solid.kind], edgecolor="#94a3b8", linewidth=0.4))
     for barrier in level.barriers:
         axes.add_patch(_area(barrier.box, facecolor=BARRIERS[barrier.kind], alpha=0.8 if moving else 0.25))
         if roomy:
             _name(axes, barrier.name, _middle(barrier.box), letters)
     for mover in level.movers:
-        axes.plot(*_flat(mover.path), color=_MOVER, linestyle=":", linewidth=1.5)
+        axes.plot(*_flat(mover.path), color=MOVER, linestyle=":", linewidth=1.5)
         if moving and roomy:
             _name(axes, mover.name, mover.path[0], letters)
     for enemy in level.enemies:
-        axes.plot(*_flat(_patrol(level, enemy)), color=_ROUTE, linestyle="--", linewidth=1.0)
+        axes.plot(*_flat(patrol(level, enemy)), color=ROUTE, linestyle="--", linewidth=1.0)
         if moving and roomy:
             _name(axes, enemy.name, enemy.route[0], letters)
     for switch in level.switches:
-        axes.add_patch(Circle(switch.position[:2], switch.radius, facecolor=_SWITCH, alpha=0.5))
+        axes.add_patch(Circle(switch.position[:2], switch.radius, facecolor=SWITCH, alpha=0.5))
         _name(axes, switch.name, switch.position, letters)
     for way_out in level.exits:
-        axes.plot(*way_out.position[:2], marker="*", markersize=14 * shrunk, color=_EXIT)
+        axes.plot(*way_out.position[:2], marker="*", markersize=14 * shrunk, color=EXIT)
         _name(axes, way_out.name, way_out.position, letters)
     if start:
-        axes.plot(*level.start.position[:2], marker="o", markersize=7, color=_INK)
+        axes.plot(*level.start.position[:2], marker="o", markersize=7, color=INK)
     return axes
 
 
-def _patrol(level: Level, enemy: Enemy) -> list[tuple[float, float]]:
+def patrol(level: Level, enemy: Enemy) -> list[tuple[float, float]]:
     """The way that an enemy walks round, past what stands on the straight line, while all barriers are shut."""
     floor = grid_of(level).floor(range(len(level.barriers)))
     route = [point[:2] for point in (*enemy.route, enemy.route[0])]
@@ -248,7 +249,7 @@ def _mark(axes: Any, place: Point, marker: str, colour: str, label: str, size: f
         marker=marker,
         markersize=size,
         markerfacecolor=colour,
-        markeredgecolor=_INK,
+        markeredgecolor=INK,
         linestyle="",
         label=label,
         zorder=6,
@@ -290,4 +291,4 @@ def _flat(points: Iterable[Sequence[float]]) -> tuple[list[float], list[float]]:
 
 
 def _name(axes: Any, name: str, place: Point, size: float) -> None:
-    axes.annotate(name, place[:2], xytext=(0, 7), textcoords="offset points", ha="center", fontsize=size, color=_INK)
+    axes.annotate(name, place[:2], xytext=(0, 7), textcoords="offset points", ha="center", fontsize=size, color=INK)

@@ -11,7 +11,7 @@ from PIL import Image
 
 from tltl_runtime.stealth.enemies.grid import grid_of
 from tltl_runtime.stealth.levels.file import level_names, load_level
-from tltl_runtime.stealth.pictures.plan import _patrol, draw_level
+from tltl_runtime.stealth.pictures.plan import draw_level, patrol
 from tltl_runtime.stealth.supply.reach import reachable
 
 
@@ -52,7 +52,7 @@ def test_routes_are_drawn_past_what_stands_in_the_way(name: str) -> None:
     floor = grid_of(level).floor(range(len(level.barriers)))
     bends = 0
     for enemy in level.enemies:
-        way = _patrol(level, enemy)
+        way = patrol(level, enemy)
         assert all(floor.clear(here, there) for here, there in pairwise(way))
         assert {point[:2] for point in enemy.route} <= set(way) and way[0] == way[-1]
         bends += len(way) - len(enemy.route) - 1

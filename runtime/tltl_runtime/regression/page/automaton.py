@@ -1,0 +1,180 @@
+"""The automaton as an inline SVG, with the episodes that came through it drawn on it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Final
+from xml.etree import ElementTree
+
+from tltl_runtime.regression.page.markup import Markup, element, short
+from tltl_runtime.regression.page.traffic import Traffic
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Options, emit
+from tltlc.backends.drawing.folding import folded
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.record import record, replace
+
+_NUMBER: Final = re.compile(r"-?\d+(?:\.\d+)?")
+_TITLE: Final = "{http://www.w3.org/1999/xlink}title"
+_THINNEST, _THICKEST = 0.8, 7.0
+_LETTER: Final = 6.4
+"""Width of a figure of a badge, in the units of the picture."""
+
+
+@record
+class Drawn:
+    """The picture of an automaton as SVG, None where it could not be laid out; ``notes`` say what is not shown."""
+
+    svg: bytes | None
+    notes: tuple[str, ...]
+
+
+def drawn(fspa: Fspa) -> Drawn:
+    """The automaton's picture, laid out in a process of its own within a time limit."""
+    found: list[Diagnostic] = []
+    try:
+        # What the spec is for stands above the picture already.
+        files = emit("svg", replace(fspa, doc=""), Options(report=found.append))
+    except TltlError as error:
+        return Drawn(None, tuple(_said(each) for each in error.diagnostics))
+    ((name, content),) = files.items()
+    if not name.endswith(".svg"):
+        return Drawn(None, (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",))
+    data = content.encode() if isinstance(content, str) else content
+    return Drawn(data, tuple(_said(each) for each in found))
+
+
+def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
+    """The picture with a badge on each state for the episodes that visited it, one for those that failed in it.
+
+    Edges are the thicker the more episodes took them.  Both are there twice, for ``now`` and ``before``: what is shown
+    is for the style sheet.  Groups of states have ``data-states``, the numbers of the states that they stand for.
+    """
+    root = ElementTree.fromstring(svg)
+    for each in root.iter():
+        each.tag = each.tag.rpartition("}")[2]
+        each.attrib.pop("id", None)
+        if each.tag == "a":
+            each.tag = "g"
+            each.attrib.pop(_TITLE, None)
+    inner = {first: tuple(state.id for state in run) for first, run in folded(fspa).folded.items()}
+    whole = {state: first for first, run in inner.items() for state in run}
+    for group in root.iter("g"):
+        title = group.find("title")
+        if title is None or title.text is None:
+            continue
+        if group.get("class") == "node" and title.text.isdigit():
+            states = inner.get(int(title.text), (int(title.text),))
+            _mark_state(group, title, states, now, before)
+        elif group.get("class") == "edge" and not title.text.startswith("start"):
+            # An end may name the side at which it meets its state, after a colon.
+            source, target = (int(end.partition(":")[0]) for end in title.text.split("->"))
+            _mark_edge(group, title, (source, target), whole, now, before)
+        else:
+            group.remove(title)
+    _, _, width, height = _NUMBER.findall(root.get("viewBox", ""))
+    root.attrib = {
+        "class": "automaton",
+        "viewBox": f"0 0 {width} {height}",
+        "role": "img",
+        "aria-label": f"The automaton of the spec {fspa.name}; the table below has its numbers.",
+        "style": f"--width: {float(width):.0f}",
+    }
+    return Markup(ElementTree.tostring(root, encoding="unicode", short_empty_elements=True))
+
+
+def _mark_state(
+    group: ElementTree.Element, title: ElementTree.Element, states: tuple[int, ...], now: Traffic, before: Traffic
+) -> None:
+    group.set("data-states", " ".join(map(str, states)))
+    left, _, right, bottom = _extent(group)
+    name = f"State {states[0]}" if len(states) == 1 else f"States {states[0]} to {states[-1]}"
+    said = []
+    for when, seen in (("now", now), ("before", before)):
+        visited = max(seen.visited.get(state, 0) for state in states)
+        failed = sum(seen.failed.get(state, 0) for state in states)
+        said.append(f"{when}: visited by {visited} of {seen.episodes} episodes, {failed} failed in it")
+        badges = ElementTree.SubElement(group, "g", {"class": f"counts {when}"})
+        _badge(badges, "visited", str(visited), left + 6, bottom, grows=1)
+        if failed:
+            _badge(badges, "failed", f"{failed} failed", right - 6, bottom, grows=-1)
+    title.text = f"{name}; {'; '.join(said)}"
+
+
+def _mark_edge(
+    group: ElementTree.Element,
+    title: ElementTree.Element,
+    ends: tuple[int, int],
+    whole: dict[int, int],
+    now: Traffic,
+    before: Traffic,
+) -> None:
+    if ends[0] == ends[1]:
+        group.set("class", "edge loop")
+        group.remove(title)
+        return
+    shown, said = [], []
+    for when, seen in (("now", now), ("before", before)):
+        took = max(
+            (count for edge, count in seen.took.items() if tuple(whole.get(end, end) for end in edge) == ends),
+            default=0,
+        )
+        share = took / seen.episodes if seen.episodes else 0.0
+        shown.append(f"--took-{when}: {short(_THINNEST + share * (_THICKEST - _THINNEST))}")
+        said.append(f"{when}: taken by {took} of {seen.episodes} episodes")
+        if not took:
+            group.set("class", f"{group.get('class')} untaken-{when}")
+    group.set("style", "; ".join(shown))
+    title.text = f"From state {ends[0]} to state {ends[1]}; {'; '.join(said)}"
+
+
+def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float, grows: int) -> None:
+    """A pill on the lower outline of a state, which begins or ends at ``x``."""
+    width = len(text) * _LETTER + 9
+    left = x if grows > 0 else x - width
+    group = ElementTree.SubElement(parent, "g", {"class": f"badge {kind}"})
+    sides = {"x": short(left), "y": short(y - 8), "width": short(width), "height": "16", "rx": "8"}
+    ElementTree.SubElement(group, "rect", sides)
+    ElementTree.SubElement(group, "text", {"x": short(left + width / 2), "y": short(y + 4)}).text = text
+
+
+def _extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
+    """The least and greatest x and y of a state's outline: left, top, right, bottom."""
+    points = list(_points(group))
+    xs, ys = [x for x, _ in points], [y for _, y in points]
+    return min(xs), min(ys), max(xs), max(ys)
+
+
+def _points(group: ElementTree.Element) -> Iterator[tuple[float, float]]:
+    for each in group.iter():
+        if each.tag == "ellipse":
+            x, y, rx, ry = (float(each.get(name, 0)) for name in ("cx", "cy", "rx", "ry"))
+            yield from ((x - rx, y - ry), (x + rx, y + ry))
+        numbers = [float(found) for found in _NUMBER.findall(each.get("points") or each.get("d") or "")]
+        yield from zip(numbers[::2], numbers[1::2], strict=True)
+
+
+def _said(diagnostic: Diagnostic) -> str:
+    text = f"{diagnostic.title[:1].upper()}{diagnostic.title[1:]}"
+    return f"{text}: {diagnostic.help}" if diagnostic.severity != "note" and diagnostic.help else f"{text}."
+
+
+def counts_table(fspa: Fspa, now: Traffic, before: Traffic) -> Markup:
+    """The states with what remains to be done in each, and the same numbers as a table."""
+    heads = ("State", "What remains to be done", "Visited", "Failed", "Visited before", "Failed before")
+    rows = [
+        element(
+            "tr",
+            element("th", state.id, scope="row"),
+            element("td", state.label.english),
+            *(
+                element("td", f"{counts.get(state.id, 0)} of {seen.episodes}", class_="number")
+                for seen in (now, before)
+                for counts in (seen.visited, seen.failed)
+            ),
+        )
+        for state in fspa.states
+    ]
+    head = element("thead", element("tr", *(element("th", each, scope="col") for each in heads)))
+    return element("div", element("table", head, element("tbody", *rows), class_="counts-table"), class_="scroll")

@@ -1,0 +1,63 @@
+"""What the page's scripts draw of a case, as JSON data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.page.contents import ReportedCase
+from tltl_runtime.regression.page.heat import Heat, failed_ends, time_spent
+from tltl_runtime.regression.page.level_map import map_data
+from tltl_runtime.regression.page.packing import across, down, runs
+from tltl_runtime.regression.page.recorded import recorded
+from tltl_runtime.stealth.level import Box
+
+
+def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
+    """All that is drawn of a case onto its map and its automaton; None where it has none."""
+    level, fspa = case.level, case.fspa
+    if level is None or fspa is None:
+        return None
+    return {
+        "slug": slug,
+        "map": map_data(level),
+        "states": [state.label.english for state in fspa.states],
+        "atoms": [atom.name for atom in fspa.atoms],
+        "now": _all_of(level.bounds, case.report.accounts),
+        "before": _all_of(level.bounds, case.before),
+        "episodes": [recorded(index, case.episodes[index]) for index in sorted(case.episodes)],
+    }
+
+
+def _all_of(bounds: Box, accounts: Sequence[Account]) -> dict[str, Any]:
+    return {
+        "count": len(accounts),
+        "ways": [_way(bounds, each) for each in accounts],
+        "time": _heat(time_spent(bounds, accounts)),
+        "failed": _heat(failed_ends(bounds, accounts)),
+    }
+
+
+def _way(bounds: Box, account: Account) -> dict[str, Any]:
+    """Where an episode went, second by second, in centimetres on the map, and how it ended."""
+    place = account.place
+    return {
+        "index": account.index,
+        "end": account.end,
+        "cause": account.cause,
+        "by": list(account.by),
+        "x": across(bounds, [x for x, _, _ in account.way]),
+        "y": down(bounds, [y for _, y, _ in account.way]),
+        "state": runs(state for _, _, state in account.way),
+        "place": [across(bounds, [place[0]])[0], down(bounds, [place[1]])[0]],
+    }
+
+
+def _heat(heat: Heat) -> dict[str, Any]:
+    return {
+        "cell": round(100 * heat.cell),
+        "columns": heat.columns,
+        "cells": [number for pair in heat.values for number in pair],
+        "most": max((value for _, value in heat.values), default=0),
+    }

@@ -1,0 +1,142 @@
+"""The section of a case: why it has its verdict, its automaton, its map with the player, and its curves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
+
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.explain import Finding
+from tltl_runtime.regression.page.automaton import Drawn, counts_table, picture
+from tltl_runtime.regression.page.contents import ReportedCase
+from tltl_runtime.regression.page.curves import progress_curves, progress_distribution
+from tltl_runtime.regression.page.level_map import level_map
+from tltl_runtime.regression.page.markup import Markup, element, joined, prose
+from tltl_runtime.regression.page.player_panel import player_panel
+from tltl_runtime.regression.page.slugs import episode_link
+from tltl_runtime.regression.page.summary import badge
+from tltl_runtime.regression.page.traffic import Traffic, traffic
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.world.player import DECISION
+from tltlc.automaton.fspa import Fspa
+
+_BEFORE_END: Final = round(4.0 / DECISION)
+"""Decisions before its end at which a failed episode is opened: what led to it is still to come."""
+
+_KEY: Final = (
+    "In blue how many episodes visited a state, in red how many failed in it; "
+    "the more episodes took an edge, the thicker it is."
+)
+_SHOWN: Final = (("ways", "ways"), ("time", "time spent"), ("failed", "failed ends"))
+_WHEN: Final = (("now", "now"), ("before", "baseline"))
+
+
+def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
+    """The section of the case that addresses call ``slug``; without level and automaton only what is said of it.
+
+    ``drawn`` is the picture of the case's automaton.
+    """
+    report, level, fspa = case.report, case.level, case.fspa
+    parts: list[Markup] = [
+        element("h2", report.name, " ", badge(report.verdict), id=f"{slug}-title"),
+        _facts(report, fspa),
+        *_why(report, case.episodes, slug),
+    ]
+    if level is not None and fspa is not None and drawn is not None:
+        parts += [
+            _toggles(case.before),
+            element("h3", "Automaton"),
+            *_automaton(fspa, drawn, traffic(report.accounts), traffic(case.before)),
+            element("h3", "Map"),
+            element("div", _map(level), player_panel(fspa, case.episodes), class_="stage"),
+            element("h3", "Progress"),
+            element("div", *_curves(case), class_="curves"),
+        ]
+    return element(
+        "section",
+        *parts,
+        id=slug,
+        class_="case",
+        data_verdict=report.verdict,
+        aria_labelledby=f"{slug}-title",
+        data_when="now",
+        data_shown="ways",
+    )
+
+
+def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
+    facts = [f"{report.level} {report.variant}"]
+    if report.reference:
+        facts.append(f"compared with {report.reference.variant}")
+    if report.played:
+        facts += [f"spec {report.played.spec}", f"policy {report.played.policy[:12]}"]
+    if not report.certain:
+        facts.append("not certain after all of its episodes")
+    goal = element("p", fspa.formula.english, class_="goal") if fspa else None
+    return joined((element("p", " · ".join(facts), class_="facts"), goal))
+
+
+def _why(report: CaseReport, episodes: Mapping[int, Episode], slug: str) -> Iterator[Markup]:
+    """The reasons; those that are explanations with links to the episodes that they speak of."""
+    told = {finding.text: finding for finding in report.explanation}
+    lines = []
+    for reason in report.reasons:
+        finding = told.pop(reason, None)
+        lines.append(element("li", prose(reason), _links(finding, episodes, slug) if finding else None))
+    lines += [element("li", prose(text), _links(finding, episodes, slug)) for text, finding in told.items()]
+    if lines:
+        yield element("h3", "Why")
+        yield element("ul", *lines, class_="reasons")
+
+
+def _links(finding: Finding, episodes: Mapping[int, Episode], slug: str) -> Markup | None:
+    there = [index for index in finding.episodes if index in episodes]
+    if not there:
+        return None
+    links = []
+    for index in there:
+        episode = episodes[index]
+        step = 0 if episode.success else max(0, len(episode.actions) - _BEFORE_END)
+        words = {"href": episode_link(slug, index, step), "aria_label": f"play episode {index}"}
+        links += [" ", element("a", str(index), class_="episode", **words)]
+    return element("span", " play episode" + "s" * (len(there) > 1), *links, class_="links")
+
+
+def _automaton(fspa: Fspa, drawn: Drawn, now: Traffic, before: Traffic) -> Iterator[Markup]:
+    """The picture, what it does not show, and its numbers as a table, for which no picture is needed."""
+    if drawn.svg is not None:
+        inside = picture(fspa, drawn.svg, now, before)
+        yield element("div", inside, class_="scroll", tabindex=0, role="group", aria_label="Automaton")
+        yield element("p", _KEY, class_="hint")
+    yield from (element("p", note, class_="warning") for note in drawn.notes)
+    yield element("details", element("summary", "The numbers as a table"), counts_table(fspa, now, before))
+
+
+def _map(level: Level) -> Markup:
+    """The map, and its legend, which the page fills in: what there is to explain depends on what is shown."""
+    return element("div", level_map(level), element("ul", class_="legend", aria_label="Legend of the map"))
+
+
+def _toggles(before: Sequence[Account]) -> Markup:
+    when = [_choice("Episodes", "when", _WHEN)] if before else []
+    return element("form", *when, _choice("On the map", "shown", _SHOWN), class_="toggles", autocomplete="off")
+
+
+def _choice(legend: str, name: str, choices: Sequence[tuple[str, str]]) -> Markup:
+    """One of several, of which the first one is chosen."""
+    labels = [
+        element("label", element("input", type="radio", name=name, value=value, checked=place == 0), f" {words}")
+        for place, (value, words) in enumerate(choices)
+    ]
+    return element("fieldset", element("legend", legend), *labels)
+
+
+def _curves(case: ReportedCase) -> Iterator[Markup]:
+    if case.episodes:
+        caption = element("figcaption", "Progress of the recorded episodes: green succeeded, red failed")
+        yield element("figure", progress_curves(case.episodes), caption)
+    keys = (element("span", "now", class_="key now"), " ", element("span", "baseline", class_="key before"))
+    caption = element("figcaption", "Share of episodes by their best progress: ", *(keys if case.before else keys[:1]))
+    yield element("figure", progress_distribution(case.report.accounts, case.before), caption)

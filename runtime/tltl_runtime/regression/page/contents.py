@@ -1,0 +1,42 @@
+"""What a page is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.level import Level
+from tltlc.automaton.fspa import Fspa
+from tltlc.record import EMPTY, record
+
+
+@record
+class ReportedCase:
+    """A case with what the page draws of it.
+
+    ``level`` and ``fspa`` are what was played, None of a case that cannot be played any more.  ``episodes`` are the
+    recorded ones by their index, ``before`` the accounts of the baseline.
+    """
+
+    report: CaseReport
+    level: Level | None = None
+    fspa: Fspa | None = None
+    episodes: Mapping[int, Episode] = EMPTY
+    before: tuple[Account, ...] = ()
+
+
+@record
+class SuiteReport:
+    """What a suite came to: its name, the seed and the error bound of its verdicts, and its cases in their order.
+
+    ``versions`` are those of what played, by name; ``complete`` says whether all cases were judged that were asked for.
+    """
+
+    suite: str
+    seed: int
+    error: float
+    versions: Mapping[str, str]
+    cases: tuple[ReportedCase, ...]
+    complete: bool = True

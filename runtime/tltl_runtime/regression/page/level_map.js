@@ -1,0 +1,187 @@
+// Draws onto the map of a level: the ways of all episodes, heat maps, and a moment of one episode.
+
+const MARKS = {
+  success: { name: "succeeded", path: "M0,-6L6,0L0,6L-6,0Z" },
+  violation: { name: "violated", path: "M-5,-7L0,-2L5,-7L7,-5L2,0L7,5L5,7L0,2L-5,7L-7,5L-2,0L-7,-5Z" },
+  limit: { name: "ran out of time", path: "M-5,-5H5V5H-5Z" },
+  stopped: { name: "stopped", path: "M0,-5A5,5 0 1 1 0,5A5,5 0 1 1 0,-5Z" },
+};
+const RAYS = 48;
+
+/** A new element of SVG inside `parent`. */
+function draw(parent, name, attributes = {}, title = "") {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  if (title) draw(made, "title").textContent = title;
+  parent.append(made);
+  return made;
+}
+
+class LevelMap {
+  /** `svg` is the map, `facts` what is known of its level, `colours` those of the automaton's states. */
+  constructor(svg, facts, colours) {
+    this.svg = svg;
+    this.facts = facts;
+    this.colours = colours;
+    this.layers = Object.fromEntries(
+      ["heat", "ways", "ends", "live"].map((name) => [name, svg.querySelector(`g.${name}`)]),
+    );
+    this.barriers = [...svg.querySelectorAll(".barrier")];
+    this.switches = [...svg.querySelectorAll(".switch")];
+    // Letters and lines keep their size on the screen: --unit is how many centimetres a pixel is.
+    const width = svg.viewBox.baseVal.width;
+    new ResizeObserver(() => svg.style.setProperty("--unit", width / (svg.clientWidth || width))).observe(svg);
+  }
+
+  clear() {
+    for (const layer of Object.values(this.layers)) layer.replaceChildren();
+    for (const each of [...this.barriers, ...this.switches]) each.classList.remove("open", "active");
+  }
+
+  /** The ways of episodes, coloured by state, with marks where they ended; `link` gives the address of one, or "". */
+  showWays(ways, link) {
+    this.clear();
+    const opacity = Math.max(0.15, Math.min(0.9, 6 / Math.max(1, ways.length)));
+    for (const way of ways) {
+      const xs = unstepped(way.x);
+      const ys = unstepped(way.y);
+      let from = 0;
+      for (const [state, count] of way.state) {
+        const to = Math.min(from + count, xs.length - 1);
+        this.#line(this.layers.ways, xs.slice(from, to + 1), ys.slice(from, to + 1), state, opacity);
+        from += count;
+      }
+    }
+    for (const way of ways) {
+      const by = way.by.length ? `, ${way.by.join(", ")}` : "";
+      const address = link(way.index);
+      const mark = this.#mark(way.end, way.place, `episode ${way.index}: ${way.cause}${by}`, address);
+      if (!address) mark.classList.add("unrecorded");
+    }
+  }
+
+  /** A heat map; `most` is the value of the strongest colour. */
+  showHeat(heat, most, kind) {
+    this.clear();
+    for (let place = 0; place < heat.cells.length; place += 2) {
+      const index = heat.cells[place];
+      const value = heat.cells[place + 1];
+      const words = kind === "time" ? `${value.toFixed(2)} s an episode` : `${value} failed here`;
+      draw(
+        this.layers.heat,
+        "rect",
+        {
+          class: `cell ${kind}`,
+          x: (index % heat.columns) * heat.cell,
+          y: Math.floor(index / heat.columns) * heat.cell,
+          width: heat.cell,
+          height: heat.cell,
+          "fill-opacity": (0.12 + 0.8 * Math.sqrt(value / most)).toFixed(3),
+        },
+        words,
+      );
+    }
+  }
+
+  /** Row `row` of an unpacked episode, and by a `share` of [0, 1) towards the next one. */
+  showMoment(episode, row, share) {
+    this.clear();
+    const next = Math.min(row + 1, episode.time.length - 1);
+    const between = (values) => values[row] + share * (values[next] - values[row]);
+    const live = this.layers.live;
+    this.barriers.forEach((each, place) => each.classList.toggle("open", episode.open[place][row] === 1));
+    this.switches.forEach((each, place) => each.classList.toggle("active", episode.active[place][row] === 1));
+    this.#trail(episode, row);
+    episode.movers.forEach((mover, place) => {
+      const [width, height] = this.facts.movers[place];
+      const corner = { x: between(mover.x) - width / 2, y: between(mover.y) - height / 2 };
+      draw(live, "rect", { class: "mover", ...corner, width, height });
+    });
+    const enemies = episode.enemies.map((enemy, place) => ({
+      facts: this.facts.enemies[place],
+      x: between(enemy.x),
+      y: between(enemy.y),
+      yaw: between(enemy.yaw),
+      mode: enemy.mode[row],
+      sees: enemy.sees[row] === 1,
+    }));
+    const shut = episode.open.map((barrier) => barrier[row] === 0);
+    for (const enemy of enemies) {
+      draw(live, "polygon", { class: `cone${enemy.sees ? " sees" : ""}`, points: this.#cone(enemy, shut) });
+    }
+    for (const enemy of enemies) {
+      const words = `${enemy.facts.name}: ${enemy.mode}${enemy.sees ? ", sees the player" : ""}`;
+      this.#body(enemy, `enemy ${enemy.mode}`, 35, "", words);
+    }
+    const { player } = episode;
+    const crouches = player.crouching[row] === 1;
+    const body = { x: between(player.x), y: between(player.y), yaw: between(player.yaw) };
+    const colour = this.colours[episode.state[row]];
+    this.#body(body, "player-body", crouches ? 22 : 35, colour, crouches ? "the player, who crouches" : "the player");
+  }
+
+  #trail(episode, row) {
+    let from = 0;
+    for (let at = 1; at <= row; at += 1) {
+      if (at === row || episode.state[at] !== episode.state[from]) {
+        const span = [from, at + 1];
+        const { player } = episode;
+        this.#line(this.layers.live, player.x.slice(...span), player.y.slice(...span), episode.state[from], 0.8);
+        from = at;
+      }
+    }
+  }
+
+  #line(layer, xs, ys, state, opacity) {
+    if (xs.length < 2) return;
+    const points = xs.map((x, place) => `${x},${ys[place]}`).join(" ");
+    draw(layer, "polyline", { class: "way", points, stroke: this.colours[state], "stroke-opacity": opacity });
+  }
+
+  #mark(end, [x, y], title, address) {
+    const parent = address ? draw(this.layers.ends, "a", { href: address, "aria-label": title }) : this.layers.ends;
+    const place = draw(parent, "g", { transform: `translate(${x} ${y})` }, title);
+    draw(place, "path", { class: `end ${end}`, d: MARKS[end].path });
+    return place;
+  }
+
+  #body({ x, y, yaw }, kind, radius, colour, title) {
+    const body = draw(this.layers.live, "g", { class: `body ${kind}` }, title);
+    const angle = (yaw * Math.PI) / 180;
+    const ahead = { x2: x + 2 * radius * Math.cos(angle), y2: y - 2 * radius * Math.sin(angle) };
+    draw(body, "line", { x1: x, y1: y, ...ahead });
+    draw(body, "circle", { cx: x, cy: y, r: radius, ...(colour && { fill: colour }) });
+  }
+
+  /** What an enemy sees at the height of its eyes, as points of a polygon. */
+  #cone({ facts, x, y, yaw }, shut) {
+    const high = ([, , , , low, top]) => low < facts.eyes && facts.eyes < top;
+    const shutBlocks = this.facts.barriers.filter((each, place) => shut[place] && each.kind === "solid");
+    const blocks = [...this.facts.blocks, ...shutBlocks.map((each) => each.block)].filter(high);
+    const points = facts.angle < 360 ? [`${x.toFixed(0)},${y.toFixed(0)}`] : [];
+    for (let ray = 0; ray <= RAYS; ray += 1) {
+      const angle = ((yaw + facts.angle * (ray / RAYS - 0.5)) * Math.PI) / 180;
+      const direction = [Math.cos(angle), -Math.sin(angle)];
+      const reach = blocks.reduce((least, block) => Math.min(least, distanceTo(block, [x, y], direction)), facts.reach);
+      points.push(`${(x + reach * direction[0]).toFixed(0)},${(y + reach * direction[1]).toFixed(0)}`);
+    }
+    return points.join(" ");
+  }
+}
+
+/** How far from `place` along the unit vector `direction` a ray meets a block; Infinity where it does not. */
+function distanceTo(block, place, direction) {
+  let enter = 0;
+  let leave = Infinity;
+  for (const axis of [0, 1]) {
+    const [low, high] = [block[axis] - place[axis], block[axis + 2] - place[axis]];
+    if (Math.abs(direction[axis]) < 1e-9) {
+      if (low > 0 || high < 0) return Infinity;
+      continue;
+    }
+    const [one, other] = [low / direction[axis], high / direction[axis]];
+    enter = Math.max(enter, Math.min(one, other));
+    leave = Math.min(leave, Math.max(one, other));
+  }
+  return enter <= leave ? enter : Infinity;
+}

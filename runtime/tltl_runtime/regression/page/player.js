@@ -1,0 +1,179 @@
+// Plays a recorded episode: the map, the automaton, the curves and the values beside them show one moment of it.
+
+class Player {
+  /** `section` is that of a case, `facts` its data; `moved` is told whenever another moment is shown. */
+  constructor(section, facts, map, moved) {
+    this.section = section;
+    this.facts = facts;
+    this.map = map;
+    this.moved = moved;
+    this.episode = null;
+    this.row = 0;
+    this.timer = 0;
+    const find = (selector) => section.querySelector(`.player ${selector}`);
+    this.which = find(".which");
+    this.controls = find(".controls");
+    this.scrub = find(".scrub");
+    this.playButton = find(".play");
+    this.speed = find(".speed");
+    this.moment = find(".moment");
+    this.stateText = find(".state");
+    this.bars = ["progress", "health"].map((name) => [name, find(`meter.${name}`), find(`meter.${name} ~ .number`)]);
+    this.atoms = [...section.querySelectorAll(".atoms tbody tr")].map((row) => [
+      row,
+      row.querySelector("meter"),
+      row.querySelector(".number"),
+    ]);
+    this.groups = new Map();
+    for (const group of section.querySelectorAll(".automaton [data-states]")) {
+      for (const state of group.dataset.states.split(" ")) this.groups.set(Number(state), group);
+    }
+    this.curves = [...section.querySelectorAll(".curve")];
+    this.cursor = section.querySelector(".cursor");
+    this.#listen(find);
+  }
+
+  get last() {
+    return this.episode.time.length - 1;
+  }
+
+  /** Show episode `index` at row `row`; false where there is no recording of it. */
+  open(index, row) {
+    const packed = this.facts.episodes.find((each) => each.index === index);
+    if (!packed) return false;
+    if (this.episode?.index !== index) {
+      this.pause();
+      this.episode = unpackedEpisode(packed);
+    }
+    this.which.value = String(index);
+    this.controls.hidden = false;
+    this.section.classList.add("playing");
+    this.scrub.max = this.last;
+    for (const curve of this.curves) curve.classList.toggle("current", Number(curve.dataset.episode) === index);
+    this.show(row);
+    return true;
+  }
+
+  /** Back to all episodes. */
+  close() {
+    this.pause();
+    this.episode = null;
+    if (!this.which) return;
+    this.which.value = "";
+    this.controls.hidden = true;
+    this.section.classList.remove("playing");
+    this.cursor.hidden = true;
+    for (const curve of this.curves) curve.classList.remove("current");
+    this.#highlight(null);
+  }
+
+  /** The moment of a row, and by a `share` of [0, 1) towards the next one. */
+  show(row, share = 0) {
+    const { episode } = this;
+    this.row = Math.max(0, Math.min(this.last, row));
+    this.scrub.value = String(this.row);
+    const state = episode.state[this.row];
+    const seconds = (episode.time[this.row] / 1000).toFixed(2);
+    this.moment.textContent = `step ${this.row} of ${this.last}, ${seconds} s`;
+    this.scrub.setAttribute("aria-valuetext", `${this.moment.textContent}, state ${state}`);
+    this.stateText.textContent = this.row < this.last
+      ? `State ${state}: ${this.facts.states[state]}`
+      : `State ${state}: ${this.facts.states[state]} The end: ${episode.why}.`;
+    this.stateText.style.setProperty("--state", this.map.colours[state]);
+    const values = { progress: episode.progress[this.row] / 1000, health: episode.health[this.row] / 100 };
+    for (const [name, meter, number] of this.bars) {
+      meter.value = values[name];
+      number.textContent = values[name].toFixed(2);
+    }
+    this.atoms.forEach(([line, meter, number], place) => {
+      // The moment of the reset is not judged.
+      const value = this.row ? episode.atoms[place][this.row - 1] / 100 : null;
+      meter.value = value ?? 0;
+      number.textContent = value === null ? "–" : value.toFixed(2);
+      line.classList.toggle("holds", value !== null && value > 0);
+    });
+    this.map.showMoment(episode, this.row, share);
+    this.#highlight(state);
+    this.#moveCursor(episode.time[this.row] / 1000);
+    this.moved(this);
+  }
+
+  toggle() {
+    if (this.timer) this.pause();
+    else this.play();
+  }
+
+  play() {
+    if (this.row >= this.last) this.show(0);
+    this.#label(true);
+    const { time } = this.episode;
+    let at = time[this.row];
+    let before = null;
+    const frame = (now) => {
+      at += before === null ? 0 : (now - before) * Number(this.speed.value);
+      before = now;
+      let { row } = this;
+      while (row < this.last && time[row + 1] <= at) row += 1;
+      if (row >= this.last) {
+        this.pause();
+        this.show(this.last);
+        return;
+      }
+      this.timer = requestAnimationFrame(frame);
+      this.show(row, (at - time[row]) / (time[row + 1] - time[row]));
+    };
+    this.timer = requestAnimationFrame(frame);
+  }
+
+  pause() {
+    cancelAnimationFrame(this.timer);
+    this.timer = 0;
+    if (this.playButton) this.#label(false);
+  }
+
+  /** Jump to a row and stay there. */
+  seek(row) {
+    this.pause();
+    this.show(row);
+  }
+
+  #listen(find) {
+    if (!this.which) return;
+    this.scrub.addEventListener("input", () => this.seek(Number(this.scrub.value)));
+    this.playButton.addEventListener("click", () => this.toggle());
+    find(".first").addEventListener("click", () => this.seek(0));
+    find(".back").addEventListener("click", () => this.seek(this.row - 1));
+    find(".on").addEventListener("click", () => this.seek(this.row + 1));
+    find(".last").addEventListener("click", () => this.seek(this.last));
+  }
+
+  #label(isRunning) {
+    const words = isRunning ? "pause" : "play";
+    this.playButton.classList.toggle("running", isRunning);
+    this.playButton.title = words;
+    this.playButton.setAttribute("aria-label", words);
+  }
+
+  #highlight(state) {
+    const group = this.groups.get(state);
+    if (group?.classList.contains("current")) return;
+    for (const each of this.groups.values()) each.classList.remove("current");
+    if (!group) return;
+    group.classList.add("current");
+    // Wide automata scroll within their box: the state comes into sight, and the page stays where it is.
+    const box = group.closest(".scroll");
+    const [inner, outer] = [group.getBoundingClientRect(), box.getBoundingClientRect()];
+    if (inner.left < outer.left || inner.right > outer.right) {
+      box.scrollLeft += inner.left + inner.width / 2 - outer.left - outer.width / 2;
+    }
+  }
+
+  #moveCursor(seconds) {
+    const { left, right, seconds: most } = this.cursor.dataset;
+    const x = Number(left) + (seconds / Number(most)) * (Number(right) - Number(left));
+    this.cursor.setAttribute("x1", x);
+    this.cursor.setAttribute("x2", x);
+    this.cursor.hidden = false;
+    this.cursor.removeAttribute("hidden");
+  }
+}

@@ -1,0 +1,167 @@
+// The page as a whole: each case's toggles, addresses of episodes, keys, and the filter.
+
+const WAIT_MS = 300;
+
+class CaseView {
+  constructor(facts, colours, moved) {
+    this.facts = facts;
+    this.section = document.getElementById(facts.slug);
+    this.map = new LevelMap(this.section.querySelector(".map"), facts.map, colours);
+    this.player = new Player(this.section, facts, this.map, moved);
+    this.legend = this.section.querySelector(".legend");
+    this.isDrawn = false;
+    this.section.querySelector(".toggles").addEventListener("change", () => this.showAll());
+    this.player.which?.addEventListener("change", () => {
+      const { value } = this.player.which;
+      location.hash = value ? `#${facts.slug}/${value}/0` : `#${facts.slug}`;
+    });
+  }
+
+  /** Draw what the toggles say of all episodes, unless that is there already. */
+  drawOnce() {
+    if (!this.isDrawn && !this.player.episode) this.showAll();
+  }
+
+  /** All episodes, as the toggles say. */
+  showAll() {
+    const form = new FormData(this.section.querySelector(".toggles"));
+    const when = form.get("when") ?? "now";
+    const shown = form.get("shown");
+    this.section.dataset.when = when;
+    this.section.dataset.shown = shown;
+    this.player.close();
+    this.isDrawn = true;
+    const all = this.facts[when];
+    if (shown === "ways") {
+      const recorded = new Set(when === "now" ? this.facts.episodes.map((each) => each.index) : []);
+      this.map.showWays(all.ways, (index) => (recorded.has(index) ? `#${this.facts.slug}/${index}/0` : ""));
+      this.#legendOfWays(all);
+    } else {
+      // One scale for now and before, so that their maps can be compared.
+      const most = Math.max(this.facts.now[shown].most, this.facts.before[shown].most) || 1;
+      this.map.showHeat(all[shown], most, shown);
+      const unit = shown === "time" ? `${most.toFixed(1)} s an episode` : `${most} failed episode${most === 1 ? "" : "s"}`;
+      const none = all[shown].cells.length ? "" : " (none here)";
+      this.#fillLegend([[`cell ${shown}`, "", `strongest: ${unit}${none}`]]);
+    }
+  }
+
+  open(index, step) {
+    const isOpen = this.player.open(index, step);
+    if (isOpen) {
+      this.isDrawn = false;
+      this.#fillLegend(this.#states([...new Set(this.player.episode.state)]));
+    }
+    return isOpen;
+  }
+
+  #legendOfWays(all) {
+    const states = [...new Set(all.ways.flatMap((way) => way.state.map(([state]) => state)))].sort((a, b) => a - b);
+    const ends = Object.keys(MARKS).map((end) => [end, all.ways.filter((way) => way.end === end).length]);
+    this.#fillLegend([
+      ...this.#states(states),
+      ...ends.filter(([, count]) => count).map(([end, count]) => [`end ${end}`, "", `${count} ${MARKS[end].name}`]),
+    ]);
+  }
+
+  #states(states) {
+    return states.map((state) => ["way", this.map.colours[state], `state ${state}: ${this.facts.states[state]}`]);
+  }
+
+  /** Rows of a class, a colour and a text; marks of ends are drawn, all else is a patch of colour. */
+  #fillLegend(rows) {
+    this.legend.replaceChildren(
+      ...rows.map(([kind, colour, text]) => {
+        const row = document.createElement("li");
+        const sign = draw(row, "svg", { viewBox: "-8 -8 16 16", "aria-hidden": "true" });
+        const end = kind.startsWith("end ") && MARKS[kind.slice(4)];
+        if (end) draw(sign, "path", { class: kind, d: end.path });
+        else draw(sign, "rect", { class: `patch ${kind}`, x: -8, y: -5, width: 16, height: 10, ...(colour && { fill: colour }) });
+        const words = document.createElement("span");
+        words.textContent = text;
+        row.append(words);
+        return row;
+      }),
+    );
+  }
+}
+
+class Report {
+  constructor(data) {
+    this.views = new Map(data.cases.map((facts) => [facts.slug, new CaseView(facts, data.colours, (player) => this.#moved(player))]));
+    this.active = null;
+    this.waiting = 0;
+    this.filter = document.getElementById("only-findings");
+    this.filter.addEventListener("change", () => this.#applyFilter());
+    this.#applyFilter();
+    // Maps are drawn when they come near the screen: a suite may have hundreds of ways in each of its cases.
+    const near = new IntersectionObserver(
+      (entries) => {
+        for (const each of entries) if (each.isIntersecting) this.views.get(each.target.id).drawOnce();
+      },
+      { rootMargin: "800px" },
+    );
+    for (const view of this.views.values()) near.observe(view.section);
+    addEventListener("hashchange", () => this.#follow());
+    document.addEventListener("keydown", (event) => this.#press(event));
+    this.#follow();
+  }
+
+  /** Open what the address names: `#case`, `#case/episode` or `#case/episode/step`. */
+  #follow() {
+    const [slug, episode, step] = decodeURIComponent(location.hash.slice(1)).split("/");
+    const section = document.getElementById(slug);
+    if (!section?.classList.contains("case")) return;
+    if (section.hidden) {
+      this.filter.checked = false;
+      this.#applyFilter();
+    }
+    const view = this.views.get(slug);
+    const isOpen = view && episode !== undefined && view.open(Number(episode), Number(step) || 0);
+    if (isOpen) this.active = view;
+    else if (view?.player.episode) view.showAll();
+    // The automaton and the map below it: the one above is where reading goes on.
+    const goal = isOpen ? section.querySelector(".toggles") : section;
+    if (!isOpen || !isOnScreen(section.querySelector(".stage"))) goal.scrollIntoView();
+  }
+
+  /** The address follows the player, but not at every frame. */
+  #moved(player) {
+    clearTimeout(this.waiting);
+    this.waiting = setTimeout(() => {
+      if (!player.episode) return;
+      history.replaceState(null, "", `#${player.facts.slug}/${player.episode.index}/${player.row}`);
+    }, WAIT_MS);
+  }
+
+  #press(event) {
+    const player = this.active?.player;
+    if (!player?.episode || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (event.target.closest("button, select, summary, a, input:not(.scrub)")) return;
+    if (!isOnScreen(this.active.section.querySelector(".stage"))) return;
+    const actions = {
+      " ": () => player.toggle(),
+      ArrowLeft: () => player.seek(player.row - 1),
+      ArrowRight: () => player.seek(player.row + 1),
+      Home: () => player.seek(0),
+      End: () => player.seek(player.last),
+    };
+    const action = actions[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  }
+
+  #applyFilter() {
+    for (const each of document.querySelectorAll("[data-verdict]")) {
+      each.hidden = this.filter.checked && each.dataset.verdict === "pass";
+    }
+  }
+}
+
+function isOnScreen(element) {
+  const { top, bottom } = element.getBoundingClientRect();
+  return bottom > 0 && top < innerHeight;
+}
+
+new Report(JSON.parse(document.getElementById("data").textContent));
