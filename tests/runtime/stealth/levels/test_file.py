@@ -229,7 +229,7 @@ def test_the_reference_describes_a_level_that_loads_and_every_key(folder: Path) 
     write("overlays/changes.toml", overlay)
     assert load_level("vault.toml", "v2").enemies[0].kind.branches == ("check_gaps",)
     assert load_level("vault.toml", "v1").spec.endswith("vault.tltl:unseen")
-    sources = [LEVELS.parent / "stealth" / "levels" / f"{name}.py" for name in ("parts", "file", "made_for")]
+    sources = [LEVELS.parent / "stealth" / "levels" / f"{name}.py" for name in ("parts", "file", "made_for", "regions")]
     keys = {
         key
         for source in sources

@@ -1,0 +1,81 @@
+"""Levels as arguments name them, with variants and overlays that are added to these."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.stealth.levels.file import changes, load_level
+from tltl_runtime.stealth.levels.place import level_place
+from tltlc.diagnostics.diagnostic import TltlError
+
+WIDER = 'doc = "The guard sees further."\n[change.guard]\nsight_range = 12.5\n'
+
+
+@pytest.mark.parametrize(
+    ("argument", "place"),
+    [
+        ("navigation", ("navigation", None)),
+        ("navigation:v1", ("navigation", "v1")),
+        ("levels/vault.toml:v2", ("levels/vault.toml", "v2")),
+        ("branching:v0+guard_alert", ("branching", "v0+guard_alert")),
+        ("branching:v1+guard_alert+edits/a:b.toml", ("branching", "v1+guard_alert+edits/a:b.toml")),
+        ("branching:v0+", ("branching:v0+", None)),
+        ("branching:+guard_alert", ("branching:+guard_alert", None)),
+        ("branching+guard_alert", ("branching+guard_alert", None)),
+        ("C:\\levels\\vault.toml", ("C:\\levels\\vault.toml", None)),
+        ("C:\\levels\\vault.toml:v1+D:\\wider.toml", ("C:\\levels\\vault.toml", "v1+D:\\wider.toml")),
+        (":v0", (":v0", None)),
+        ("", ("", None)),
+    ],
+)
+def test_an_argument_is_split(argument: str, place: tuple[str, str | None]) -> None:
+    assert level_place(argument) == place
+
+
+def test_a_path_that_exists_is_not_split(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "odd:v0").touch()
+    assert level_place("odd:v0") == ("odd:v0", None)
+    assert level_place("odd:v1") == ("odd", "v1")
+
+
+def test_overlays_are_added_to_a_variant(tmp_path: Path) -> None:
+    wider = tmp_path / "wider.toml"
+    wider.write_text(WIDER, encoding="utf-8")
+    plain, alert = load_level("branching"), load_level("branching", "v0+guard_alert")
+    assert alert.enemies[0].kind == load_level("cover_and_hide", "v1").enemies[0].kind != plain.enemies[0].kind
+    both = load_level("branching", f"v0+guard_alert+{wider}")
+    assert (both.name, both.variant) == ("branching", "v0+guard_alert+wider")
+    assert both.enemies[0].kind.sight_range == 12.5
+    assert both.enemies[0].kind.reaction_time == alert.enemies[0].kind.reaction_time
+    assert [name for name, _ in both.files][-2:] == ["overlays/guard_alert.toml", "overlays/wider.toml"]
+    assert changes("branching", f"v0+{wider}") == ("The guard sees further.",)
+    # The same in another order is another level, where overlays change the same.
+    assert load_level("branching", f"v0+{wider}+guard_alert").enemies[0].kind.sight_range != 12.5
+
+
+def test_what_overlays_do_not_change_is_the_same_level(tmp_path: Path) -> None:
+    (tmp_path / "nothing.toml").write_text('doc = "Nothing."\n', encoding="utf-8")
+    assert level_hash(load_level("branching", f"v0+{tmp_path / 'nothing.toml'}")) == level_hash(load_level("branching"))
+
+
+@pytest.mark.parametrize(
+    ("variant", "code", "title"),
+    [
+        ("v7+guard_alert", "TLT0800", "the level `branching` has no variant `v7`"),
+        ("v0+guard_alart", "TLT0805", "there is no overlay `guard_alart`"),
+        ("v0+", "TLT0805", "there is no overlay ``"),
+        ("v0+../overlays/guard_alert", "TLT0805", "there is no overlay `../overlays/guard_alert`"),
+        ("v0+nowhere/wider.toml", "TLT0001", "cannot read `nowhere/wider.toml`: there is no such file"),
+        ("v0+corridor_shut", "TLT0808", "the level uses no asset `corridor`"),
+    ],
+)
+def test_what_cannot_be_added(variant: str, code: str, title: str) -> None:
+    with pytest.raises(TltlError) as error:
+        load_level("branching", variant)
+    (found,) = error.value.diagnostics
+    assert (found.code, found.title) == (code, title)
+    assert found.help
