@@ -9,12 +9,25 @@ import argparse
 import signal
 import sys
 
-from benchmarks import batch, compile_table, expert, game, monitors, process, report, safety, training
+from benchmarks import (
+    batch,
+    compile_table,
+    edits,
+    expert,
+    game,
+    monitors,
+    process,
+    report,
+    safety,
+    training,
+    verdicts,
+)
 from benchmarks.machine import facts
 from benchmarks.store import Store
 
 SECTIONS = {
-    module.SECTION: module for module in (process, monitors, batch, game, safety, expert, training, compile_table)
+    module.SECTION: module
+    for module in (process, monitors, batch, game, safety, expert, training, verdicts, edits, compile_table)
 }
 
 
@@ -32,6 +45,8 @@ def main() -> None:
         store.discard(options.only)
         if options.only in (None, training.SECTION):
             training.discard()
+        if options.only in (None, edits.SECTION):
+            edits.discard()
     if options.only is None or not store.section("machine"):
         # What one section adds later, perhaps without the peers, must not describe how the others were measured.
         store.put("machine", "facts", facts())

@@ -9,6 +9,8 @@ from pathlib import Path
 from benchmarks import (
     batch,
     compile_table,
+    edits,
+    edits_report,
     expert,
     expert_report,
     game,
@@ -19,6 +21,8 @@ from benchmarks import (
     summary,
     training,
     training_report,
+    verdicts,
+    verdicts_report,
 )
 from benchmarks.markdown import MISSED, met_or_missed, spread, table
 from benchmarks.reference import references
@@ -59,6 +63,8 @@ def render(store: Store) -> str:
         game_report.safe(store.section(safety.SECTION)),
         expert_report.section(store.section(expert.SECTION)),
         training_report.section(store.section(training.SECTION)),
+        verdicts_report.section(store.section(verdicts.SECTION)),
+        edits_report.section(store.section(edits.SECTION)),
     ]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
@@ -145,6 +151,8 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
     yield from game_report.goals(store)
     yield from expert_report.goals(store)
     yield from training_report.goals(store.section(training.SECTION))
+    yield from verdicts_report.goals(store.section(verdicts.SECTION))
+    yield from edits_report.goals(store.section(edits.SECTION))
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:
