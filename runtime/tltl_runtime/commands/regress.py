@@ -120,7 +120,7 @@ def command(
         cases, left_out = _chosen(read, named)
         references = baseline_of(read.path) if cases else ()
         if fresh:
-            forget(cases, place)
+            forget(read, cases, place)
         found: list[Done] = []
         try:
             _play(read, cases, references, wanted, found)

@@ -60,7 +60,7 @@ def write_page(outcome: Outcome, folder: Path, html_file: Path | None) -> Path:
         TltlError: TLT0005, it cannot be written; what drawing it raises.
     """
     suite = outcome.suite
-    cases = tuple(_reported(done, folder) for done in outcome.cases)
+    cases = tuple(_reported(done, suite, folder) for done in outcome.cases)
     page = html_report(SuiteReport(suite.path.stem, suite.seed, suite.error, versions(), cases, outcome.complete))
     write_files(folder, {PAGE: page}, "name another folder with --out")
     if html_file is None:
@@ -69,13 +69,13 @@ def write_page(outcome: Outcome, folder: Path, html_file: Path | None) -> Path:
     return html_file
 
 
-def _reported(done: Done, folder: Path) -> ReportedCase:
+def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:
     """A case with what the page draws of it."""
     if done.ready is None or done.reference is None:
         return ReportedCase(done.report)
     setup = done.ready.setup
     level = load_level(setup.level, setup.variant)
-    episodes = _episodes(done, case_folder(folder, done.report.name))
+    episodes = _episodes(done, case_folder(suite, done.report.name, folder))
     return ReportedCase(done.report, level, setup.fspa, episodes, done.reference.accounts)
 
 

@@ -14,6 +14,7 @@ from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Played, Reference, reference_of
 from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken
+from tltl_runtime.regression.page.slugs import slugs
 from tltl_runtime.regression.play import Ready, Result, episodes, judged, ready
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.episodes.file import SUFFIX
@@ -71,10 +72,10 @@ def regress(
                 yield _done(suite, *prepared, folder, pool, told)
 
 
-def forget(cases: Sequence[Case], folder: Path) -> None:
+def forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
     """Have the next :func:`regress` play some cases anew, whatever is kept of them in ``folder``; raises TLT0005."""
     for case in cases:
-        path = case_folder(folder, case.name) / _REPORT
+        path = case_folder(suite, case.name, folder) / _REPORT
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
@@ -82,9 +83,10 @@ def forget(cases: Sequence[Case], folder: Path) -> None:
             raise TltlError([Diagnostic("TLT0005", title, help=_WRITABLE)]) from None
 
 
-def case_folder(folder: Path, name: str) -> Path:
+def case_folder(suite: Suite, name: str, folder: Path) -> Path:
     """Where a run in ``folder`` keeps what it played of the case of that name."""
-    return folder / "".join(each if each.isalnum() or each in "-_+." else "-" for each in name)
+    names = [case.name for case in suite.cases]
+    return folder / slugs(names)[names.index(name)]
 
 
 def record_baseline(suite: Suite, pool: Pool, told: Told) -> Iterator[Reference]:
@@ -120,7 +122,7 @@ def _prepared(
 def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Pool, told: Told) -> Done:
     """A case as an earlier run has left it, or played now."""
     case, error = one.case, suite.error / len(suite.cases)
-    place, identity = case_folder(folder, case.name), _identity(one, reference, error)
+    place, identity = case_folder(suite, case.name, folder), _identity(one, reference, error)
     kept = _kept(place, identity)
     if kept:
         return Done(kept, kept=True, ready=one, reference=reference)
