@@ -47,6 +47,7 @@ Examples:
   tltlc train --resume runs/careful --steps 8000000
   tltlc train --print-config > settings.toml
   tltlc train plans.tltl --config settings.toml
+  tltlc train cover_and_hide --method imitation --demonstrations mine
 
 \b
 Watching, from another terminal:
@@ -70,6 +71,17 @@ Watching, from another terminal:
     metavar="FILE.toml",
     type=click.Path(path_type=Path),
     help="Settings in place of the defaults; --print-config shows all of them.",
+)
+@click.option(
+    "--method",
+    type=click.Choice(("automaton", "imitation")),
+    help="What the agent learns from: rewards of the spec's automaton (default), or demonstrations.",
+)
+@click.option(
+    "--demonstrations",
+    metavar="DIR",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="What is imitated, as `tltlc record` made it (default: the expert's, recorded first).",
 )
 @click.option(
     "--steps",
@@ -162,13 +174,14 @@ def _begins(run: Run, *, resume: bool) -> Iterator[str]:
     from tltl_runtime.training.run import CHECKPOINT, POLICY
 
     place = f"{Path(run.level).stem} {run.variant}"
-    yield f"training {run.fspa.name} on {place}, seed {run.seed}, in {run.folder}"
+    how = f" by {run.settings.method}" if run.settings.imitates else ""
+    yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
     files = [name for name in (METRICS, POLICY) if (run.folder / name).exists()]
     if not resume or not files or (run.folder / CHECKPOINT).exists():
         return
     fates = {METRICS: "what was measured is lost", POLICY: f"{POLICY} stays until there is a new one"}
     fate = ", and ".join(fates[name] for name in files)
-    ways = "; Ctrl-C before the end of its search leaves all as it is" if run.settings.exploration.ways else ""
+    ways = "; Ctrl-C before the end of its search leaves all as it is" if run.settings.searches else ""
     yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
 
 
@@ -180,14 +193,16 @@ def _train(run: Run, *, resume: bool) -> Trained:
 
     try:
         with _broken_off(run.folder), display(run) as shown:
-            with closing(train(run, resume=resume, searching=shown.searched)) as reports:
+            training = train(run, resume=resume, searching=shown.searched, recording=shown.recorded)
+            with closing(training) as reports:
                 for last in reports:
                     shown.trained(last)
             return last
     except KeyboardInterrupt:
         if (run.folder / RUN).exists():
-            searching = "" if (run.folder / CHECKPOINT).exists() else " in the search, which then begins anew"
-            click.echo(f"stopped{searching}; to go on: {_resume(run.folder)}", err=True)
+            before = "before the first iteration" if run.settings.imitates else "in the search, which then begins anew"
+            when = "" if (run.folder / CHECKPOINT).exists() else f" {before}"
+            click.echo(f"stopped{when}; to go on: {_resume(run.folder)}", err=True)
         raise
 
 

@@ -13,7 +13,16 @@ from rich.console import Console
 from rich.live import Live
 
 from tltl_runtime.commands.training_picture import Picture
-from tltl_runtime.commands.training_text import SEARCH_IS_LOST, found_line, line, search_end, search_line
+from tltl_runtime.commands.training_text import (
+    SEARCH_IS_LOST,
+    found_line,
+    imitated_line,
+    line,
+    recording_line,
+    search_end,
+    search_line,
+)
+from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.report import Report
 from tltl_runtime.training.run import Run
@@ -27,6 +36,9 @@ class Display(Protocol):
 
     def searched(self, searched: Searched) -> None:
         """Show how far the search is that comes first."""
+
+    def recorded(self, tried: Tried) -> None:
+        """Show how far the recording of demonstrations is that comes first."""
 
     def trained(self, report: Report) -> None:
         """Show how far the training is."""
@@ -55,6 +67,9 @@ class _Nothing:
     def searched(self, searched: Searched) -> None:
         pass
 
+    def recorded(self, tried: Tried) -> None:
+        pass
+
     def trained(self, report: Report) -> None:
         pass
 
@@ -76,8 +91,14 @@ class _Lines:
             self._next = 0.0
         self._print(search_line(searched))
 
+    def recorded(self, tried: Tried) -> None:
+        wanted = self._run.settings.imitation.demonstrations
+        self._print(recording_line(tried, wanted), always=tried.path is None or tried.kept == wanted)
+
     def trained(self, report: Report) -> None:
         first, self._has_trained = not self._has_trained, True
+        if first and report.imitated:
+            self._print(imitated_line(report.imitated), always=True)
         if first and report.searched:
             self._print(found_line(report.searched), always=True)
         if first:

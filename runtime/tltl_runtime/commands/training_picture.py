@@ -17,12 +17,15 @@ from tltl_runtime.commands.training_text import (
     confirmation_line,
     duration,
     found_line,
+    imitated_line,
     rate,
+    recording_line,
     search_end,
     search_line,
     seconds_left,
 )
 from tltl_runtime.texts import number, percent, share
+from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.report import Report, Window
 from tltl_runtime.training.run import CHECKPOINT, Run
 from tltl_runtime.training.search import Searched
@@ -48,6 +51,7 @@ class Picture:
         self._run, self._console = run, console
         self._last: Report | None = None
         self._searched: Searched | None = None
+        self._recorded: Tried | None = None
         self._confirmation = ""
         self._at = time.monotonic()
         self._checkpoint: float | None = None
@@ -56,6 +60,10 @@ class Picture:
     def searched(self, searched: Searched) -> None:
         """Take up how far the search is."""
         self._searched = searched
+
+    def recorded(self, tried: Tried) -> None:
+        """Take up how far the recording of demonstrations is."""
+        self._recorded = tried
 
     def trained(self, report: Report) -> None:
         """Take up how far the training is."""
@@ -83,6 +91,8 @@ class Picture:
     def _before(self, bar: int) -> RenderableType:
         """What there is to see before the first iteration."""
         exploration, searched = self._run.settings.exploration, self._searched
+        if tried := self._recorded:
+            return Text(recording_line(tried, self._run.settings.imitation.demonstrations))
         if searched is None:
             return Text("playing the first steps …")
         found = len(searched.lengths)
@@ -167,6 +177,7 @@ def _figures(report: Report, stop: Stop, since: float) -> list[str]:
         f"{report.steps:,} of at most {stop.steps:,} steps{speed}",
         f"{duration(report.seconds + since)} so far, {end}",
         *([found_line(report.searched)] if report.searched else ()),
+        *([imitated_line(report.imitated)] if report.imitated else ()),
     ]
 
 

@@ -22,10 +22,12 @@ from tltl_runtime.stealth.senses.sensors import chosen
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
 from tltl_runtime.training.checkpoint import read_checkpoint
+from tltl_runtime.training.demonstrated import nothing_to_imitate
+from tltl_runtime.training.demonstrations import recordings
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.run import CHECKPOINT, MAY_CHANGE, RUN, Run, leaves, read_level_hash, read_run
 from tltl_runtime.training.settings import Settings, read_settings
-from tltl_runtime.training.settings_file import read_values
+from tltl_runtime.training.settings_file import Method, read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source, reading_error
 from tltlc.record import record, replace
@@ -47,6 +49,8 @@ class Asked:
     workers: int | Literal["ray"] | None
     device: str | None
     sensors: Mapping[str, Any]
+    method: Method | None = None
+    demonstrations: Path | None = None
 
 
 def new_run(asked: Asked, folder: Path | None) -> Run:
@@ -64,6 +68,7 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     else:
         raise _usage("say what to train for: a spec, a level, or both")
     settings = new_settings(asked)
+    _check_demonstrations(asked.demonstrations, settings)
     level = load_level(path, variant or "v0")
     spec = asked.spec or spec_of(level)
     task = load_task(spec, offered=params(level))
@@ -71,7 +76,8 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     check_limit(task.fspa)
     seed = asked.seed or 0
     sensors = chosen(level, asked.sensors or None)
-    folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}"
+    name = f"{level.name}-{level.variant}-{task.fspa.name}-{seed}"
+    folder = folder or Path("training") / (f"{name}-{settings.method}" if settings.imitates else name)
     _check_folder(folder)
     return Run(
         folder=folder,
@@ -82,17 +88,19 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
         sensors=sensors,
         settings=settings,
         seed=seed,
+        demonstrations=str(asked.demonstrations) if asked.demonstrations else None,
     )
 
 
 def new_settings(asked: Asked) -> Settings:
     """The settings that a new training would have; errors as of :func:`read_settings`."""
-    return _with_limits(read_settings(asked.config), asked)
+    settings = _with_limits(read_settings(asked.config), asked)
+    return replace(settings, method=_or(asked.method, settings.method))
 
 
 def resumed_run(asked: Asked, folder: Path) -> Run:
     """The training in ``folder``, with those settings that are asked for and may change; all others stay, and so does
-    the level, whose file may lie elsewhere now.
+    the level and the demonstrations, whose files may lie elsewhere now.
 
     Raises TltlError for a folder that cannot be read, TLT0001 for a level that is not where it was, TLT0870 where
     anything else is asked for than it was begun with.
@@ -103,6 +111,9 @@ def resumed_run(asked: Asked, folder: Path) -> Run:
     if different:
         help_ = f"leave it out to go on with `{folder}`, or begin another training with --out"
         raise TltlError([Diagnostic("TLT0870", title, help=help_) for title in different])
+    if asked.demonstrations is not None:
+        _check_demonstrations(asked.demonstrations, settings)
+        run = replace(run, demonstrations=str(asked.demonstrations))
     return replace(run, settings=_with_limits(settings, asked))
 
 
@@ -146,6 +157,16 @@ def _check_folder(folder: Path) -> None:
         title = f"`{folder}` is no training, and has other files: `{names[0]}`{' and more' * (len(names) > 1)}"
         help_ = f"name a folder of its own, e.g. `--out {quote(str(folder / 'training'))}`"
         raise TltlError([Diagnostic("TLT0873", title, help=help_)])
+
+
+def _check_demonstrations(folder: Path | None, settings: Settings) -> None:
+    """UsageError where demonstrations are named that nobody would imitate; TLT0921 where there are none."""
+    if folder is None:
+        return
+    if not settings.imitates:
+        raise _usage("--demonstrations are for --method imitation")
+    if not recordings(folder):
+        raise nothing_to_imitate(folder, [])
 
 
 def _usage(message: str) -> click.UsageError:
@@ -195,6 +216,8 @@ def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
             yield f"{where} is for the spec `{run.fspa.name}`, not for `{fspa.name}` of `{asked.spec}`"
     if asked.seed is not None and asked.seed != run.seed:
         yield f"{where} has the seed {run.seed}, not {asked.seed}"
+    if asked.method is not None and asked.method != run.settings.method:
+        yield f"{where} is by the method `{run.settings.method}`, not by `{asked.method}`"
     sensors = chosen(load_level(run.level, run.variant), asked.sensors) if asked.sensors else run.sensors
     # What no option speaks of stays the training's own, whatever the level senses.
     for own, other in ((option_of(key, run.sensors), option_of(key, sensors)) for key in asked.sensors):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from tltl_runtime.texts import number, share
+from tltl_runtime.training.demonstrated import Imitated
+from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.report import Confirmation, Report
 from tltl_runtime.training.search import Exploration, Searched
 from tltl_runtime.training.settings import Stop
@@ -29,6 +31,20 @@ def line(report: Report, stop: Stop) -> str:
     if not report.stop:
         parts.append(f"at most {duration(seconds_left(report, stop))} left")
     return ", ".join(parts)
+
+
+def recording_line(tried: Tried, wanted: int) -> str:
+    """How far the recording of the expert's demonstrations is, in a line."""
+    seed, fate = tried.episode.seed, "is kept" if tried.path else "fails, and is not kept"
+    return f"recording the expert: {tried.kept} of {wanted} demonstrations, the episode of seed {seed} {fate}"
+
+
+def imitated_line(imitated: Imitated) -> str:
+    """What is imitated, in a line."""
+    many = f"{imitated.episodes} demonstration{'s' * (imitated.episodes != 1)}"
+    said = f"imitating {many} of {imitated.decisions:,} decisions, by {' and '.join(imitated.players)}"
+    left = len(imitated.left_out)
+    return f"{said}; {left} recording{'s' * (left > 1)} left out: {imitated.left_out[0]}" if left else said
 
 
 def search_line(searched: Searched) -> str:

@@ -10,11 +10,13 @@ import numpy as np
 
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint
+from tltl_runtime.training.demonstrated import Demonstrated, read_demonstrations, record_expert
+from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import Peers, cores
 from tltl_runtime.training.environment import TrainingEnv
 from tltl_runtime.training.imitation import Lessons
 from tltl_runtime.training.restarts import Restarts
-from tltl_runtime.training.run import CHECKPOINT, RUN, Run, identity, read_run, write_run
+from tltl_runtime.training.run import CHECKPOINT, RUN, Run, demonstrations_of, identity, read_run, write_run
 from tltl_runtime.training.search import Search, Searched
 from tltl_runtime.training.starts import Replayed
 from tltl_runtime.training.streams import Purpose, stream
@@ -57,9 +59,26 @@ def environments(run: Run) -> WorkerVectorEnv:
         sensors=run.sensors,
         reward=settings.reward,
         params=run.params,
-        wrapper=Replayed if settings.exploration.ways else None,
+        wrapper=Replayed if settings.searches else None,
         info={**TLTL_INFO, "cell": np.int64},
     )
+
+
+def demonstrated(run: Run, own: Peers, recording: Callable[[Tried], None]) -> Demonstrated | None:
+    """What is imitated, None where nothing is; the expert's are recorded first, as far as they are not there.
+
+    Raises:
+        TltlError: TLT0920, the expert fails; TLT0921, there is nothing to imitate; what is wrong with a recording.
+    """
+    if not run.settings.imitates:
+        return None
+    found = None
+    if own.rank == 0:
+        folder, make = demonstrations_of(run), _env_of(run)
+        if run.demonstrations is None:
+            record_expert(folder, run.settings.imitation.demonstrations, make, recording)
+        found = read_demonstrations(folder, make)
+    return own.broadcast(found)
 
 
 def prepared(
@@ -69,21 +88,22 @@ def prepared(
     played: WorkerVectorEnv,
     checkpoint: Checkpoint | None,
     searching: Callable[[Searched], None],
+    demonstrated: Demonstrated | None = None,
 ) -> tuple[TrainingEnv, Searched | None]:
     """What rsl-rl trains with, at the beginning of episodes that no process played before, and what a search found.
 
-    That is None where there was no need of one: ways are searched once, unless a limit broke the search off.
+    This is None where there was no need of one: ways are searched once, unless a limit broke the search off.
     """
     exploration, searched, restarts, lessons = run.settings.exploration, None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
-    if exploration.ways:
+    if run.settings.searches:
         restarts = _restarts(run, own, checkpoint)
         if checkpoint is None or _broken_off(run, checkpoint):
             searched = _searched(run, own, played, checkpoint, restarts, searching)
         if exploration.imitation:
             lessons = Lessons(_env_of(run), restarts)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
-    return TrainingEnv(played, [int(each) for each in seeds], device, restarts, lessons), searched
+    return TrainingEnv(played, [int(each) for each in seeds], device, restarts, lessons, demonstrated), searched
 
 
 def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:

@@ -20,7 +20,7 @@ from tltlc.record import record
 from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-checkpoint"
-VERSION: Final = 3
+VERSION: Final = 4
 
 
 @record
@@ -82,7 +82,7 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
 
     Raises:
         TltlError: TLT0001 it cannot be read; TLT0864 it is none, is damaged, is of another version, or of another
-            training than ``run``; TLT0868, of ``run`` on another level.
+            training than ``run``; TLT0868, of ``run`` on another level; TLT0922, of ``run`` with other demonstrations.
     """
     try:
         data = path.read_bytes()
@@ -130,10 +130,14 @@ def _content(data: bytes, path: Path) -> Mapping[str, Any]:
 
 
 def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) -> None:
-    """TLT0864 where a checkpoint is of another training, and what differs; TLT0868 where the level alone does."""
+    """TLT0864 where a checkpoint is of another training, and what differs; TLT0868 where the level alone does, TLT0922
+    where the demonstrations do.
+    """
     other = [name for name in wanted if found.get(name) != wanted[name]]
     if other == ["level"]:
         raise level_changed(path.parent)
+    if other == ["demonstrations"]:
+        raise _demonstrations_changed(path.parent)
     if other:
         raise _refused(path, f"it is of another training: another {' and another '.join(map(_called, other))}")
 
@@ -147,6 +151,13 @@ def level_changed(folder: Path) -> TltlError:
     )
     title = f"the level has changed since the training in `{folder}` began"
     return TltlError([Diagnostic("TLT0868", title, help=help_)])
+
+
+def _demonstrations_changed(folder: Path) -> TltlError:
+    again = f"tltlc train --resume {quote(str(folder))}"
+    help_ = f"put them back and go on by `{again}`, or say where they are now: `{again} --demonstrations DIR`"
+    title = f"the demonstrations are others than those that the training in `{folder}` began with"
+    return TltlError([Diagnostic("TLT0922", title, help=help_)])
 
 
 def _called(part: str) -> str:

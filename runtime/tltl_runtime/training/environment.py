@@ -13,6 +13,7 @@ from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 from torch import Tensor
 
+from tltl_runtime.training.demonstrated import Demonstrated
 from tltl_runtime.training.imitation import Lessons
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.search import end_of
@@ -44,7 +45,7 @@ class TrainingEnv(VecEnv):
 
     With ``restarts`` they say where episodes begin, whose seeds ``seed`` then does not tell; those that do not begin at
     the level's start are not among the ``finished``.  ``replayed`` counts the decisions that led to their starts.
-    ``lessons`` are decisions that the runner is to imitate.
+    ``lessons`` are decisions that the runner is to imitate; ``demonstrated`` are those that the algorithm is to.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -57,6 +58,7 @@ class TrainingEnv(VecEnv):
         device: str = "cpu",
         restarts: Restarts | None = None,
         lessons: Lessons | None = None,
+        demonstrated: Demonstrated | None = None,
     ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
             raise TypeError(f"actions of several branches are needed, a MultiDiscrete, not {env.single_action_space}")
@@ -70,6 +72,7 @@ class TrainingEnv(VecEnv):
         self.device = device
         self.restarts = restarts
         self.lessons = lessons
+        self.demonstrated = demonstrated
         self.cfg: dict[str, Any] = {}
         # Nothing is cut by rsl-rl: the spec's limit ends an episode.
         self.max_episode_length = 2**31
@@ -84,12 +87,19 @@ class TrainingEnv(VecEnv):
         return self._observation
 
     def step(self, actions: Tensor) -> tuple[TensorDict, Tensor, Tensor, dict[str, Any]]:
-        """Take a step in each environment with actions [num_envs, branches]."""
+        """Take a step in each environment with actions [num_envs, branches].
+
+        The extras tell of each whether the limit ended the episode (``time_outs``), and whether it met the spec
+        (``successes``), bools [num_envs].
+        """
         taken = actions.to("cpu", torch.int64).numpy()
         step = self._episodes.step if self._episodes else self.env.step
         observation, reward, terminated, truncated, infos = step(taken)
         over = terminated | truncated
         ended = _finished(infos["final_info"], np.flatnonzero(over)) if over.any() else {}
+        successes = torch.zeros(self.num_envs, dtype=torch.bool)
+        for row, each in ended.items():
+            successes[row] = each.success
         if self._episodes and self.restarts:
             ends = {row: end_of(infos["final_info"], row) for row, each in ended.items() if each.success}
             cut = _learned(self.restarts, self._episodes, over, ends)
@@ -104,7 +114,7 @@ class TrainingEnv(VecEnv):
             self._observation,
             torch.from_numpy(reward).to(self.device, torch.float32),
             torch.from_numpy(over).to(self.device),
-            {"time_outs": torch.from_numpy(truncated).to(self.device)},
+            {"time_outs": torch.from_numpy(truncated).to(self.device), "successes": successes.to(self.device)},
         )
 
     @property

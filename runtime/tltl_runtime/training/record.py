@@ -66,6 +66,7 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
         "steps": last.steps,
         "replayed": last.replayed,
         "search": None if last.searched is None else to_json(last.searched),
+        "imitated": None if last.imitated is None else to_json(last.imitated),
         "seconds": round(last.seconds, 3),
         "window": {"episodes": last.window.count, **means(last.window)},
         "versions": versions(),

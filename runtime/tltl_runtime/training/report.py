@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
+from tltl_runtime.training.demonstrated import Imitated
 from tltl_runtime.training.runner import Iteration
 from tltl_runtime.training.search import Searched
 from tltlc.record import record
@@ -61,7 +62,8 @@ class Report:
     as long as there is none, and ``best_steps`` the steps after which it had its weights.  ``stop`` says why the
     training ends here, None where it goes on; ``checkpointed`` whether a checkpoint of this iteration was written.
     ``searched`` is what the search before it found, None where there was none, its decisions not among the ``steps``;
-    nor are those that were ``replayed`` to begin where others had been.
+    nor are those that were ``replayed`` to begin where others had been.  ``imitated`` tells of the demonstrations, None
+    where nothing is imitated.
     """
 
     iteration: Iteration
@@ -76,3 +78,4 @@ class Report:
     checkpointed: bool
     searched: Searched | None = None
     replayed: int = 0
+    imitated: Imitated | None = None

@@ -15,13 +15,15 @@ from typing import Any, Final
 from tltl_runtime.policies.card import OBSERVATION
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.stealth.episodes.file import MAX_BYTES
 from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.levels.file import level_path, load_level
+from tltl_runtime.training.demonstrations import recordings
 from tltl_runtime.training.settings import Settings, read_settings
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.files import MAX_ARTEFACT_BYTES, read_bytes, read_source
 from tltlc.pipeline import read_artefact
 from tltlc.record import record
 from tltlc.source import SourceFile
@@ -32,6 +34,7 @@ CHECKPOINT: Final = "checkpoint.pt"
 POLICY: Final = "policy.safetensors"
 RECORD: Final = "record.json"
 CURVE: Final = "curve.png"
+DEMONSTRATIONS: Final = "demonstrations"
 
 MAY_CHANGE: Final = frozenset(
     {"device", "threads", "checkpoint_s", "rollout.workers", "rollout.pool", "stop.steps", "stop.minutes"}
@@ -51,7 +54,8 @@ class Run:
     """What is trained, and the folder that keeps it.
 
     ``params`` are values of the params of ``fspa`` in SI units; ``level`` is what
-    :func:`~tltl_runtime.stealth.levels.file.load_level` takes.
+    :func:`~tltl_runtime.stealth.levels.file.load_level` takes.  ``demonstrations`` is the folder of those that are
+    imitated, None for the training's own, where the expert's are recorded.
     """
 
     folder: Path
@@ -62,6 +66,7 @@ class Run:
     sensors: Sensors
     settings: Settings
     seed: int
+    demonstrations: str | None = None
 
 
 _PLAIN: Final[Mapping[str, Any]] = {
@@ -71,6 +76,7 @@ _PLAIN: Final[Mapping[str, Any]] = {
     "sensors": Sensors,
     "settings": Settings,
     "seed": int,
+    "demonstrations": str | None,
 }
 """The fields that stand in the file as they are, and their types."""
 
@@ -85,6 +91,7 @@ def write_run(run: Run) -> None:
         "version": _VERSION,
         **{name: to_json(getattr(run, name)) for name in _PLAIN},
         "level": level,
+        "demonstrations": run.demonstrations and str(Path(run.demonstrations).absolute()),
         "level_hash": level_hash(load_level(run.level, run.variant)),
         "artefact": json.loads(artefact),
     }
@@ -155,7 +162,8 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
 
 def identity(run: Run) -> dict[str, str]:
     """What a checkpoint depends on, in parts that messages tell apart: the hashes of ``level`` and ``spec``, the
-    ``seed``, and a SHA-256, in hexadecimal, of the senses and of all ``settings`` but for :data:`MAY_CHANGE`.
+    ``seed``, and a SHA-256, in hexadecimal, of the senses and of all ``settings`` but for :data:`MAY_CHANGE`; by
+    imitation one of the recordings of ``demonstrations``, too.
     """
     counts = {
         "observation": OBSERVATION,
@@ -168,7 +176,13 @@ def identity(run: Run) -> dict[str, str]:
         "spec": spec_hash(run.fspa),
         "seed": str(run.seed),
         "settings": hashlib.sha256(json.dumps(counts, sort_keys=True).encode()).hexdigest(),
+        **({"demonstrations": _content_hash(demonstrations_of(run))} if run.settings.imitates else {}),
     }
+
+
+def demonstrations_of(run: Run) -> Path:
+    """The folder of the demonstrations that a training imitates."""
+    return run.folder / DEMONSTRATIONS if run.demonstrations is None else Path(run.demonstrations)
 
 
 def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
@@ -186,6 +200,13 @@ def named_trainings(folder: Path) -> str:
     named = ", ".join(f"`{each}`" for each in found[:_MOST_NAMED])
     more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
     return f"name one of them: {named}{more}" if found else ""
+
+
+def _content_hash(folder: Path) -> str:
+    """SHA-256, in hexadecimal, of the recordings in a folder and of their names."""
+    found = {path.name: read_bytes(path, str(path), MAX_BYTES) for path in recordings(folder)}
+    hashes = {name: hashlib.sha256(data).hexdigest() for name, data in found.items()}
+    return hashlib.sha256(json.dumps(hashes, sort_keys=True).encode()).hexdigest()
 
 
 def _no_training(folder: Path) -> TltlError:

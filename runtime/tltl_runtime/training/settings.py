@@ -10,14 +10,16 @@ from typing import Any, Final, Literal
 
 from tltl_runtime.policies.network import Network, Shapes, model_config
 from tltl_runtime.training.search import Exploration
-from tltl_runtime.training.settings_file import read_values
+from tltl_runtime.training.settings_file import Method, read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source
 from tltlc.monitor import RewardOptions
-from tltlc.record import record
+from tltlc.record import record, replace
 
 DEFAULTS: Final = Path(__file__).with_name("settings.toml")
 
+_PPO: Final = "PPO"
+_GAIL: Final = "tltl_runtime.training.gail:Gail"
 _HEADING: Final = re.compile(r"\[(\w+)\]")
 _SETTING: Final = re.compile(r"(?P<head>(?P<key>\w+) = [^#]*?)\s*(?P<comment>#.*)?$")
 
@@ -51,6 +53,24 @@ class Rollout:
 
 
 @record
+class Imitation:
+    """The imitation baseline (paper, section VI): behavioural cloning for a share ``cloning`` of the steps, then GAIL.
+
+    ``demonstrations`` of the expert are recorded where none are named.  The discriminator has two layers of width
+    ``encoding`` and the learning rate ``discriminator_rate``; its reward counts ``strength`` times, and an episode ends
+    with plus or minus ``terminal``.  See :mod:`tltl_runtime.training.gail`.
+    """
+
+    demonstrations: int
+    cloning: float
+    encoding: int
+    discriminator_rate: float
+    gradient_penalty: float
+    strength: float
+    terminal: float
+
+
+@record
 class Stop:
     """Training ends when the spec was met throughout ``windows`` successive windows of ``episodes`` each, and then by
     the policy in as many fresh episodes as these are; or after ``steps`` decisions of all environments, or after
@@ -75,6 +95,7 @@ class Classes:
 class Settings:
     """All settings of a training but for its seed.
 
+    By the ``method`` ``imitation`` what ``imitation`` says holds, and neither ``exploration`` nor ``reward`` does.
     A checkpoint follows the first iteration that ends ``checkpoint_s`` seconds or more after the last one; ``threads``
     are those of torch while it learns, and ``device`` is where the network is.
     """
@@ -83,12 +104,24 @@ class Settings:
     rollout: Rollout
     network: Network
     exploration: Exploration
+    imitation: Imitation
     reward: RewardOptions
     stop: Stop
     classes: Classes
+    method: Method
     checkpoint_s: float
     threads: int
     device: str
+
+    @property
+    def imitates(self) -> bool:
+        """Whether the agent learns from demonstrations."""
+        return self.method == "imitation"
+
+    @property
+    def searches(self) -> bool:
+        """Whether ways are searched before the training, and episodes begin on them."""
+        return self.exploration.ways > 0 and not self.imitates
 
 
 def read_settings(path: Path | None = None) -> Settings:
@@ -111,6 +144,7 @@ def read_settings(path: Path | None = None) -> Settings:
         rollout=rollout,
         network=Network(**values["network"]),
         exploration=Exploration(**values["exploration"]),
+        imitation=Imitation(**values["imitation"]),
         reward=RewardOptions(**values["reward"], gamma=ppo.gamma),
         stop=Stop(**values["stop"]),
         classes=Classes(**values["classes"]),
@@ -146,10 +180,25 @@ def _toml(value: object) -> str:
     return json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)
 
 
+def algorithm_name(settings: Settings) -> str:
+    """The name of the class that learns; by imitation the settings' ``PPO`` stands for what makes GAIL of it."""
+    name = settings.classes.algorithm
+    return _GAIL if settings.imitates and name == _PPO else name
+
+
 def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> dict[str, Any]:
     """The configuration of rsl-rl's runner for observations of these shapes and actions of these branches."""
-    ppo = settings.ppo
+    ppo, imitation = settings.ppo, settings.imitation
     groups = list(shapes)
+    gail = {
+        "branches": tuple(branches),
+        "discriminator": model_config(replace(settings.network, hidden=(imitation.encoding,) * 2), shapes),
+        "discriminator_rate": imitation.discriminator_rate,
+        "gradient_penalty": imitation.gradient_penalty,
+        "strength": imitation.strength,
+        "terminal": imitation.terminal,
+        "cloning_steps": int(imitation.cloning * settings.stop.steps),
+    }
     return {
         "imitation": settings.exploration.imitation,
         "num_steps_per_env": settings.rollout.steps,
@@ -159,7 +208,7 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
         "actor": model_config(settings.network, shapes, branches),
         "critic": model_config(settings.network, shapes),
         "algorithm": {
-            "class_name": settings.classes.algorithm,
+            "class_name": algorithm_name(settings),
             "num_learning_epochs": ppo.epochs,
             "num_mini_batches": ppo.minibatches,
             "clip_param": ppo.clip,
@@ -173,5 +222,6 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
             "schedule": "fixed",
             "desired_kl": None,
             "rnd_cfg": None,
+            **({"gail": gail} if settings.imitates else {}),
         },
     }

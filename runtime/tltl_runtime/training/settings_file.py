@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from math import isfinite
-from typing import Any, Final, get_args
+from typing import Any, Final, Literal, get_args
 
 from tltl_runtime.policies.network import MAX_KERNEL, MAX_LAYERS, MAX_STRIDE, MAX_WIDTH, Activation
 from tltl_runtime.stealth.levels.table import suggestion
@@ -95,12 +95,16 @@ class Text:
         return self.what
 
 
+Method = Literal["automaton", "imitation"]
+"""What an agent learns from: the rewards of the spec's automaton, or demonstrations."""
+
 Kind = Number | Whole | Wholes | OneOf | Text
 
 _CLASS: Final = Text(r"[A-Za-z_][\w.]*(:[A-Za-z_][\w.]*)?", 'a class, e.g. "package.module:Class"')
 
 KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     "": {
+        "method": OneOf(get_args(Method)),
         "device": Text(r"cpu|cuda(:\d{1,2})?", 'a device: "cpu", "cuda" or "cuda:0"'),
         "threads": Whole(1, 1024),
         "checkpoint_s": Number(0.0, 86_400.0),
@@ -135,6 +139,15 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "steps": Whole(1, 10**9),
         "parts": Whole(1, 1_000),
         "imitation": Whole(0, 100),
+    },
+    "imitation": {
+        "demonstrations": Whole(1, 10_000),
+        "cloning": Number(0.0, 1.0),
+        "encoding": Whole(1, MAX_WIDTH),
+        "discriminator_rate": Number(0.0, 1.0, open=True),
+        "gradient_penalty": Number(0.0, 10_000.0),
+        "strength": Number(0.0, 1_000.0),
+        "terminal": Number(0.0, 1_000.0),
     },
     "reward": {
         "mode": OneOf(get_args(Mode)),

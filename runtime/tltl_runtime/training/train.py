@@ -16,18 +16,20 @@ from tltl_runtime.policies.file import check_size, write_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.available import class_of, device_of
-from tltl_runtime.training.beginning import begun, environments, prepared
+from tltl_runtime.training.beginning import begun, demonstrated, environments, prepared
 from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, write_checkpoint
 from tltl_runtime.training.confirmation import confirm
+from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import Peers, joined
 from tltl_runtime.training.folder import held
+from tltl_runtime.training.gail import Gail
 from tltl_runtime.training.metrics import Metrics
 from tltl_runtime.training.policy import card_of, policy_of
 from tltl_runtime.training.report import Confirmation, Report, StopReason
 from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, Run, identity
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.search import Searched
-from tltl_runtime.training.settings import rsl_config
+from tltl_runtime.training.settings import algorithm_name, rsl_config
 from tltl_runtime.training.streams import Purpose, stream
 from tltl_runtime.training.windows import Windows
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -35,7 +37,11 @@ from tltlc.record import replace
 
 
 def train(
-    run: Run, *, resume: bool = False, searching: Callable[[Searched], None] = lambda searched: None
+    run: Run,
+    *,
+    resume: bool = False,
+    searching: Callable[[Searched], None] = lambda searched: None,
+    recording: Callable[[Tried], None] = lambda tried: None,
 ) -> Generator[Report]:
     """Train in ``run.folder``, with a report after each iteration; the last one says why it ends.
 
@@ -44,7 +50,8 @@ def train(
     and closing the iterator too, leaves a checkpoint of the last whole iteration; a process that is killed loses what
     came after the last one.  With ``resume`` the training goes on from there; one that is over gives its last report.
 
-    A search for ways to meet the spec comes first, which tells ``searching`` how far it is.
+    A search for ways to meet the spec comes first, which tells ``searching`` how far it is; by imitation, where no
+    demonstrations are named, the recording of the expert's, which tells ``recording`` of each.
 
     Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun each process trains with
     environments of its own, and all report the same but for losses, times and searches, which are each one's own; the
@@ -55,11 +62,12 @@ def train(
             there is no such device or class, or the network is too large for the file of a policy; TLT0864, the
             checkpoint cannot be resumed from; TLT0865, another process trains in the folder; TLT0866, a loss is no
             number any more; TLT0867, the folder holds a training and ``resume`` is false; TLT0868, the level has
-            changed meanwhile.
+            changed meanwhile; TLT0920 and TLT0921, there are no demonstrations to imitate;
+            TLT0922, they are others now.
         WorkerError: a process that plays was lost.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
-    class_of("algorithm", run.settings.classes.algorithm, PPO)
+    class_of("algorithm", algorithm_name(run.settings), Gail if run.settings.imitates else PPO)
     check_size(run.settings.network, run.fspa, run.sensors)
     with ExitStack() as stack:
         own, device = stack.enter_context(joined(device_of(run.settings.device)))
@@ -69,8 +77,9 @@ def train(
             checkpoint = begun(run, resume)
         checkpoint = own.broadcast(checkpoint)
         stack.enter_context(threads(1))
+        to_imitate = demonstrated(run, own, recording)
         played = stack.enter_context(closing(environments(run)))
-        env, searched = prepared(run, own, device, played, checkpoint, searching)
+        env, searched = prepared(run, own, device, played, checkpoint, searching, to_imitate)
         if env.lessons:
             stack.callback(env.lessons.close)
         torch.manual_seed(int(stream(run, own, Purpose.TORCH).generate_state(1)[0]))
@@ -86,6 +95,8 @@ class _Training:
     ) -> None:
         self._run, self._own, self._runner = run, own, runner
         self._stop = run.settings.stop
+        demonstrated = runner.env.demonstrated
+        self._imitated = demonstrated.about if demonstrated else None
         # As the level is now: what its file holds later was not trained on.
         self._card = card_of(run, runner.env)
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
@@ -252,6 +263,7 @@ class _Training:
             checkpointed=checkpointed,
             searched=self._state.searched,
             replayed=self._state.replayed,
+            imitated=self._imitated,
         )
 
     def _save(self) -> None:

@@ -29,6 +29,7 @@ WRONG = {
 }
 
 OTHER = """\
+method = "imitation"
 device = "cuda:1"
 threads = 2
 checkpoint_s = 0.5
@@ -59,6 +60,14 @@ ways = 0
 steps = 1000
 parts = 1
 imitation = 0
+[imitation]
+demonstrations = 5
+cloning = 0.5
+encoding = 32
+discriminator_rate = 1e-5
+gradient_penalty = 0.0
+strength = 1.0
+terminal = 0.5
 [reward]
 mode = "potential"
 termination = "paper"

@@ -1,0 +1,46 @@
+"""Demonstrations that take no expert, and trainings that imitate them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tests.runtime.training.runs import run_in
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.stealth.episodes.file import file_stem, new_path, write_episode
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.training.run import Run
+from tltlc.record import replace
+
+SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+"""A spec that who does anything at all meets, after eight steps."""
+ALONG = 1, 0, 0, 0, 1
+"""The action of a demonstration: to run towards greater x."""
+
+
+def played(
+    seed: int, spec: str = SOON, variant: str = "v0", steps: int = 8, action: Sequence[int] = ALONG, player: str = "me"
+) -> Episode:
+    """An episode of one action over and over, which is left after so many steps."""
+    env = RecordEpisode(make_env("cover_and_hide", variant, spec), player)
+    env.reset(seed=seed)
+    for _ in range(steps):
+        env.step(list(action))
+    env.close()
+    return env.episode
+
+
+def kept(folder: Path, *episodes: Episode) -> Path:
+    """The folder, with recordings of these."""
+    folder.mkdir(exist_ok=True)
+    for episode in episodes:
+        write_episode(new_path(folder, file_stem(episode)), episode)
+    return folder
+
+
+def imitating(folder: Path, demonstrations: Path | None, **changes: Any) -> Run:
+    """A training of three iterations that imitates, of which the actor is cloned in the first."""
+    run = run_in(folder, SOON, **{"method": "imitation", "imitation__cloning": 0.3, **changes})
+    return replace(run, demonstrations=str(demonstrations) if demonstrations else None)

@@ -1,0 +1,70 @@
+"""What is learned from recordings: the decisions, with what the agent would have sensed."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from tests.runtime.training.imitating import ALONG, SOON, kept, played
+from tests.runtime.training.test_settings import compare
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.training.demonstrated import Demonstrated, read_demonstrations
+from tltlc.diagnostics.diagnostic import TltlError
+
+make = partial(make_env, "cover_and_hide", "v0", SOON)
+
+
+def read(folder: Path) -> Demonstrated:
+    return read_demonstrations(folder, make)
+
+
+def test_each_decision_with_what_was_sensed_before_it(tmp_path: Path) -> None:
+    found = read(kept(tmp_path, played(1), played(2, action=(0, 2, 0, 1, 0))))
+    assert (found.about.episodes, found.about.decisions, found.about.players) == (2, 16, ("me",))
+    assert found.actions.tolist() == [list(map(float, ALONG))] * 8 + [[0.0, 2.0, 0.0, 1.0, 0.0]] * 8
+    env = make()
+    observation, _ = env.reset(seed=2)
+    along = [observation, *(env.step([0, 2, 0, 1, 0])[0] for _ in range(7))]
+    env.close()
+    assert set(found.observations.keys()) == set(observation)
+    for key in observation:
+        sensed = np.stack([each[key] for each in along]).astype(np.float32)
+        assert np.array_equal(found.observations[key][8:].numpy(), sensed), key
+
+
+def test_what_is_no_demonstration_here_is_left_out_with_the_reason(tmp_path: Path) -> None:
+    found = read(kept(tmp_path, played(1), played(2, steps=7), played(3, variant="v1")))
+    assert found.about.episodes == 1
+    assert found.about.left_out == (
+        "cover_and_hide-v0-2.episode.npz: it does not meet `soon`",
+        "cover_and_hide-v1-3.episode.npz: it is of another level, `cover_and_hide:v1` as it was then",
+    )
+
+
+@pytest.mark.parametrize("name", ["TLT0921", "TLT0921_empty", "TLT0921_unfit"])
+def test_nothing_to_imitate(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    folder = Path("mine")
+    if name != "TLT0921":
+        folder.mkdir()
+    if name == "TLT0921_unfit":
+        kept(folder, played(2, steps=7), played(3, variant="v1"))
+    with pytest.raises(TltlError) as caught:
+        read(folder)
+    compare(name, caught.value)
+
+
+def test_decisions_are_drawn_by_torchs_generator(tmp_path: Path) -> None:
+    found = read(kept(tmp_path, played(1)))
+    torch.manual_seed(1)
+    once = found.drawn(5)[0]["entities"], [actions for _, actions in found.shuffled(3)]
+    torch.manual_seed(1)
+    again = found.drawn(5)[0]["entities"], [actions for _, actions in found.shuffled(3)]
+    assert torch.equal(once[0], again[0])
+    assert [len(each) for each in once[1]] == [3, 3, 2]
+    seen = torch.cat([observations["entities"] for observations, _ in found.shuffled(3)])
+    assert sorted(seen.tolist()) == sorted(found.observations["entities"].tolist())

@@ -1,0 +1,91 @@
+"""Which episodes are kept as demonstrations, and how many the expert plays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.training.imitating import SOON, kept, played
+from tests.runtime.training.test_settings import compare
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.training.demonstrations import MOST_FAILURES, Demonstrations, by_expert, expert_episodes, recordings
+from tltlc.diagnostics.diagnostic import TltlError
+
+IN_VAIN = "import spatial\nentity exit\nspec vain { level cover_and_hide\n limit 2 steps\n reach near(exit) }\n"
+"""A spec that nobody meets."""
+LONGER = SOON.replace("8 steps", "9 steps")
+
+
+@pytest.fixture(name="env")
+def _env() -> Iterator[RecordEpisode]:
+    env = RecordEpisode(make_env("cover_and_hide", "v0", SOON), "expert")
+    yield env
+    env.close()
+
+
+def of(env: RecordEpisode, folder: Path) -> Demonstrations:
+    return Demonstrations(folder, env.get_wrapper_attr("level"), env.get_wrapper_attr("task"))
+
+
+def test_what_meets_the_spec_is_kept_and_nothing_else(env: RecordEpisode, tmp_path: Path) -> None:
+    made = of(env, tmp_path / "new")
+    good, stopped = made.add(played(3)), made.add(played(4, steps=5))
+    assert good.path == tmp_path / "new" / "cover_and_hide-v0-3.episode.npz"
+    assert (stopped.path, good.kept, stopped.kept, made.count) == (None, 1, 1, 1)
+    assert recordings(tmp_path / "new") == [good.path]
+    assert read_episode(good.path).seed == 3
+
+
+def test_what_is_there_counts_where_level_and_spec_are_right(env: RecordEpisode, tmp_path: Path) -> None:
+    folder = kept(tmp_path / "old", played(1), played(2, variant="v1"), played(3, LONGER, steps=9), played(4, steps=7))
+    made = of(env, folder)
+    assert (made.count, made.seeds("me"), made.seeds("expert")) == (1, [1], [])
+    assert [path.name.split("-", 1)[1] for path in made.others] == [
+        f"{name}.episode.npz" for name in ("v0-3", "v0-4", "v1-2")
+    ]
+
+
+def test_the_expert_adds_what_is_missing(env: RecordEpisode, tmp_path: Path) -> None:
+    first = list(islice(by_expert(env, of(env, tmp_path), 3, seed=5), 2))
+    assert [(each.episode.seed, each.kept) for each in first] == [(5, 1), (6, 2)]
+    times = {path: path.stat().st_mtime_ns for path in recordings(tmp_path)}
+    rest = list(by_expert(env, of(env, tmp_path), 3, seed=5))
+    assert [(each.episode.seed, each.kept) for each in rest] == [(7, 3)]
+    assert {path: path.stat().st_mtime_ns for path in times} == times
+    assert not list(by_expert(env, of(env, tmp_path), 3, seed=5))
+    # Another beginning is no reason to play what is there.
+    assert [each.episode.seed for each in by_expert(env, of(env, tmp_path), 4, seed=0)] == [8]
+
+
+def test_seeds_of_a_person_are_not_the_experts(env: RecordEpisode, tmp_path: Path) -> None:
+    kept(tmp_path, played(900))
+    assert [each.episode.seed for each in by_expert(env, of(env, tmp_path), 2)] == [0]
+
+
+def test_the_expert_gives_up(tmp_path: Path) -> None:
+    env = RecordEpisode(make_env("cover_and_hide", "v0", IN_VAIN), "expert")
+    tried = []
+    with pytest.raises(TltlError) as caught:
+        tried.extend(by_expert(env, of(env, tmp_path / "none"), 2))
+    env.close()
+    compare("TLT0920", caught.value)
+    assert not (tmp_path / "none").exists()
+    assert not recordings(tmp_path)
+
+
+def test_failures_before_are_told(tmp_path: Path) -> None:
+    env = RecordEpisode(make_env("cover_and_hide", "v0", IN_VAIN), "expert")
+    tried = list(islice(by_expert(env, of(env, tmp_path), 2), MOST_FAILURES))
+    env.close()
+    assert [(each.path, each.kept, each.episode.seed) for each in tried] == [
+        (None, 0, seed) for seed in range(MOST_FAILURES)
+    ]
+
+
+def test_the_expert_plays_seed_by_seed(env: RecordEpisode) -> None:
+    assert [(each.seed, each.success) for each in expert_episodes(env, (9, 4))] == [(9, True), (4, True)]
