@@ -59,6 +59,7 @@ def summary_text(said: Mapping[str, Any]) -> str:
         "kept": _kept(said["training"]),
         "ended": _ENDS.get(str(said["training"].get("end")), ""),
         "search": _search(said["training"]),
+        "imitated": _imitated(said["training"]),
         "versions": ", ".join(f"{name} {version}" for name, version in said["versions"].items()),
     }
     shown = {name: "".join(sign if sign.isprintable() else "\ufffd" for sign in text) for name, text in rows.items()}
@@ -101,3 +102,14 @@ def _search(record: Mapping[str, Any]) -> str:
         return ""
     ways = f"{len(lengths)} way{'s' * (len(lengths) != 1)} to meet the spec"
     return f"{ways}, the shortest of {min(lengths)} steps" if lengths else "no way to meet the spec was found"
+
+
+def _imitated(record: Mapping[str, Any]) -> str:
+    """What a training by imitation learned from, as far as its record tells."""
+    imitated = record.get("imitated")
+    if not isinstance(imitated, dict) or not all(type(imitated.get(key)) is int for key in ("episodes", "decisions")):
+        return ""
+    many = f"{imitated['episodes']} demonstration{'s' * (imitated['episodes'] != 1)}"
+    players = imitated.get("players")
+    by = f", by {' and '.join(map(str, players))}" if isinstance(players, list) and players else ""
+    return f"{many} of {imitated['decisions']:,} decisions{by}"

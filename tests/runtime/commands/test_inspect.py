@@ -101,6 +101,10 @@ def test_a_training_that_says_nothing_that_is_known(tltlc, policy: Policy, tmp_p
     [
         ({"end": "minutes", "search": {"lengths": []}}, ["by the limit of minutes", "no way to meet the spec"]),
         ({"end": "steps", "search": {"lengths": [7]}}, ["the limit of steps", "1 way to meet the spec, the shortest"]),
+        (
+            {"imitated": {"episodes": 20, "decisions": 3012, "players": ["expert"], "left_out": []}},
+            ["imitated 20 demonstrations of 3,012 decisions, by expert"],
+        ),
     ],
 )
 def test_how_a_training_ended(policy: Policy, training: dict[str, object], said: list[str]) -> None:

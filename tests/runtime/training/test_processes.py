@@ -154,3 +154,15 @@ def test_processes_of_torchrun_keep_their_own_ways_and_imitate_them_together(tmp
     for first, later in zip(begun, resumed, strict=True):
         assert first
         assert first <= later
+
+
+def test_processes_of_torchrun_imitate_the_same_demonstrations(tmp_path: Path) -> None:
+    spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+    changes = {"method": "imitation", "imitation__demonstrations": 2, "imitation__cloning": 0.5}
+    given = [f"spec={json.dumps(spec)}", *(f"{name}={json.dumps(value)}" for name, value in changes.items())]
+    said = _together(tmp_path / "run", *given, "stop__steps=512", "stop__episodes=100000")
+    assert len({line["weights"] for line in said if "weights" in line}) == 4
+    # Steps are those of both: 2 processes, 4 environments, 16 decisions.
+    losses = [line["losses"].keys() for line in read_metrics(tmp_path / "run" / METRICS)]
+    assert ["cloning" in each for each in losses] == [True, True, False, False]
+    assert len(list((tmp_path / "run" / "demonstrations").iterdir())) == 2
