@@ -30,12 +30,12 @@ class Drawn:
     notes: tuple[str, ...]
 
 
-def drawn(fspa: Fspa) -> Drawn:
-    """The automaton's picture, laid out in a process of its own within a time limit."""
+def drawn(fspa: Fspa, limit_s: float = 10.0) -> Drawn:
+    """The automaton's picture, laid out in a process of its own; each attempt ends after ``limit_s`` seconds."""
     found: list[Diagnostic] = []
     try:
         # What the spec is for stands above the picture already.
-        files = emit("svg", replace(fspa, doc=""), Options(report=found.append))
+        files = emit("svg", replace(fspa, doc=""), Options(layout_limit_s=limit_s, report=found.append))
     except TltlError as error:
         return Drawn(None, tuple(_said(each) for each in error.diagnostics))
     ((name, content),) = files.items()

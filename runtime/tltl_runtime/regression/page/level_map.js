@@ -29,8 +29,7 @@ class LevelMap {
     this.barriers = [...svg.querySelectorAll(".barrier")];
     this.switches = [...svg.querySelectorAll(".switch")];
     // Letters and lines keep their size on the screen: --unit is how many centimetres a pixel is.
-    const width = svg.viewBox.baseVal.width;
-    new ResizeObserver(() => svg.style.setProperty("--unit", width / (svg.clientWidth || width))).observe(svg);
+    new ResizeObserver(() => svg.style.setProperty("--unit", 1 / (svg.getScreenCTM()?.a || 1))).observe(svg);
   }
 
   clear() {

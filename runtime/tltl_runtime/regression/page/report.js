@@ -10,7 +10,10 @@ class CaseView {
     this.player = new Player(this.section, facts, this.map, moved);
     this.legend = this.section.querySelector(".legend");
     this.isDrawn = false;
-    this.section.querySelector(".toggles").addEventListener("change", () => this.showAll());
+    this.section.querySelector(".toggles").addEventListener("change", () => {
+      if (this.player.episode) history.replaceState(null, "", `#${facts.slug}`);
+      this.showAll();
+    });
     this.player.which?.addEventListener("change", () => {
       const { value } = this.player.which;
       location.hash = value ? `#${facts.slug}/${value}/0` : `#${facts.slug}`;
@@ -109,6 +112,7 @@ class Report {
 
   /** Open what the address names: `#case`, `#case/episode` or `#case/episode/step`. */
   #follow() {
+    clearTimeout(this.waiting);
     const [slug, episode, step] = decodeURIComponent(location.hash.slice(1)).split("/");
     const section = document.getElementById(slug);
     if (!section?.classList.contains("case")) return;
@@ -120,9 +124,9 @@ class Report {
     const isOpen = view && episode !== undefined && view.open(Number(episode), Number(step) || 0);
     if (isOpen) this.active = view;
     else if (view?.player.episode) view.showAll();
-    // The automaton and the map below it: the one above is where reading goes on.
-    const goal = isOpen ? section.querySelector(".toggles") : section;
-    if (!isOpen || !isOnScreen(section.querySelector(".stage"))) goal.scrollIntoView();
+    // Who chose the episode on the map or in the list looks at it already.
+    if (section.querySelector(".stage")?.contains(document.activeElement)) return;
+    (isOpen ? section.querySelector(".toggles") : section).scrollIntoView();
   }
 
   /** The address follows the player, but not at every frame. */

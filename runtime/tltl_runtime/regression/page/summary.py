@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from tltl_runtime.regression.case_report import CaseReport, Figures
 from tltl_runtime.regression.page.contents import SuiteReport
@@ -50,11 +50,6 @@ def badge(verdict: Verdict) -> Markup:
     return element("span", verdict, class_=f"verdict {verdict}")
 
 
-def rate_words(now: Figures) -> str:
-    """How many of how many episodes met the spec."""
-    return f"{round(now.pass_rate * now.episodes)} of {now.episodes}"
-
-
 def _row(report: CaseReport, slug: str) -> Markup:
     now, before = report.figures, report.baseline
     reason = prose(report.reasons[0]) if report.reasons else None
@@ -71,24 +66,36 @@ def _row(report: CaseReport, slug: str) -> Markup:
 
 
 def _met(now: Figures, before: Figures | None) -> Markup:
-    """The pass rate as a bar with its interval of 95 %, and a mark where the baseline's is."""
-    low, high = (100 * end for end in now.pass_interval)
-    words = f"{rate_words(now)}, 95 % interval {low:.0f} to {high:.0f} %"
-    words += f"; before: {rate_words(before)}" if before else ""
-    bar = element(
-        "svg",
-        element("title", words),
-        element("rect", class_="track", width=100, height=14),
-        element("rect", class_="rate", width=short(100 * now.pass_rate), height=14),
-        element("path", class_="interval", d=f"M{short(low)},4V10M{short(low)},7H{short(high)}M{short(high)},4V10"),
-        element("path", class_="before", d=f"M{short(100 * before.pass_rate)},0V14") if before else None,
-        class_="bar",
-        viewBox="0 0 100 14",
-        role="img",
-        preserveAspectRatio="none",
-    )
-    small = element("small", f"before {rate_words(before)}") if before else None
-    return joined((bar, element("span", rate_words(now), class_="number"), small))
+    """The pass rate as a bar with its interval of 95 %, and the baseline's below it."""
+    words = f"{_rate_words(now)}; before: {_rate_words(before)}" if before else _rate_words(now)
+    bars = [*_rate(now, "now", top=0, height=12)]
+    if before:
+        bars += _rate(before, "before", top=15, height=7)
+    small = element("small", f"before {_of(before)}") if before else None
+    # It is stretched to the width that there is.
+    manner = {"viewBox": "0 0 100 22", "role": "img", "preserveAspectRatio": "none"}
+    bar = element("svg", element("title", words), *bars, class_="bar", **manner)
+    return joined((bar, element("span", _of(now), class_="number"), small))
+
+
+def _rate(figures: Figures, kind: str, top: int, height: int) -> Iterator[Markup]:
+    """The bar of a pass rate, in percent, with the whiskers of its interval."""
+    low, high = (short(100 * end) for end in figures.pass_interval)
+    above, middle, below = top + height / 4, short(top + height / 2), top + 3 * height / 4
+    yield element("rect", class_="track", y=top, width=100, height=height)
+    yield element("rect", class_=f"rate {kind}", y=top, width=short(100 * figures.pass_rate), height=height)
+    ends = f"M{low},{short(above)}V{short(below)}M{high},{short(above)}V{short(below)}"
+    yield element("path", class_="interval", d=f"M{low},{middle}H{high}{ends}")
+
+
+def _rate_words(figures: Figures) -> str:
+    low, high = (100 * end for end in figures.pass_interval)
+    return f"{_of(figures)}, 95 % interval {low:.0f} to {high:.0f} %"
+
+
+def _of(figures: Figures) -> str:
+    """How many of how many episodes met the spec."""
+    return f"{round(figures.pass_rate * figures.episodes)} of {figures.episodes}"
 
 
 def _against(now: float, before: float | None) -> Markup:

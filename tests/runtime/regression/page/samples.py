@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 
 from tltl_runtime.evaluation.play import Played
@@ -14,18 +14,36 @@ from tltl_runtime.regression.verdict import Verdict
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
-from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.recording import RecordEpisode
 
 
+def navigation() -> tuple[Episode, ...]:
+    """Two episodes that meet the spec."""
+    return _played("navigation", "v0", 2)
+
+
+def branching() -> tuple[Episode, ...]:
+    """One with two enemies, movers and a laser."""
+    return _played("branching", "v0", 1)
+
+
+def cover_and_hide_met() -> tuple[Episode, ...]:
+    """Two that meet the spec."""
+    return _played("cover_and_hide", "v0", 2)
+
+
+def cover_and_hide_failed() -> tuple[Episode, ...]:
+    """Three of a player who hides from nobody."""
+    return _played("cover_and_hide", "v0", 3, careful=False)
+
+
 @cache
-def played(level: str, variant: str, seeds: tuple[int, ...], *, careful: bool = True) -> tuple[Episode, ...]:
-    """An episode of the expert for each seed."""
+def _played(level: str, variant: str, count: int, *, careful: bool = True) -> tuple[Episode, ...]:
     env = RecordEpisode(make_env(level, variant), "expert")
     try:
         expert = Expert(env, careful=careful)
         found = []
-        for seed in seeds:
+        for seed in range(count):
             play_episode(env, expert, seed)
             found.append(env.episode)
         return tuple(found)
@@ -33,28 +51,40 @@ def played(level: str, variant: str, seeds: tuple[int, ...], *, careful: bool = 
         env.close()
 
 
+@cache
+def branching_that_takes_its_time() -> Episode:
+    """One of a player who walks in circles until the limit of the spec."""
+    env = RecordEpisode(make_env("branching", "v0"), "nobody")
+    try:
+        env.reset(seed=0)
+        over, step = False, 0
+        while not over:
+            _, _, terminated, truncated, _ = env.step([1 + step // 3 % 2, 1 + step // 5 % 2, 0, 0, 0])
+            over, step = terminated or truncated, step + 1
+        return env.episode
+    finally:
+        env.close()
+
+
 def account_of(index: int, episode: Episode) -> Account:
+    """The account of an episode as if it had been played in a case."""
     states = episode.states.tolist()
-    state = states[-1]
-    unmet = states[-2] if episode.verdict == "violated" else state
-    label = episode.fspa.states[unmet].label.english
-    return account(
-        Played(
-            index=index,
-            seed=episode.seed,
-            success=episode.success,
-            verdict=episode.verdict,
-            end=episode.end,
-            progress=float(episode.progress[-1]),
-            reward=float(episode.rewards.sum()),
-            steps=len(episode.actions),
-            seconds=episode.snapshots[-1].time,
-            state=state,
-            unmet=unmet,
-            label=label,
-        ),
-        episode,
+    unmet = states[-2] if episode.verdict == "violated" else states[-1]
+    played = Played(
+        index=index,
+        seed=episode.seed,
+        success=episode.success,
+        verdict=episode.verdict,
+        end=episode.end,
+        progress=float(episode.progress[-1]),
+        reward=float(episode.rewards.sum()),
+        steps=len(episode.actions),
+        seconds=episode.snapshots[-1].time,
+        state=states[-1],
+        unmet=unmet,
+        label=episode.fspa.states[unmet].label.english,
     )
+    return account(played, episode)
 
 
 def reported(
@@ -62,7 +92,7 @@ def reported(
     verdict: Verdict,
     now: Sequence[Episode],
     before: Sequence[Episode],
-    recorded: Sequence[int] | None = None,
+    recorded: Iterable[int] | None = None,
 ) -> ReportedCase:
     """The report on episodes of one level, of which those of the indices ``recorded`` have a recording (all)."""
     level, fspa = now[0].level, now[0].fspa
@@ -87,11 +117,7 @@ def reported(
 @cache
 def suite() -> SuiteReport:
     """A case that passes, one with enemies that fails, and one that cannot be played any more."""
-    good = played("navigation", "v0", (1, 2))
-    careful, careless = (
-        played("cover_and_hide", variant, (1, 2, 3), careful=is_careful)
-        for variant, is_careful in (("v0", True), ("v2", False))
-    )
+    failed, met = cover_and_hide_failed(), cover_and_hide_met()
     broken = CaseReport("broken:v0", "broken", "v0", "fail", ("it cannot be played any more", "TLT0803: no `start`"))
     return SuiteReport(
         suite="sample",
@@ -99,11 +125,8 @@ def suite() -> SuiteReport:
         error=0.05,
         versions={"tltlc": "0.1", "python": "3.11"},
         cases=(
-            reported("navigation:v0", "pass", good, good),
-            reported("cover_and_hide:v2", "fail", careless, careful, recorded=(0, 1)),
+            reported("navigation:v0", "pass", navigation(), navigation()),
+            reported("cover_and_hide:v0", "fail", failed, met, recorded=(0, 1)),
             ReportedCase(broken),
         ),
     )
-
-
-__all__ = ["account_of", "load_level", "played", "reported", "suite"]

@@ -1,0 +1,117 @@
+"""The automaton with the episodes that came through it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from xml.etree import ElementTree
+
+import pytest
+
+from tests.runtime.regression.page import samples
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.page.automaton import counts_table, drawn, picture
+from tltl_runtime.regression.page.traffic import Traffic, traffic
+from tltl_runtime.stealth.episodes.episode import Episode
+from tltlc import compile_text
+from tltlc.automaton.fspa import Fspa
+
+
+def accounts(episodes: tuple[Episode, ...]) -> list[Account]:
+    return [samples.account_of(index, each) for index, each in enumerate(episodes)]
+
+
+@pytest.fixture(scope="module")
+def fspa() -> Fspa:
+    return samples.cover_and_hide_failed()[0].fspa
+
+
+@pytest.fixture(scope="module")
+def now() -> Traffic:
+    return traffic(accounts(samples.cover_and_hide_failed()))
+
+
+@pytest.fixture(scope="module")
+def before() -> Traffic:
+    return traffic(accounts(samples.cover_and_hide_met()))
+
+
+@pytest.fixture(scope="module")
+def root(fspa: Fspa, now: Traffic, before: Traffic) -> ElementTree.Element:
+    made = drawn(fspa)
+    assert made.svg is not None and made.notes == ()
+    return ElementTree.fromstring(picture(fspa, made.svg, now, before))
+
+
+def test_each_state_has_its_counts(root: ElementTree.Element, fspa: Fspa, now: Traffic, before: Traffic) -> None:
+    groups = {each.get("data-states"): each for each in root.iter("g") if each.get("data-states")}
+    assert groups.keys() == {str(state.id) for state in fspa.states}
+    for state in fspa.states:
+        group = groups[str(state.id)]
+        for when, seen in (("now", now), ("before", before)):
+            badges = group.find(f"g[@class='counts {when}']")
+            assert badges is not None
+            texts = [each.text for each in badges.iter("text")]
+            failed = seen.failed.get(state.id, 0)
+            assert texts == [str(seen.visited.get(state.id, 0)), *([f"{failed} failed"] if failed else [])]
+        title = group.find("title")
+        assert title is not None and title.text is not None
+        assert f"visited by {now.visited.get(state.id, 0)} of {now.episodes} episodes" in title.text
+    assert any(now.failed.values())
+
+
+def test_edges_are_the_thicker_the_more_episodes_took_them(root: ElementTree.Element, now: Traffic) -> None:
+    widths = {}
+    for each in root.iter("g"):
+        title = each.findtext("title") or ""
+        if title.startswith("From state"):
+            ends = tuple(int(word) for word in title.partition(";")[0].split() if word.isdigit())
+            styles = dict(part.split(": ") for part in (each.get("style") or "").split("; "))
+            widths[ends] = float(styles["--took-now"])
+            assert ("untaken-now" in (each.get("class") or "")) == (ends not in now.took)
+    assert widths.keys() >= now.took.keys()
+    ordered = sorted(widths, key=lambda ends: now.took.get(ends, 0))
+    assert all(widths[one] <= widths[other] for one, other in pairwise(ordered))
+    assert widths[ordered[-1]] > widths[ordered[0]]
+
+
+def test_the_picture_can_stand_in_a_page_beside_others(root: ElementTree.Element) -> None:
+    assert root.tag == "svg" and root.get("role") == "img"
+    assert not any(each.get("id") for each in root.iter())
+    assert {each.tag for each in root.iter()} <= {"svg", "g", "title", "path", "polygon", "ellipse", "text", "rect"}
+    assert not any("href" in key for each in root.iter() for key in each.attrib)
+
+
+def test_runs_of_states_that_count_are_one_group() -> None:
+    (fspa,) = compile_text("clock 1 Hz  signal seen: bool  spec wait = F[0,9] seen")
+    empty = traffic([])
+    took = {(state, state + 1): 3 for state in range(2)}
+    seen = Traffic(4, {0: 4, 1: 3, 2: 3}, {2: 1}, took)
+    made = drawn(fspa)
+    assert made.svg is not None
+    root = ElementTree.fromstring(picture(fspa, made.svg, seen, empty))
+    groups = [(each.get("data-states") or "").split() for each in root.iter("g") if each.get("data-states")]
+    assert sorted(int(state) for group in groups for state in group) == [state.id for state in fspa.states]
+    (folded,) = [group for group in groups if len(group) > 1]
+    texts = {
+        (each.get("data-states") or "").split()[0]: [text.text for text in each.findall("g[@class='counts now']//text")]
+        for each in root.iter("g")
+        if each.get("data-states")
+    }
+    assert texts[folded[0]][0] == str(max(seen.visited.get(int(state), 0) for state in folded))
+
+
+def test_a_layout_that_takes_too_long_is_said_in_place(fspa: Fspa) -> None:
+    made = drawn(fspa, limit_s=0.0)
+    assert made.svg is None
+    assert made.notes == (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)
+
+
+def test_the_table_has_the_same_numbers(fspa: Fspa, now: Traffic, before: Traffic) -> None:
+    table = ElementTree.fromstring(counts_table(fspa, now, before))
+    rows = [[cell.text for cell in row] for row in table.iter("tr")][1:]
+    assert len(rows) == len(fspa.states)
+    for state, row in zip(fspa.states, rows, strict=True):
+        assert row[:2] == [str(state.id), state.label.english]
+        assert row[2] == f"{now.visited.get(state.id, 0)} of {now.episodes}"
+        assert row[3] == f"{now.failed.get(state.id, 0)} of {now.episodes}"
+        assert row[4] == f"{before.visited.get(state.id, 0)} of {before.episodes}"

@@ -1,0 +1,230 @@
+"""The page in a real browser: it opens episodes, plays them beside their automaton, and fits on small screens."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.runtime.regression.page import chromium, samples
+from tltl_runtime.regression.page.page import html_report
+from tltlc.record import replace
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+    from playwright.sync_api import Page as Tab
+
+pytestmark = pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
+
+CASE = "cover_and_hide-v0"
+WIDE = {"viewport": {"width": 1280, "height": 900}}
+NARROW = {"viewport": {"width": 360, "height": 740}}
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with chromium.browser() as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("page") / "report.html"
+    path.write_text(html_report(samples.suite()), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def tab(browser: Browser, file: Path) -> Iterator[Tab]:
+    with chromium.opened(browser, file, **WIDE) as opened:
+        yield opened
+
+
+def current(tab: Tab) -> str | None:
+    """The states of the group that is highlighted in the automaton of the case."""
+    groups = tab.locator(f"#{CASE} .automaton .current")
+    assert groups.count() == 1
+    return groups.get_attribute("data-states")
+
+
+def scrub(tab: Tab, step: int) -> None:
+    tab.locator(f"#{CASE} .scrub").evaluate(
+        "(bar, step) => { bar.value = step; bar.dispatchEvent(new Event('input', { bubbles: true })); }", step
+    )
+
+
+def test_the_table_has_a_row_for_each_case(tab: Tab) -> None:
+    rows = tab.locator(".verdicts tbody tr")
+    assert [row.locator("th").inner_text() for row in rows.all()] == [
+        case.report.name for case in samples.suite().cases
+    ]
+    assert rows.locator(".verdict").all_inner_texts() == ["pass", "fail", "fail"]
+    rows.nth(1).locator("th a").click()
+    assert tab.url.endswith(f"#{CASE}")
+    tab.wait_for_function(f"Math.abs(document.querySelector('#{CASE}').getBoundingClientRect().top) < 60")
+
+
+def test_the_filter_leaves_findings(tab: Tab) -> None:
+    tab.get_by_label("only findings").check()
+    assert [row.is_visible() for row in tab.locator(".verdicts tbody tr").all()] == [False, True, True]
+    assert [each.is_visible() for each in tab.locator("section.case").all()] == [False, True, True]
+    tab.get_by_label("only findings").uncheck()
+    assert all(each.is_visible() for each in tab.locator("section.case").all())
+
+
+def test_a_link_in_an_explanation_opens_its_episode(tab: Tab) -> None:
+    link = tab.locator(f"#{CASE} .reasons a.episode").first
+    _, index, step = (link.get_attribute("href") or "").split("/")
+    assert int(step) > 0
+    assert not tab.locator(f"#{CASE} .controls").is_visible()
+    link.click()
+    tab.locator(f"#{CASE} .controls").wait_for(state="visible")
+    assert tab.locator(f"#{CASE} .which").input_value() == index
+    assert tab.locator(f"#{CASE} .moment").inner_text().startswith(f"step {step} of ")
+    episode = samples.suite().cases[1].episodes[int(index)]
+    assert current(tab) == str(episode.states[int(step)])
+    assert tab.locator(f"#{CASE} .stage").evaluate("each => each.getBoundingClientRect().top < innerHeight")
+
+
+def test_scrubbing_shows_the_state_the_values_and_the_map_of_a_step(browser: Browser, file: Path) -> None:
+    episode = samples.suite().cases[1].episodes[0]
+    states = episode.states.tolist()
+    changes = [row for row in range(1, len(states)) if states[row] != states[row - 1]]
+    assert changes
+    with chromium.opened(browser, file, f"#{CASE}/0/0", **WIDE) as tab:
+        assert current(tab) == "0"
+        place = tab.locator(f"#{CASE} .player-body circle")
+        start = place.get_attribute("cx")
+        for row in (*changes, len(states) - 1):
+            scrub(tab, row)
+            assert current(tab) == str(states[row])
+            assert tab.locator(f"#{CASE} .state").inner_text().startswith(f"State {states[row]}: ")
+            shown = tab.locator(f"#{CASE} meter.progress").evaluate("each => each.value")
+            assert shown == pytest.approx(float(episode.progress[row]), abs=0.001)
+            atoms = tab.locator(f"#{CASE} .atoms td.number").all_inner_texts()
+            assert [float(text) for text in atoms] == pytest.approx(episode.atoms[row - 1].tolist(), abs=0.0051)
+            level, (x, y, _) = episode.level, episode.snapshots[row].player.position
+            found = [float(place.get_attribute(name) or "nan") for name in ("cx", "cy")]
+            assert found == pytest.approx([100 * (x - level.bounds.low[0]), 100 * (level.bounds.high[1] - y)], abs=0.51)
+        assert place.get_attribute("cx") != start
+        assert tab.locator(f"#{CASE} .map .cone").count() == len(episode.level.enemies)
+        tab.wait_for_function(f"location.hash === '#{CASE}/0/{len(states) - 1}'")
+
+
+def test_keys_play_and_step(browser: Browser, file: Path) -> None:
+    with chromium.opened(browser, file, f"#{CASE}/1/5", **WIDE) as tab:
+        moment = tab.locator(f"#{CASE} .moment")
+        for key, step in (("ArrowRight", 6), ("ArrowRight", 7), ("ArrowLeft", 6), ("Home", 0)):
+            tab.keyboard.press(key)
+            assert moment.inner_text().startswith(f"step {step} of ")
+        tab.keyboard.press(" ")
+        assert tab.locator(f"#{CASE} .play").get_attribute("aria-label") == "pause"
+        tab.wait_for_function(f"parseInt(document.querySelector('#{CASE} .moment').textContent.slice(5)) >= 3")
+        tab.keyboard.press(" ")
+        text = moment.inner_text()
+        tab.wait_for_timeout(400)
+        assert moment.inner_text() == text
+        tab.keyboard.press("End")
+        last = len(samples.suite().cases[1].episodes[1].actions)
+        assert moment.inner_text().startswith(f"step {last} of {last}")
+        assert "The end: " in tab.locator(f"#{CASE} .state").inner_text()
+
+
+def test_episodes_are_chosen_and_left(tab: Tab) -> None:
+    which = tab.locator(f"#{CASE} .which")
+    which.scroll_into_view_if_needed()
+    tab.locator(f"#{CASE} .map .ways polyline").first.wait_for(state="attached")
+    which.select_option("1")
+    tab.locator(f"#{CASE} .player-body").wait_for(state="attached")
+    assert tab.locator(f"#{CASE} .map .ends path").count() == 0
+    which.select_option("")
+    tab.locator(f"#{CASE} .map .ends path").first.wait_for(state="attached")
+    assert not tab.locator(f"#{CASE} .controls").is_visible()
+    assert tab.locator(f"#{CASE} .automaton .current").count() == 0
+
+
+def test_the_map_shows_now_or_the_baseline(tab: Tab) -> None:
+    case = samples.suite().cases[1]
+    section = tab.locator(f"#{CASE}")
+    section.scroll_into_view_if_needed()
+    section.locator(".map .ends path").first.wait_for(state="attached")
+
+    def ends(kind: str) -> int:
+        return section.locator(f".map .ends path.{kind}").count()
+
+    failed = sum(not each.success for each in case.report.accounts)
+    assert (ends("violation") + ends("limit"), ends("success")) == (failed, len(case.report.accounts) - failed)
+    assert section.locator(".map .ends a").count() == len(case.episodes)
+    assert (
+        section.locator(".counts.now").first.is_visible() and not section.locator(".counts.before").first.is_visible()
+    )
+    section.get_by_label("baseline").check()
+    assert ends("success") == sum(each.success for each in case.before) > 0
+    assert (
+        section.locator(".counts.before").first.is_visible() and not section.locator(".counts.now").first.is_visible()
+    )
+    section.get_by_label("time spent").check()
+    assert section.locator(".map .cell.time").count() > 3 and section.locator(".map .way").count() == 0
+    section.get_by_label("failed ends").check()
+    assert section.locator(".map .cell.failed").count() == 0  # nothing failed before
+    section.get_by_label("now", exact=True).check()
+    assert section.locator(".map .cell.failed").count() > 0
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("address", ["", f"#{CASE}/0/20"])
+def test_nothing_scrolls_sideways_on_a_small_screen(browser: Browser, file: Path, scheme: str, address: str) -> None:
+    with chromium.opened(browser, file, address, color_scheme=scheme, **NARROW) as tab:
+        wide = tab.evaluate("[document.documentElement.scrollWidth, document.documentElement.clientWidth]")
+        assert wide == [360, 360]
+        for selector in (".verdicts", f"#{CASE} .stage", f"#{CASE} .curves"):
+            box = tab.locator(selector).bounding_box()
+            assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= 360
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_texts_stand_out(browser: Browser, file: Path, scheme: str) -> None:
+    with chromium.opened(browser, file, f"#{CASE}/0/20", color_scheme=scheme, **WIDE) as tab:
+        for selector in (".verdict.pass", ".verdict.fail", ".facts", ".hint", ".verdicts a", ".reasons li", ".state"):
+            colour = tab.locator(selector).first.evaluate("each => getComputedStyle(each).color")
+            paper = tab.evaluate("getComputedStyle(document.body).backgroundColor")
+            assert contrast(colour, paper) >= 4.5, (selector, colour, paper)
+
+
+def contrast(one: str, other: str) -> float:
+    """As WCAG 2.2 defines it, of two colours as a browser writes them."""
+
+    def luminance(colour: str) -> float:
+        red, green, blue = (int(part) / 255 for part in re.findall(r"\d+", colour)[:3])
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (red, green, blue)]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    dark, light = sorted((luminance(one), luminance(other)))
+    return (light + 0.05) / (dark + 0.05)
+
+
+def test_names_run_nothing(browser: Browser, tmp_path: Path) -> None:
+    suite = samples.suite()
+    case = suite.cases[1]
+    assert case.level is not None
+    evil = "</script><b onclick='x'>"
+    enemies = tuple(replace(each, name=evil) for each in case.level.enemies)
+    level = replace(case.level, name=evil, enemies=enemies)
+    report = replace(case.report, name=evil, level=evil, reasons=(evil, *case.report.reasons))
+    path = tmp_path / "evil.html"
+    path.write_text(html_report(replace(suite, cases=(replace(case, level=level, report=report),))), encoding="utf-8")
+    with chromium.opened(browser, path, "#script-b-onclick-x/0/3", **WIDE) as tab:
+        assert tab.locator("b").count() == 0
+        assert tab.locator("h2", has_text=evil).count() == 1
+        titles = tab.locator(".map .enemy title").all_text_contents()
+        assert titles and all(title.startswith(f"{evil}: ") for title in titles)
+
+
+def test_it_says_where_scripts_are_needed(browser: Browser, file: Path) -> None:
+    with chromium.opened(browser, file, java_script_enabled=False, **WIDE) as tab:
+        assert tab.locator("noscript p").is_visible()
+        assert tab.locator(".verdicts tbody tr").count() == len(samples.suite().cases)
+        assert tab.locator(".automaton").count() == 2

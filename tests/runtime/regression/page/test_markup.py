@@ -1,0 +1,51 @@
+"""Elements in which no text can be taken for markup."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltl_runtime.regression.page.markup import Markup, as_script, element, joined, prose, short
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.text(),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(), inner, max_size=3),
+    max_leaves=8,
+)
+
+
+def test_texts_and_attributes_are_escaped() -> None:
+    made = element("p", "a < b & c", element("b", "bold"), title='"<&', class_="one", data_row=3)
+    assert made == '<p title="&quot;&lt;&amp;" class="one" data-row="3">a &lt; b &amp; c<b>bold</b></p>'
+
+
+def test_attributes_without_a_value_and_elements_without_an_end() -> None:
+    assert element("input", checked=True, disabled=False, name=None) == "<input checked>"
+    assert element("p", None) == "<p></p>"
+
+
+def test_parts_are_escaped_one_by_one() -> None:
+    assert joined(["<", Markup("<br>"), None, 7]) == "&lt;<br>7"
+
+
+def test_names_between_backquotes_are_code() -> None:
+    assert prose("near `s<1>` & `b`") == "near <code>s&lt;1&gt;</code> &amp; <code>b</code>"
+    assert prose("a ` alone") == "a ` alone"
+
+
+def test_numbers_are_short() -> None:
+    assert [short(value) for value in (1.0, 1.256, -0.001, 10.5, 100.0)] == ["1", "1.26", "0", "10.5", "100"]
+
+
+@given(JSON)
+def test_data_in_a_script_is_itself_and_ends_none(data: Any) -> None:
+    text = as_script(data)
+    assert json.loads(text) == data
+    assert not set("<>&\u2028\u2029") & set(text)
+
+
+def test_the_end_of_a_script_is_no_end() -> None:
+    assert as_script("</script><b><!--") == '"\\u003c/script\\u003e\\u003cb\\u003e\\u003c!--"'

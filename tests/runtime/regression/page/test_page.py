@@ -1,0 +1,181 @@
+"""The page as a whole: what is in it, and that nothing can come into it from outside."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from functools import cache
+from html.parser import HTMLParser
+from typing import Any
+
+import pytest
+
+from tests.runtime.regression.page import samples
+from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.page.page import ReportedCase, SuiteReport, html_report
+from tltlc.record import replace
+
+EVIL = "</script><b onclick='x'>`$title`&amp;<!--"
+
+
+class Page(HTMLParser):
+    """The elements of a page with their attributes, and the texts of its scripts."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.scripts: list[str] = []
+        self.texts: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attributes)))
+        if tag == "script":
+            self.scripts.append("")
+
+    def handle_data(self, data: str) -> None:
+        if self.cdata_elem == "script":
+            self.scripts[-1] += data
+        else:
+            self.texts.append(data)
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.elements if name == tag]
+
+    @property
+    def data(self) -> dict[str, Any]:
+        found: dict[str, Any] = json.loads(self.scripts[0])
+        return found
+
+
+@cache
+def page() -> Page:
+    return Page(html_report(samples.suite()))
+
+
+def test_there_is_a_row_and_a_section_for_each_case() -> None:
+    suite = samples.suite()
+    sections = [each for each in page().all("section") if "case" in (each["class"] or "")]
+    assert [each["data-verdict"] for each in sections] == [case.report.verdict for case in suite.cases]
+    rows = [each for each in page().all("tr") if "data-verdict" in each]
+    assert [each["data-verdict"] for each in rows] == [case.report.verdict for case in suite.cases]
+    for case in suite.cases:
+        assert case.report.name in page().texts
+        assert set(case.report.reasons[0].split("`")[:1]) <= set(page().texts)
+    assert [text for text in page().texts if text.startswith("seed 7")] == [
+        "seed 7 · a wrong verdict is less likely than 0.05 · tltlc 0.1 · python 3.11"
+    ]
+
+
+def test_every_link_leads_to_something() -> None:
+    ids = [attributes["id"] for _, attributes in page().elements if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    recorded = {case["slug"]: {each["index"]: each for each in case["episodes"]} for case in page().data["cases"]}
+    episodes = 0
+    for each in page().all("a"):
+        slug, *where = (each["href"] or "").removeprefix("#").split("/")
+        assert slug in ids
+        if where:
+            episodes += 1
+            index, step = map(int, where)
+            assert 0 <= step < sum(count for _, count in recorded[slug][index]["state"])
+    assert episodes > 0
+
+
+def test_explanations_link_to_the_recorded_ones_of_their_episodes() -> None:
+    case = samples.suite().cases[1]
+    spoken_of = {index for finding in case.report.explanation for index in finding.episodes}
+    there = {
+        int((each["href"] or "").split("/")[1])
+        for each in page().all("a")
+        if each.get("class") == "episode" and (each["href"] or "").startswith("#cover_and_hide-v0/")
+    }
+    assert there == spoken_of & set(case.episodes)
+    assert spoken_of - there  # of the third one there is no recording
+
+
+def test_nothing_is_loaded_from_outside() -> None:
+    text = html_report(samples.suite())
+    assert set(re.findall(r"[a-z]+://[^\s\"'<]+", text)) == {"http://www.w3.org/2000/svg"}  # a name, not an address
+    assert not re.search(r"\bsrc=|@import|url\(|\beval\(|new Function", text)
+    assert not any(name.startswith("on") for _, attributes in page().elements for name in attributes)
+    assert [each["href"] for each in page().all("link")] == ["data:,"]
+
+
+def test_the_policy_of_the_page_knows_its_script_alone() -> None:
+    (policy,) = [each["content"] or "" for each in page().all("meta") if "http-equiv" in each]
+    digest = base64.b64encode(hashlib.sha256(page().scripts[1].encode()).digest()).decode()
+    assert policy == (f"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'sha256-{digest}'")
+
+
+def test_names_bring_no_markup_into_the_page() -> None:
+    case = samples.suite().cases[1]
+    assert case.level is not None and case.fspa is not None
+    level = replace(
+        case.level,
+        name=EVIL,
+        solids=tuple(replace(each, name=EVIL) for each in case.level.solids),
+        regions=tuple(replace(each, name=EVIL) for each in case.level.regions),
+        enemies=tuple(replace(each, name=EVIL) for each in case.level.enemies),
+    )
+    state = case.fspa.states[0]
+    label = replace(state.label, english=EVIL, unicode=EVIL)
+    fspa = replace(
+        case.fspa,
+        formula=replace(case.fspa.formula, english=EVIL),
+        states=(replace(state, label=label), *case.fspa.states[1:]),
+        atoms=tuple(replace(each, name=EVIL) for each in case.fspa.atoms),
+    )
+    accounts = tuple(replace(each, by=(EVIL,)) for each in case.report.accounts)
+    report = replace(case.report, name=EVIL, level=EVIL, reasons=(EVIL,), explanation=(), accounts=accounts)
+    evil = ReportedCase(report, level, fspa, case.episodes, case.before)
+    text = html_report(SuiteReport(EVIL, 0, 0.05, {EVIL: EVIL}, (evil,)))
+    plain = html_report(SuiteReport("s", 0, 0.05, {"v": "1"}, (case,)))
+    found = Page(text)
+    tags = [{name for name, _ in each.elements} for each in (found, Page(plain))]
+    assert tags[0] - tags[1] <= {"code"} and "b" not in tags[0]
+    assert len(found.scripts) == 2
+    assert found.data["cases"][0]["states"][0] == EVIL
+    assert found.data["cases"][0]["map"]["enemies"][0]["name"] == EVIL
+    assert EVIL in found.texts
+    assert not any(name.startswith("on") for _, attributes in found.elements for name in attributes)
+
+
+def test_a_case_that_cannot_be_played_has_its_reasons_alone() -> None:
+    case = CaseReport("gone:v0", "gone", "v0", "fail", ("it cannot be played any more", "TLT0803: no `start`"))
+    found = Page(html_report(SuiteReport("one", 0, 0.05, {}, (ReportedCase(case),), complete=False)))
+    assert found.data["cases"] == []
+    assert "it cannot be played any more" in found.texts
+    assert any("run was stopped" in text for text in found.texts)
+
+
+def test_equal_reports_give_equal_pages() -> None:
+    assert html_report(samples.suite()) == html_report(samples.suite())
+
+
+def test_a_page_of_nine_cases_is_below_five_megabytes() -> None:
+    long = samples.branching_that_takes_its_time()
+    assert len(long.actions) == 600
+    account = samples.account_of(0, long)
+    accounts = tuple(replace(account, index=index) for index in range(200))
+    one = samples.reported("branching:v0", "pass", [long], [long])
+    report = replace(one.report, accounts=accounts)
+    episodes = dict.fromkeys(range(13), long)
+    cases = tuple(
+        ReportedCase(replace(report, name=f"case {number}"), one.level, one.fspa, episodes, accounts)
+        for number in range(9)
+    )
+    size = len(html_report(SuiteReport("nine", 0, 0.05, {}, cases)).encode())
+    print(f"nine cases, each of 200 episodes of 90 s and 13 recordings: {size / 1e6:.2f} MB")
+    assert size < 5_000_000
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_colours_are_named_for_both_schemes(scheme: str) -> None:
+    text = html_report(SuiteReport("none", 0, 0.05, {}, ()))
+    (light, dark) = re.findall(r":root \{([^}]*--paper[^}]*)\}", text)
+    names = re.findall(r"(--[a-z]+):", light if scheme == "light" else dark)
+    assert {"--paper", "--text", "--quiet", "--pass", "--review", "--fail", "--link"} <= set(names)

@@ -1,0 +1,29 @@
+"""Names of cases in addresses."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltl_runtime.regression.page.slugs import episode_link, slugs
+
+
+def test_names_that_can_be_read() -> None:
+    assert slugs(["navigation:v1", "a b/c:v0+alert", "a b c:v0+alert", "…", "</script>"]) == (
+        "navigation-v1",
+        "a-b-c-v0+alert",
+        "a-b-c-v0+alert-2",
+        "case",
+        "script",
+    )
+
+
+@given(st.lists(st.text(max_size=4), max_size=6))
+def test_no_two_are_equal_and_all_are_plain(names: list[str]) -> None:
+    found = slugs(names)
+    assert len(set(found)) == len(names)
+    assert all(name and not set(name) & set("/#<>\"'& ") for name in found)
+
+
+def test_a_link_names_episode_and_step() -> None:
+    assert episode_link("navigation-v1", 12, 40) == "#navigation-v1/12/40"
