@@ -11,7 +11,7 @@ from tltl_runtime.regression.explain import Finding
 from tltl_runtime.regression.page.automaton import Drawn, counts_table, picture
 from tltl_runtime.regression.page.contents import ReportedCase
 from tltl_runtime.regression.page.curves import progress_curves, progress_distribution
-from tltl_runtime.regression.page.level_map import level_map
+from tltl_runtime.regression.page.level_map import level_map, map_key
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose
 from tltl_runtime.regression.page.player_panel import player_panel
 from tltl_runtime.regression.page.slugs import episode_link
@@ -40,7 +40,7 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
     """
     report, level, fspa = case.report, case.level, case.fspa
     parts: list[Markup] = [
-        element("h2", report.name, " ", badge(report.verdict), id=f"{slug}-title"),
+        element("h2", report.name, " ", badge(report.verdict), id=f"title:{slug}"),
         _facts(report, fspa),
         *_why(report, case.episodes, slug),
     ]
@@ -60,7 +60,7 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
         id=slug,
         class_="case",
         data_verdict=report.verdict,
-        aria_labelledby=f"{slug}-title",
+        aria_labelledby=f"title:{slug}",
         data_when="now",
         data_shown="ways",
     )
@@ -115,8 +115,9 @@ def _automaton(fspa: Fspa, drawn: Drawn, now: Traffic, before: Traffic) -> Itera
 
 
 def _map(level: Level) -> Markup:
-    """The map, and its legend, which the page fills in: what there is to explain depends on what is shown."""
-    return element("div", level_map(level), element("ul", class_="legend", aria_label="Legend of the map"))
+    """The map, the key to its signs, and a legend that the page fills in: it depends on what is shown."""
+    legend = element("ul", class_="legend shown", aria_label="Legend of the map")
+    return element("div", level_map(level), map_key(level), legend)
 
 
 def _toggles(before: Sequence[Account]) -> Markup:

@@ -18,6 +18,20 @@ _MARGIN: Final = 30
 _LAYERS: Final = ("heat", "ways", "ends", "live")
 """What the page draws into, from below to above."""
 
+_SIGNS: Final = {
+    "start": "start",
+    "switch": "switch",
+    "exit": "exit",
+    "barrier solid": "gate",
+    "barrier laser": "laser",
+    "route": "route of an enemy",
+    "mover-way": "way of a moving obstacle",
+    "solid platform": "platform",
+    "solid low": "low obstacle",
+    "solid wall": "wall",
+}
+"""What there is on a map, by class, and what it is called."""
+
 
 def level_map(level: Level) -> Markup:
     """The map of a level with empty layers ``heat``, ``ways``, ``ends`` and ``live``."""
@@ -32,11 +46,26 @@ def level_map(level: Level) -> Markup:
         *above[:-1],
         element("g", *_names(level, plan), class_="names"),
         above[-1],
-        class_="map",
+        class_="plan map",
         viewBox=view,
         role="img",
         aria_label=f"Map of {level.name} {level.variant}",
     )
+
+
+def map_key(level: Level) -> Markup:
+    """What the signs of a map mean, those that there are in it."""
+    solids, barriers = ({each.kind for each in entities} for entities in (level.solids, level.barriers))
+    there = {
+        "switch": level.switches,
+        "exit": level.exits,
+        "route": level.enemies,
+        "mover-way": level.movers,
+        **{f"barrier {kind}": kind in barriers for kind in ("solid", "laser")},
+        **{f"solid {kind}": kind in solids for kind in ("platform", "low", "wall")},
+    }
+    rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if there.get(kind, True)]
+    return element("ul", *rows, class_="legend key", aria_label="Signs of the map")
 
 
 def map_data(level: Level) -> dict[str, Any]:
@@ -61,6 +90,18 @@ def map_data(level: Level) -> dict[str, Any]:
             for enemy in level.enemies
         ],
     }
+
+
+def _sign(kind: str) -> Markup:
+    if kind == "exit":
+        inside = element("polygon", class_=kind, points=_star(0, 0, 8.0))
+    elif kind in ("switch", "start"):
+        inside = element("circle", class_=kind, r=7 if kind == "switch" else 4)
+    elif kind in ("route", "mover-way"):
+        inside = element("polyline", class_=kind, points="-8,0 8,0")
+    else:
+        inside = element("rect", class_=kind, x=-8, y=-5, width=16, height=10)
+    return element("svg", inside, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
 
 
 class _Plan:

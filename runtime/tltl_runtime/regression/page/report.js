@@ -8,7 +8,7 @@ class CaseView {
     this.section = document.getElementById(facts.slug);
     this.map = new LevelMap(this.section.querySelector(".map"), facts.map, colours);
     this.player = new Player(this.section, facts, this.map, moved);
-    this.legend = this.section.querySelector(".legend");
+    this.legend = this.section.querySelector(".legend.shown");
     this.isDrawn = false;
     this.section.querySelector(".toggles").addEventListener("change", () => {
       if (this.player.episode) history.replaceState(null, "", `#${facts.slug}`);
@@ -94,7 +94,7 @@ class Report {
     this.views = new Map(data.cases.map((facts) => [facts.slug, new CaseView(facts, data.colours, (player) => this.#moved(player))]));
     this.active = null;
     this.waiting = 0;
-    this.filter = document.getElementById("only-findings");
+    this.filter = document.getElementById("page:only-findings");
     this.filter.addEventListener("change", () => this.#applyFilter());
     this.#applyFilter();
     // Maps are drawn when they come near the screen: a suite may have hundreds of ways in each of its cases.
@@ -168,4 +168,4 @@ function isOnScreen(element) {
   return bottom > 0 && top < innerHeight;
 }
 
-new Report(JSON.parse(document.getElementById("data").textContent));
+new Report(JSON.parse(document.getElementById("page:data").textContent));

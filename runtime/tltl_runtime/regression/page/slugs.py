@@ -7,17 +7,23 @@ from collections.abc import Sequence
 from typing import Final
 
 _OTHER: Final = re.compile(r"[^A-Za-z0-9_.+]+")
+_LONGEST: Final = 80
 
 
 def slugs(names: Sequence[str]) -> tuple[str, ...]:
-    """A name for each, of plain letters and none twice: ``navigation:v1`` becomes ``navigation-v1``."""
+    """A short name for each, of plain letters: ``navigation:v1`` becomes ``navigation-v1``.
+
+    No two are equal, not even where lower and upper case are.
+    """
     found: list[str] = []
+    taken: set[str] = set()
     for name in names:
-        plain = _OTHER.sub("-", name).strip("-") or "case"
+        plain = _OTHER.sub("-", name)[:_LONGEST].strip("-") or "case"
         slug, number = plain, 1
-        while slug in found:
+        while slug.lower() in taken:
             number += 1
             slug = f"{plain}-{number}"
+        taken.add(slug.lower())
         found.append(slug)
     return tuple(found)
 

@@ -34,10 +34,10 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
             None if suite.complete else least,
             element("ul", *counts, class_="counts-of-verdicts", aria_label="Verdicts"),
             element("p", " · ".join(facts), class_="facts"),
-            element("h2", "Verdicts", id="verdicts"),
+            element("h2", "Verdicts"),
             element(
                 "p",
-                element("label", element("input", type="checkbox", id="only-findings"), " only findings"),
+                element("label", element("input", type="checkbox", id="page:only-findings"), " only findings"),
                 class_="filter",
             ),
             element("table", head, element("tbody", *rows), class_="verdicts"),

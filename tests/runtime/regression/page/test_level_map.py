@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tltl_runtime.regression.page.level_map import level_map, map_data
+from tltl_runtime.regression.page.level_map import level_map, map_data, map_key
 from tltl_runtime.stealth.levels.file import level_names, load_level
 
 
@@ -53,6 +53,16 @@ def test_layers_come_in_their_order() -> None:
     root = ElementTree.fromstring(level_map(load_level("branching")))
     layers = [each.get("class") for each in root if each.tag == "g"]
     assert layers == ["heat", "ways", "ends", "names", "live"]
+
+
+def test_the_key_explains_what_there_is_alone() -> None:
+    words = {}
+    for name in ("navigation", "branching"):
+        root = ElementTree.fromstring(map_key(load_level(name)))
+        words[name] = ["".join(each.itertext()) for each in root.iter("li")]
+    assert {"laser", "route of an enemy", "way of a moving obstacle"} <= set(words["branching"])
+    assert not {"laser", "route of an enemy", "way of a moving obstacle"} & set(words["navigation"])
+    assert {"start", "switch", "exit", "gate", "wall"} <= set(words["navigation"])
 
 
 def test_data_of_a_map_have_what_stops_sight_and_who_sees() -> None:

@@ -85,6 +85,15 @@ def test_every_link_leads_to_something() -> None:
     assert episodes > 0
 
 
+def test_names_of_cases_are_not_those_of_the_page() -> None:
+    case = samples.suite().cases[0]
+    names = ["data", "only-findings", "a", "a-title", "title:a", "page:data"]
+    cases = tuple(replace(case, report=replace(case.report, name=name)) for name in names)
+    found = Page(html_report(SuiteReport("names", 0, 0.05, {}, cases)))
+    ids = [attributes["id"] for _, attributes in found.elements if "id" in attributes]
+    assert len(ids) == len(set(ids)) == 2 * len(names) + 2
+
+
 def test_explanations_link_to_the_recorded_ones_of_their_episodes() -> None:
     case = samples.suite().cases[1]
     spoken_of = {index for finding in case.report.explanation for index in finding.episodes}

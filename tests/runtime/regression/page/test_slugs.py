@@ -9,8 +9,9 @@ from tltl_runtime.regression.page.slugs import episode_link, slugs
 
 
 def test_names_that_can_be_read() -> None:
-    assert slugs(["navigation:v1", "a b/c:v0+alert", "a b c:v0+alert", "…", "</script>"]) == (
+    assert slugs(["navigation:v1", "Navigation:V1", "a b/c:v0+alert", "a b c:v0+alert", "…", "</script>"]) == (
         "navigation-v1",
+        "Navigation-V1-2",
         "a-b-c-v0+alert",
         "a-b-c-v0+alert-2",
         "case",
@@ -18,10 +19,14 @@ def test_names_that_can_be_read() -> None:
     )
 
 
+def test_long_names_are_cut() -> None:
+    assert [len(name) for name in slugs(["a" * 500, "a" * 501])] == [80, 82]
+
+
 @given(st.lists(st.text(max_size=4), max_size=6))
 def test_no_two_are_equal_and_all_are_plain(names: list[str]) -> None:
     found = slugs(names)
-    assert len(set(found)) == len(names)
+    assert len({name.lower() for name in found}) == len(names)
     assert all(name and not set(name) & set("/#<>\"'& ") for name in found)
 
 
