@@ -14,6 +14,7 @@ class Player {
     this.which = find(".which");
     this.controls = find(".controls");
     this.scrub = find(".scrub");
+    this.strip = find(".strip");
     this.playButton = find(".play");
     this.speed = find(".speed");
     this.moment = find(".moment");
@@ -49,6 +50,7 @@ class Player {
     this.controls.hidden = false;
     this.section.classList.add("playing");
     this.scrub.max = this.last;
+    this.strip.style.background = this.#stateStrip();
     for (const curve of this.curves) curve.classList.toggle("current", Number(curve.dataset.episode) === index);
     this.show(row);
     return true;
@@ -145,6 +147,20 @@ class Player {
     find(".back").addEventListener("click", () => this.seek(this.row - 1));
     find(".on").addEventListener("click", () => this.seek(this.row + 1));
     find(".last").addEventListener("click", () => this.seek(this.last));
+  }
+
+  /** The states of the episode one after the other, as a gradient with sharp edges below the bar. */
+  #stateStrip() {
+    const { state } = this.episode;
+    const stops = [];
+    for (let from = 0; from < state.length; ) {
+      let to = from;
+      while (to < state.length && state[to] === state[from]) to += 1;
+      const share = (row) => `${((100 * Math.min(row, this.last)) / this.last).toFixed(2)}%`;
+      stops.push(`${this.map.colours[state[from]]} ${share(from)} ${share(to)}`);
+      from = to;
+    }
+    return `linear-gradient(to right, ${stops.join(", ")})`;
   }
 
   #label(isRunning) {

@@ -50,6 +50,7 @@ def player_panel(fspa: Fspa, episodes: Mapping[int, Episode]) -> Markup:
                 aria_label="Step",
                 autocomplete="off",
             ),
+            element("div", class_="strip", aria_hidden="true"),
             element("p", class_="moment"),
             element("p", class_="state"),
             element("dl", *map(_bar, ("progress", "health")), class_="bars"),
