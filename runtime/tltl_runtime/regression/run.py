@@ -86,7 +86,8 @@ def forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
 def case_folder(suite: Suite, name: str, folder: Path) -> Path:
     """Where a run in ``folder`` keeps what it played of the case of that name."""
     names = [case.name for case in suite.cases]
-    return folder / slugs(names)[names.index(name)]
+    # A folder that is called `..` is another one.
+    return folder / slugs([each.strip(".") for each in names])[names.index(name)]
 
 
 def record_baseline(suite: Suite, pool: Pool, told: Told) -> Iterator[Reference]:

@@ -33,6 +33,7 @@ def level_names() -> tuple[str, ...]:
 def variants(name_or_path: str) -> tuple[str, ...]:
     """The variants of a level, in the order of its file; errors as :func:`load_level` has them."""
     loading = _Loading(level_path(name_or_path))
+    loading.check()
     return tuple(loading.variants)
 
 
@@ -140,21 +141,22 @@ class _Loading:
         names = entity_names(level)
         level = replace(level, sensors=parts.sensors(table.table("sensors", needed=False), names, places))
         table.done()
-        self._raise()
+        self.check()
         self.log += check.check_names(names, places)
         self.log += check.check_references(level, places)
         self.log += check_room(level, places, table.place("start"))
-        self._raise()
+        self.check()
         return level
+
+    def check(self) -> None:
+        """Raise what is known to be wrong so far."""
+        if self.log:
+            raise TltlError(self.log)
 
     def _read(self, path: Path, name: str) -> Entry:
         source = read_source(path, shown(path))
         self.files.append((name, hashlib.sha256(source.text.encode()).hexdigest()))
         return Entry(read_tree(source), Label(source, _first_line(source)))
-
-    def _raise(self) -> None:
-        if self.log:
-            raise TltlError(self.log)
 
     def _variants(self) -> dict[str, tuple[str, ...]]:
         """The overlays of each variant; ``v0`` alone where the file says nothing."""
@@ -170,7 +172,7 @@ class _Loading:
                 title = f"no command could speak of the variant `{key}`"
                 help_ = "a name is one word of letters, digits and _, e.g. `very_hard`"
                 self.log.append(Diagnostic("TLT0804", title, (table.place(key),), help_))
-        self._raise()
+        self.check()
         return found
 
     def _bounds(self) -> Box:
@@ -204,7 +206,7 @@ class _Loading:
                 change = self._read(path, f"overlays/{path.name}")
                 self.changes.append(str(change.value["doc"].value) if "doc" in change.value else Path(name).stem)
                 trees = overlay.apply(change.value, trees, self.log)
-        self._raise()
+        self.check()
         assets = {
             name: Table(Entry(tree, found[name].label), f"the asset `{name}`", self.log) for name, tree in trees.items()
         }

@@ -1,0 +1,99 @@
+"""Accounts and reports that are made by hand, for tests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from tltl_runtime.regression.account import Account, Arrival, Nearest
+from tltl_runtime.regression.baseline import Played, Reference
+from tltl_runtime.regression.suite import Case, Suite, Thresholds
+from tltl_runtime.stealth.episodes.cause import Kind
+from tltl_runtime.stealth.level import Point
+from tltlc.record import replace
+
+ROOM = """doc = "A room."
+
+[bounds]
+at = [5.0, 5.0, -0.5]
+size = [10.0, 10.0, 4.5]
+
+[start]
+at = [2.0, 2.0, 0.0]
+
+[[exit]]
+name = "exit"
+at = [8.0, 8.0, 0.0]
+
+[[enemy]]
+name = "guard"
+kind = "guard"
+route = [[5.0, 8.5, 0.0]]
+"""
+"""A level of one's own."""
+
+
+def made(
+    index: int = 0,
+    success: bool = True,
+    *,
+    progress: float | None = None,
+    reward: float | None = None,
+    steps: int = 100,
+    states: Sequence[int] = (0,),
+    unmet: int | None = None,
+    cause: Kind | None = None,
+    by: tuple[str, ...] = (),
+    seen_by: tuple[str, ...] = (),
+    place: Point = (5.0, 5.0, 0.0),
+    nearest: Nearest | None = None,
+    way: tuple[tuple[float, float, int], ...] = ((2.0, 2.0, 0),),
+) -> Account:
+    """The account of an episode, by default of one that met its spec."""
+    return Account(
+        index=index,
+        seed=1000 + index,
+        success=success,
+        end="success" if success else "limit",
+        progress=(1.0 if success else 0.5) if progress is None else progress,
+        reward=(0.7 if success else -0.4) if reward is None else reward,
+        steps=steps,
+        unmet=states[-1] if unmet is None else unmet,
+        cause=cause or ("success" if success else "limit"),
+        by=by,
+        place=place,
+        seen_by=seen_by,
+        arrivals=tuple(Arrival(state, 10 * row, place) for row, state in enumerate(states)),
+        nearest=nearest,
+        way=way,
+    )
+
+
+def several(passed: int, failed: int = 0) -> list[Account]:
+    """Episodes of which the first ``failed`` do not meet the spec."""
+    return [made(index, index >= failed) for index in range(passed + failed)]
+
+
+PLAYED = Played(
+    level="room",
+    variant="v0",
+    spec="careful",
+    policy="a" * 64,
+    seed=7,
+    level_hash="b" * 64,
+    spec_hash="c" * 64,
+    files=(("room.toml", "d" * 64), ("assets/guard.toml", "e" * 64)),
+    versions={"tltlc": "0.1"},
+)
+
+
+def reference(accounts: Sequence[Account] = (), **changed: object) -> Reference:
+    return Reference(replace(PLAYED, **changed), tuple(accounts))
+
+
+def case(name: str, level: str = "navigation", variant: str = "v0", policy: Path = Path("policy")) -> Case:
+    return Case(name, level, variant, "v0", None, policy, 25, Thresholds())
+
+
+def suite(*cases: Case, path: Path = Path("game.toml")) -> Suite:
+    return Suite(path, 7, 0.05, cases)

@@ -1,0 +1,109 @@
+"""The baseline beside a suite: written, read again, and asked for figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.regression.made import PLAYED, made, reference, several
+from tltl_runtime.regression.account import Nearest
+from tltl_runtime.regression.baseline import (
+    baseline_of,
+    baseline_path,
+    read_baseline,
+    reference_of,
+    write_baseline,
+)
+from tltl_runtime.regression.suite import SHIPPED
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
+
+NEAREST = Nearest("near(exit)", -0.25, (1.0, 2.0, 0.0), "exit", 3.2)
+
+
+def test_it_is_read_as_it_was_written(tmp_path: Path) -> None:
+    path = tmp_path / "game.baseline.json"
+    failed = made(1, False, nearest=NEAREST, by=("guard",), seen_by=("guard",), states=(0, 2, 1))
+    known = (reference([made(0), failed]), reference(several(3), level="vault", variant="v1+wide"))
+    write_baseline(path, known)
+    assert read_baseline(path) == known
+    again = tmp_path / "again.json"
+    write_baseline(again, known)
+    assert again.read_bytes() == path.read_bytes()
+    # A line an episode: what changes of one is one line of a difference.
+    lines = path.read_text(encoding="utf-8").splitlines()
+    assert sum(line.startswith('{"index":') for line in lines) == 5
+
+
+def test_its_place() -> None:
+    assert baseline_path(Path("levels/game.toml")) == Path("levels/game.baseline.json")
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("progress", "much"),
+        ("end", "bored"),
+        ("index", 0.5),
+        ("arrivals", [[0, 1]]),
+        ("colour", "red"),
+        ("reward", float("inf")),
+    ],
+)
+def test_what_is_broken_is_refused(tmp_path: Path, key: str, value: object) -> None:
+    path = tmp_path / "game.baseline.json"
+    write_baseline(path, (reference([made(0)]),))
+    document = json.loads(path.read_text(encoding="utf-8"))
+    document["references"][0]["accounts"][0][key] = value
+    path.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(TltlError) as error:
+        read_baseline(path)
+    (found,) = error.value.diagnostics
+    assert found.code == "TLT0902"
+    assert key in found.title
+
+
+@pytest.mark.parametrize("text", ["[]", "3", "{}", "[" * 100_000, "\xff", '{"format": "tltl-episode"}'])
+def test_what_is_something_else_is_refused(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "game.baseline.json"
+    path.write_bytes(text.encode("latin-1"))
+    with pytest.raises(TltlError) as error:
+        read_baseline(path)
+    assert [found.code for found in error.value.diagnostics] == ["TLT0900"]
+
+
+def test_figures_are_found_whatever_the_level_has_become() -> None:
+    known = (reference(variant="v1"), reference(several(2)))
+    wanted = replace(PLAYED, level_hash="0" * 64, files=(), versions={})
+    assert reference_of(known, wanted, Path("game.toml")) == known[1]
+
+
+@pytest.mark.parametrize(
+    ("changed", "title"),
+    [
+        ({"level": "vault"}, "the baseline has no figures of `vault:v0`"),
+        ({"variant": "v2"}, "the baseline has no figures of `room:v2`"),
+        ({"policy": "f" * 64}, "the baseline has no figures of `room:v0` with this policy"),
+        ({"spec_hash": "f" * 64}, "the baseline has no figures of `room:v0` with this spec"),
+        ({"seed": 8}, "the baseline has no figures of `room:v0` with this seed"),
+    ],
+)
+def test_figures_that_are_missing(changed: dict[str, object], title: str) -> None:
+    with pytest.raises(TltlError) as error:
+        reference_of((reference(several(2)),), replace(PLAYED, **changed), Path("a game.toml"))
+    (found,) = error.value.diagnostics
+    assert (found.code, found.title) == ("TLT0903", title)
+    assert found.help == "record it: tltlc baseline 'a game.toml'"
+
+
+def test_a_suite_without_a_baseline(tmp_path: Path) -> None:
+    with pytest.raises(TltlError) as error:
+        baseline_of(tmp_path / "game.toml")
+    (found,) = error.value.diagnostics
+    assert found.code == "TLT0903"
+    assert found.help == f"record it: tltlc baseline {tmp_path / 'game.toml'}"
+    write_baseline(tmp_path / "game.baseline.json", (reference(),))
+    assert baseline_of(tmp_path / "game.toml") == (reference(),)
+    assert baseline_path(SHIPPED).parent == SHIPPED.parent

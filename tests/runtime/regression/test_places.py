@@ -1,0 +1,65 @@
+"""What people call a place in a level."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.runtime.regression.made import ROOM
+from tltl_runtime.regression.places import nearest_entity, obstacle, place_name
+from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.levels.file import load_level
+
+MORE = """[[region]]
+name = "dark_corner"
+at = [1.5, 8.5, 0.0]
+size = [2.0, 2.0, 3.0]
+[[region]]
+name = "west"
+at = [1.5, 5.0, 0.0]
+size = [2.0, 9.6, 3.0]
+[[switch]]
+name = "lever"
+at = [5.0, 2.0, 0.0]
+[[wall]]
+name = "pillar"
+at = [7.0, 5.0, 0.0]
+size = [1.0, 1.0, 3.0]
+"""
+
+
+@pytest.fixture(name="level", scope="module")
+def _level(tmp_path_factory: pytest.TempPathFactory) -> Level:
+    path = tmp_path_factory.mktemp("levels") / "room.toml"
+    path.write_text(ROOM + MORE, encoding="utf-8")
+    return load_level(str(path))
+
+
+@pytest.mark.parametrize(
+    ("point", "name"),
+    [
+        ((1.5, 8.5, 0.0), "in the dark corner"),
+        ((1.5, 4.0, 0.0), "in the west"),
+        ((6.0, 2.0, 0.0), "near `lever`"),
+        ((8.0, 6.0, 0.0), "near `exit`"),
+        ((5.2, 5.0, 0.0), "in the middle"),
+        ((9.0, 3.0, 0.0), "in the south-east"),
+        ((5.2, 9.0, 0.0), "in the north"),
+        ((9.4, 5.0, 0.0), "in the east"),
+    ],
+)
+def test_a_region_then_what_is_near_then_the_part_of_the_map(level: Level, point: Point, name: str) -> None:
+    assert place_name(level, point) == name
+
+
+def test_what_is_near(level: Level) -> None:
+    assert nearest_entity(level, (5.0, 4.4, 0.0)) == "lever"
+    assert nearest_entity(level, (5.0, 4.6, 0.0)) is None
+
+
+def test_what_is_in_the_way(level: Level) -> None:
+    at_pillar = [(6.2, 4.8 + row / 10, 0.0) for row in range(5)]
+    assert obstacle(level, at_pillar) == "pillar"
+    assert obstacle(level, [(4.0, 5.0, 0.0)] * 3) is None
+    # Half of them are elsewhere: nothing stopped most.
+    assert obstacle(level, at_pillar[:2] + [(4.0, 5.0, 0.0)] * 2) is None
+    assert obstacle(level, []) is None
