@@ -1,0 +1,188 @@
+"""From files to the cases that a change of them concerns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.regression.made import ROOM
+from tltl_runtime.policies.shipped import shipped_policy
+from tltl_runtime.regression.dependencies import dependencies, select
+from tltl_runtime.regression.suite import SHIPPED, Suite, read_suite
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.made_for import LEVELS
+
+SUITE = """[[case]]
+level = "levels/vault.toml"
+policy = "trained"
+
+[[case]]
+level = "levels/vault.toml"
+variant = "v1"
+policy = "trained"
+
+[[case]]
+level = "navigation"
+
+[[case]]
+level = "branching"
+overlay = ["guard_alert", "edits/wide.toml"]
+spec = "plans.tltl:careful"
+"""
+VAULT = """spec = "vault.tltl:unseen"
+[variants]
+v0 = []
+v1 = ["wide"]
+[[use]]
+asset = "crates"
+at = [5.0, 5.0, 0.0]
+"""
+BOTH, ALL = [0, 1], [0, 1, 2, 3]
+
+
+@pytest.fixture(name="suite")
+def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
+    files = {
+        "game/game.toml": SUITE,
+        "game/levels/vault.toml": VAULT + ROOM,
+        "game/levels/vault.tltl": 'import stealth\nimport "plans/parts.tltl"\nspec unseen = F alive\n',
+        "game/levels/plans/parts.tltl": "import spatial\n",
+        "game/levels/assets/crates.toml": 'doc = "Crates."\ntype = "part"\n',
+        "game/levels/overlays/wide.toml": 'doc = "More."\n',
+        "game/edits/wide.toml": "",
+        "game/plans.tltl": "import own\nspec careful = F alive\n",
+        "game/own.tltl": "signal alive: bool\n",
+        "game/trained/policy.safetensors": "",
+        "game/trained/metrics.jsonl": "",
+        "README.md": "",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return read_suite(Path("game/game.toml"))
+
+
+def concerned(suite: Suite, *names: str) -> list[int]:
+    found = select(suite, names)
+    assert sorted([*found.cases, *found.left_out], key=suite.cases.index) == list(suite.cases)
+    return [suite.cases.index(case) for case in found.cases]
+
+
+@pytest.mark.parametrize(
+    ("name", "cases"),
+    [
+        ("game/levels/vault.toml", BOTH),
+        ("levels/vault.toml", BOTH),
+        ("vault.toml", BOTH),
+        ("vault", BOTH),
+        ("game/levels/assets/crates.toml", BOTH),
+    XX
+        ("game/levels/overlays/wide.toml", [1]),
+        ("overlays/wide.toml", [1]),
+        ("game/edits/wide.toml", [3]),
+        ("wide", [1, 3]),
+        # The guard of the package is a kind of enemy of two levels; overlays of its own come beside it.
+        ("guard", [0, 1, 3]),
+        ("guard_alert.toml", [3]),
+        ("navigation.toml", [2]),
+        ("corridor", [2]),
+        ("corridor_shut", []),
+        ("game/levels/plans/parts.tltl", BOTH),
+        ("vault.tltl", BOTH),
+        ("game/plans.tltl", [3]),
+        ("own.tltl", [3]),
+        ("stealth.tltl", [0, 1, 3]),
+        ("game/trained/policy.safetensors", BOTH),
+        ("game/trained", BOTH),
+        ("game/trained/metrics.jsonl", []),
+        ("branching.safetensors", [3]),
+        ("game/game.toml", ALL),
+        ("game.baseline.json", ALL),
+        ("game/levels", BOTH),
+        (".", ALL),
+        ("README.md", []),
+        ("levels/README.md", []),
+        ("ault.toml", []),
+        ("other/levels/vault.toml", []),
+        ("", []),
+    ],
+)
+def test_a_file_and_the_cases_that_depend_on_it(suite: Suite, name: str, cases: list[int]) -> None:
+    assert concerned(suite, *filter(None, [name])) == cases
+    assert select(suite, [name]).unknown == (() if cases else (name,)) or not name
+
+
+def test_paths_from_elsewhere(suite: Suite, monkeypatch: pytest.MonkeyPatch) -> None:
+    there = read_suite(suite.path.absolute())
+    monkeypatch.chdir("game/levels")
+    assert concerned(there, "vault.toml") == concerned(there, "../levels/./vault.toml") == BOTH
+    assert concerned(there, "../edits/wide.toml") == [3]
+    assert concerned(there, str(there.path)) == ALL
+    # What `git diff --name-only` says begins at the top of the checkout.
+    assert concerned(there, "game/levels/assets/crates.toml") == BOTH
+
+
+def test_several_names_and_unknown_ones(suite: Suite) -> None:
+    found = select(suite, ["navigation.toml", "README.md", "src/game.py", "vault", "README.md"])
+    assert [suite.cases.index(case) for case in found.cases] == [0, 1, 2]
+    assert [case.name for case in found.left_out] == ["branching:v0+guard_alert+wide"]
+    assert found.unknown == ("README.md", "src/game.py")
+
+
+def test_what_would_take_the_place_of_another_file_counts(suite: Suite) -> None:
+    """An asset that is deleted beside a level, or made there, changes which one the level uses."""
+    Path("game/levels/assets/crates.toml").unlink()
+    assert concerned(suite, "game/levels/assets/crates.toml") == BOTH
+    assert concerned(suite, "game/levels/assets/guard.toml") == BOTH
+    Path("game/levels/assets/guard.toml").write_text("", encoding="utf-8")
+    assert str(LEVELS / "assets" / "guard.toml") not in map(str, dependencies(suite, suite.cases[0]))
+    Path("game/levels/plans/parts.tltl").unlink()
+    assert concerned(suite, "game/levels/plans/parts.tltl") == BOTH
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "[[use]\n",  # no TOML
+        "use = 3\nenemy = 'guard'\nvariants = 7\n",
+    ],
+)
+def test_a_level_that_does_not_load_depends_on_what_can_be_read_of_it(suite: Suite, damage: str) -> None:
+    Path("game/levels/vault.toml").write_text(damage + VAULT + ROOM, encoding="utf-8")
+    assert concerned(suite, "game/levels/vault.toml") == BOTH
+    assert concerned(suite, "crates", "guard") == [*BOTH, 3]
+    assert concerned(suite, "vault.tltl") == BOTH
+    Path("game/levels/vault.toml").unlink()
+    assert concerned(suite, "game/levels/vault.toml") == BOTH
+
+
+def test_a_spec_that_cannot_be_read_still_counts(suite: Suite) -> None:
+    Path("game/plans.tltl").write_text("import own\nspec careful = ((\n", encoding="utf-8")
+    assert concerned(suite, "own.tltl") == [3]
+    Path("game/plans.tltl").write_bytes(b"\0")
+    assert concerned(suite, "plans.tltl") == [3]
+
+
+def test_specs_that_import_each_other_are_no_circle_without_end(suite: Suite) -> None:
+    Path("game/own.tltl").write_text('import "plans.tltl"\n', encoding="utf-8")
+    assert concerned(suite, "own.tltl") == [3]
+
+
+def test_libraries_of_a_project(suite: Suite) -> None:
+    Path("game/tltl.toml").write_text('libraries = ["shared"]\n', encoding="utf-8")
+    Path("game/shared").mkdir()
+    Path("game/own.tltl").rename("game/shared/own.tltl")
+    assert concerned(suite, "game/shared/own.tltl") == [3]
+    assert concerned(suite, "game/own.tltl") == [3], "it would be taken first"
+
+
+def test_all_that_a_shipped_level_was_read_from_is_known() -> None:
+    suite = read_suite(SHIPPED)
+    for case in suite.cases:
+        known = dependencies(suite, case)
+        for name, _ in load_level(case.level, case.variant).files:
+            assert (LEVELS / name).resolve() in known
+        assert shipped_policy(case.level) in known
+    assert concerned(suite, "guard_thorough") == [5, 8]

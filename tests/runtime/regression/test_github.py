@@ -1,0 +1,67 @@
+"""Findings as workflow commands of GitHub Actions."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+from tests.runtime.regression.made import PLAYED, ROOM, reference
+from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.github import annotations
+from tltl_runtime.regression.suite import Suite, read_suite
+from tltlc.record import replace
+
+COMMAND = re.compile(r"::(error|warning) file=([^,:]*),title=([^,:]*)::([^\r\n]*)")
+SUITE = '[[case]]\nlevel = "levels/room.toml"\npolicy = "navigation"\nname = "the room: 100%, v0"\n'
+NAME = "the room: 100%, v0"
+
+
+@pytest.fixture(name="suite")
+def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
+    (tmp_path / "game" / "levels" / "assets").mkdir(parents=True)
+    (tmp_path / "game" / "levels" / "room.toml").write_text(ROOM, encoding="utf-8")
+    (tmp_path / "game" / "levels" / "assets" / "guard.toml").write_text("", encoding="utf-8")
+    (tmp_path / "game" / "game.toml").write_text(SUITE, encoding="utf-8")
+    monkeypatch.chdir(tmp_path / "game")
+    return read_suite(Path("game.toml"))
+
+
+def annotated(suite: Suite, report: CaseReport, root: str = "..") -> tuple[str, ...]:
+    (line,) = annotations(suite, [report], Path(root))
+    found = COMMAND.fullmatch(line)
+    assert found, line
+    return tuple(map(unquote, found.groups()))
+
+
+def test_each_finding_is_a_command(suite: Suite) -> None:
+    report = CaseReport(NAME, "room", "v0", "fail", ("dies: 100% of\n  them", "more"))
+    assert annotated(suite, report) == (
+        "error",
+        "game/levels/room.toml",
+        "the room: 100%, v0: fail",
+        "dies: 100% of\n  them\nmore",
+    )
+    (line,) = annotations(suite, [report], Path(".."))
+    assert "title=the room%3A 100%25%2C v0%3A fail::dies: 100%25 of%0A  them%0Amore" in line
+    assert annotated(suite, replace(report, verdict="review"))[0] == "warning"
+    assert list(annotations(suite, [replace(report, verdict="pass")], Path())) == []
+
+
+def test_the_file_is_what_has_changed(suite: Suite) -> None:
+    before = reference().played
+    report = CaseReport(NAME, "room", "v0", "fail", ("why",), played=PLAYED, reference=before)
+    assert annotated(suite, report)[1] == "game/game.toml", "nothing has changed"
+    changed = replace(PLAYED, files=(("room.toml", "d" * 64), ("assets/guard.toml", "0" * 64)))
+    assert annotated(suite, replace(report, played=changed))[1] == "game/levels/assets/guard.toml"
+    both = replace(PLAYED, files=(("room.toml", "0" * 64), ("assets/guard.toml", "0" * 64)))
+    assert annotated(suite, replace(report, played=both))[1] == "game/levels/assets/guard.toml"
+
+
+def test_paths_begin_at_the_top_of_the_checkout(suite: Suite) -> None:
+    report = CaseReport(NAME, "room", "v0", "fail", ("why",))
+    assert annotated(suite, report, ".")[1] == "levels/room.toml"
+    # A path outside cannot be shown beside anything, and is told as it is.
+    assert annotated(suite, report, "levels/assets")[1] == "levels/room.toml"

@@ -1,0 +1,124 @@
+"""JUnit XML, by the rules of the schema junit-10 and as its readers count."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from tests.runtime.regression.made import case, several, suite
+from tltl_runtime.regression.case_report import CaseReport, figures
+from tltl_runtime.regression.junit import junit
+from tltl_runtime.regression.suite import Suite
+from tltlc.record import replace
+
+TESTSUITE = {"name", "tests", "failures", "errors", "skipped"}
+TESTSUITE |= {"group", "time", "timestamp", "hostname", "id", "package", "file", "log", "url"}
+RULES: dict[str, tuple[set[str], set[str], set[str]]] = {
+    # attributes, those that must be there, children
+    "testsuites": ({"name", "time", "tests", "failures", "errors"}, set(), {"testsuite"}),
+    "testsuite": (
+        TESTSUITE,
+        {"name", "tests", "failures", "errors"},
+        {"testsuite", "properties", "testcase", "system-out", "system-err"},
+    ),
+    "properties": (set(), set(), {"property"}),
+    "property": ({"name", "value"}, {"name", "value"}, set()),
+    "testcase": (
+        {"name", "time", "classname", "group"},
+        {"name"},
+        {"skipped", "error", "failure", "system-out", "system-err"},
+    ),
+    "failure": ({"type", "message"}, set(), set()),
+    "error": ({"type", "message"}, set(), set()),
+    "skipped": ({"type", "message"}, set(), set()),
+    "system-out": (set(), set(), set()),
+    "system-err": (set(), set(), set()),
+}
+"""What the schema says of the elements: its own words are https://github.com/jenkinsci/xunit-plugin's."""
+TEXTS = {"failure", "error", "skipped", "system-out", "system-err"}
+
+GOOD = CaseReport("room:v0", "room", "v0", "pass", ("met in 40 of 40 episodes",), figures=figures(several(40)))
+DOUBTED = CaseReport("room:v1", "room", "v1", "review", ("reward is lower", "dies `in` the <hall> & more"))
+BAD = CaseReport("room:v2", "room", "v2", "fail", ("it cannot be played any more", "room.toml:3: TLT0803, …"))
+GOOD = replace(GOOD, baseline=figures(several(30, 10)))
+SUITE: Suite = suite(case("room:v0"), case("room:v1"), case("room:v2"), path=Path("levels/game.toml"))
+
+
+def check(element: ET.Element) -> None:
+    """Hold an element against the schema."""
+    known, needed, children = RULES[element.tag]
+    assert needed <= set(element.attrib) <= known, element.tag
+    assert {child.tag for child in element} <= children
+    if element.tag not in TEXTS:
+        assert not (element.text or "").strip()
+    for child in element:
+        assert not (child.tail or "").strip()
+        check(child)
+
+
+def read(reports: tuple[CaseReport, ...]) -> ET.Element:
+    text = junit(SUITE, reports)
+    assert text.startswith('<?xml version="1.0" encoding="UTF-8"?>\n<testsuites')
+    root = ET.fromstring(text.encode())
+    check(root)
+    return root
+
+
+def test_a_case_is_a_testcase() -> None:
+    (tests,) = read((GOOD, DOUBTED, BAD))
+    assert tests.attrib == {"name": "game", "tests": "3", "failures": "1", "errors": "1", "skipped": "0"}
+    good, doubted, bad = tests.iter("testcase")
+    assert [each.attrib for each in (good, doubted)] == [
+        {"name": "room:v0", "classname": "game"},
+        {"name": "room:v1", "classname": "game"},
+    ]
+    assert [child.tag for child in good] == ["system-out"]
+    (error,), (failure,) = doubted, bad
+    assert (error.tag, error.attrib) == ("error", {"type": "review", "message": "review: reward is lower"})
+    assert error.text == "reward is lower\ndies `in` the <hall> & more"
+    assert (failure.tag, failure.get("type")) == ("failure", "fail")
+    assert failure.get("message") == "fail: it cannot be played any more"
+
+
+def test_figures_are_properties() -> None:
+    root = read((GOOD, BAD))
+    found = {each.get("name"): each.get("value") for each in root.iter("property")}
+    assert found == {
+        "seed": "7",
+        "error": "0.05",
+        "room:v0.verdict": "pass",
+        "room:v0.episodes": "40",
+        "room:v0.pass_rate": "1.0000",
+        "room:v0.progress": "1.0000",
+        "room:v0.reward": "0.7000",
+        "room:v0.baseline_episodes": "40",
+        "room:v0.baseline_pass_rate": "0.7500",
+        "room:v0.baseline_progress": "0.8750",
+        "room:v0.baseline_reward": "0.4250",
+        "room:v2.verdict": "fail",
+    }
+
+
+def test_no_cases() -> None:
+    (tests,) = read(())
+    assert (tests.get("tests"), tests.get("failures"), tests.get("errors")) == ("0", "0", "0")
+
+
+@pytest.mark.parametrize("odd", ["\0", "\x1b[31m", "\x0b", "\ufffe", "]]>", "<![CDATA[", "&#0;", "\U0001f512", "\r"])
+def test_any_text_is_xml(odd: str) -> None:
+    text = f"a{odd}b"
+    report = replace(BAD, name=f"room{odd}", reasons=(text, "more"))
+    root = read((report,))
+    (failure,) = root.iter("failure")
+    shown = re.sub("[\0\x1b\x0b\ufffe]", "\ufffd", text)
+    assert (failure.text or "").replace("\n", "\r").startswith(shown.replace("\n", "\r"))
+
+
+def test_a_case_without_reasons() -> None:
+    root = read((replace(GOOD, reasons=()), replace(DOUBTED, reasons=())))
+    good, doubted = root.iter("testcase")
+    assert not list(good)
+    assert doubted[0].get("message") == "review"
