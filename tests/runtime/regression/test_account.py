@@ -1,0 +1,80 @@
+"""Accounts of real episodes: of the scripted expert, and of one that minds no enemy."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import dist
+
+import pytest
+
+from tests.runtime.regression.page import samples
+from tltl_runtime.record_json import from_json, to_json
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.explain import findings
+from tltl_runtime.regression.stages import chain
+from tltl_runtime.stealth.episodes.episode import Episode
+
+EPISODES = ("navigation", "branching", "cover_and_hide_met", "cover_and_hide_failed")
+
+
+@pytest.fixture(params=EPISODES, name="episode", scope="module")
+def _episode(request: pytest.FixtureRequest) -> Episode:
+    episodes: tuple[Episode, ...] = getattr(samples, request.param)()
+    return episodes[0]
+
+
+@pytest.fixture(name="found", scope="module")
+def _found(episode: Episode) -> Account:
+    return samples.account_of(0, episode)
+
+
+def test_every_state_that_was_entered_is_told_once(episode: Episode, found: Account) -> None:
+    states = [arrival.state for arrival in found.arrivals]
+    assert states[0] == 0 and all(one != other for one, other in pairwise(states))
+    assert set(states) == set(episode.states.tolist())
+    for arrival in found.arrivals:
+        assert episode.states[arrival.step] == arrival.state
+        assert dist(arrival.place, episode.snapshots[arrival.step].player.position) < 0.01
+    if found.success:
+        assert [episode.fspa.states[state].distance for state in states if state in chain(episode.fspa)][-1] == 0
+
+
+def test_the_way_has_a_place_a_second(episode: Episode, found: Account) -> None:
+    assert abs(len(found.way) - episode.snapshots[-1].time) <= 2
+    assert found.way[0][:2] == pytest.approx(episode.snapshots[0].player.position[:2], abs=0.01)
+    assert found.way[-1] == pytest.approx((*episode.snapshots[-1].player.position[:2], episode.states[-1]), abs=0.01)
+    # Nobody runs faster than 5 m/s.
+    assert all(dist(one[:2], other[:2]) < 6.0 for one, other in pairwise(found.way))
+
+
+def test_a_success_has_no_shortcoming(found: Account) -> None:
+    if found.success:
+        assert (found.nearest, found.seen_by, found.cause) == (None, (), "success")
+
+
+def test_it_can_be_kept(found: Account) -> None:
+    assert from_json(Account, to_json(found), "account") == found
+
+
+def test_who_dies_is_told_with_who_killed_and_how_near_it_came() -> None:
+    episode = samples.cover_and_hide_failed()[0]
+    found = samples.account_of(0, episode)
+    assert not found.success
+    assert found.cause in ("killed", "violated")
+    assert found.by
+    assert found.seen_by == ("guard",)
+    near = found.nearest
+    assert near is not None and near.robustness <= 0.0
+    if near.target is not None:
+        column = [signal.name for signal in episode.fspa.signals].index(f"distance({near.target})")
+        rows = [row for row in range(len(episode.actions)) if episode.states[row] == found.unmet]
+        assert near.distance == pytest.approx(min(episode.signals[row + 1, column] for row in rows), abs=0.01)
+
+
+def test_what_is_told_of_episodes_that_fail_now() -> None:
+    now, before = samples.cover_and_hide_failed(), samples.cover_and_hide_met()
+    accounts, used = ([samples.account_of(index, each) for index, each in enumerate(one)] for one in (now, before))
+    stage, *ends = findings(now[0].level, now[0].fspa, accounts, used)
+    assert stage.text.endswith("before: in 2 of 2 episodes") and stage.episodes
+    assert all("`guard`" in end.text and "before: in 0 of 2 episodes" in end.text for end in ends)
+    assert findings(before[0].level, before[0].fspa, used, used)[0].text.endswith("as before")

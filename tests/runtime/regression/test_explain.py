@@ -1,0 +1,146 @@
+"""What is told of episodes against those of the baseline."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from tests.runtime.regression.made import ROOM, made
+from tltl_runtime.regression.account import Account, Nearest
+from tltl_runtime.regression.explain import findings
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.levels.file import load_level
+from tltlc import compile_text
+from tltlc.automaton.fspa import Fspa
+from tltlc.record import replace
+
+SPEC = """import spatial
+import stealth
+entity s1, s2, exit
+exclusive near(s1), near(s2), near(exit)
+spec way { limit 100 steps  reach near(s1) then near(s2) then near(exit)  keep alive }
+"""
+HALL = '[[region]]\nname = "north_hall"\nat = [5.0, 9.0, 0.0]\nsize = [9.6, 1.6, 3.0]\n'
+SWITCHES = '[[switch]]\nname = "s1"\nat = [2.0, 5.0, 0.0]\n[[switch]]\nname = "s2"\nat = [2.0, 8.0, 0.0]\n'
+NORTH, MIDDLE = (5.0, 9.0, 0.0), (5.0, 5.0, 0.0)
+
+
+@pytest.fixture(name="level", scope="module")
+def _level(tmp_path_factory: pytest.TempPathFactory) -> Level:
+    path = tmp_path_factory.mktemp("levels") / "room.toml"
+    path.write_text(ROOM + HALL + SWITCHES, encoding="utf-8")
+    return load_level(str(path))
+
+
+@pytest.fixture(name="fspa", scope="module")
+def _fspa() -> Fspa:
+    (fspa,) = compile_text(SPEC)
+    return fspa
+
+
+def to(fspa: Fspa, stages: int) -> list[int]:
+    """The states of an episode that passed so many stages."""
+    distances = [3 - stage for stage in range(stages + 1)]
+    return [next(each.id for each in fspa.states if each.distance == wanted) for wanted in distances]
+
+
+def good(fspa: Fspa, count: int = 25) -> list[Account]:
+    return [made(index, states=to(fspa, 3)) for index in range(count)]
+
+
+def told(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account] = ()) -> list[str]:
+    return [each.text for each in findings(level, fspa, now, before or good(fspa))]
+
+
+def test_all_as_before(level: Level, fspa: Fspa) -> None:
+    (only,) = findings(level, fspa, good(fspa), good(fspa))
+    assert only.text == "reaches `s1`, reaches `s2`, reaches `exit` as before"
+    assert only.episodes == ()
+
+
+def test_the_first_stage_that_is_not_as_before_is_told_and_where_it_ends(level: Level, fspa: Fspa) -> None:
+    near = Nearest("near(exit)", -0.2, NORTH, "exit", 3.2)
+    died = {"cause": "killed", "by": ("guard",), "seen_by": ("guard",), "place": NORTH, "nearest": near}
+    now = good(fspa)
+    for index in range(14):
+        now[index] = made(index, False, states=to(fspa, 2), **died)  # type: ignore[arg-type]
+    now[3] = replace(now[3], nearest=replace(near, robustness=-0.5, distance=6.0))
+    stage, end = findings(level, fspa, now, good(fspa))
+    assert stage.text == (
+        "reaches `s1`, reaches `s2` as before, then reaches `exit` in 11 of 25 episodes; before: in 25 of 25 episodes"
+    )
+    assert stage.episodes == end.episodes == tuple(range(14))
+    assert end.text == (
+        "dies in the north hall by `guard` in 14 of 25 episodes; before: in 0 of 25 episodes; "
+        "closest approach to `exit`: 3.2 m"
+    )
+
+
+def test_ends_are_told_by_kind_and_place_the_most_frequent_first(level: Level, fspa: Fspa) -> None:
+    now = good(fspa)
+    for index in range(5):
+        now[index] = made(index, False, states=to(fspa, 0), cause="violated", by=("seen",), seen_by=("guard",))
+    for index in range(5, 12):
+        now[index] = made(index, False, states=to(fspa, 1), place=(8.5, 8.0, 0.0))
+    texts = told(level, fspa, now)
+    assert texts[1:] == [
+        "is near `exit` when time is up in 7 of 25 episodes; before: in 0 of 25 episodes",
+        "breaks the spec in the middle (seen), seen by `guard` in 5 of 25 episodes; before: in 0 of 25 episodes",
+    ]
+
+
+def test_an_end_of_few_episodes_is_not_told(level: Level, fspa: Fspa) -> None:
+    now = good(fspa, 40)
+    for index in range(3):
+        now[index] = made(index, False, states=to(fspa, 1))
+    assert any("when time is up" in text for text in told(level, fspa, now, good(fspa, 40)))
+    now[0] = good(fspa)[0]
+    assert not any("when time is up" in text for text in told(level, fspa, now, good(fspa, 40)))
+
+
+def test_ends_as_before_say_so(level: Level, fspa: Fspa) -> None:
+    now = [made(index, index >= 10, states=to(fspa, 3 if index >= 10 else 2)) for index in range(25)]
+    texts = told(level, fspa, now, now)
+    assert texts[0] == "reaches `s1`, reaches `s2` as before"
+    assert texts[1] == "is in the middle when time is up in 10 of 25 episodes; before: in 10 of 25 episodes"
+
+
+def test_where_no_distance_is_the_limit_the_atom_is_named(level: Level, fspa: Fspa) -> None:
+    near = [Nearest("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
+    now = [made(index, False, states=to(fspa, 0), nearest=near[index % 3]) for index in range(25)]
+    assert told(level, fspa, now)[1].endswith("; the limit is `alive`, -0.25 at best")
+
+
+def test_what_is_in_the_way_is_named(level: Level, fspa: Fspa) -> None:
+    now = [made(index, False, states=to(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
+    assert "is in the east when time is up, at `outer_east`" in told(level, fspa, now)[1]
+
+
+@pytest.mark.parametrize(
+    ("steps", "text"),
+    [
+        (130, "successes are longer: 130 steps on average; before: 100"),
+        (80, "successes are shorter: 80 steps on average; before: 100"),
+        (110, None),
+    ],
+)
+def test_how_long_successes_take(level: Level, fspa: Fspa, steps: int, text: str | None) -> None:
+    now = [replace(each, steps=steps) for each in good(fspa)]
+    assert told(level, fspa, now)[1:] == ([text] if text else [])
+
+
+def test_another_way(level: Level, fspa: Fspa) -> None:
+    through = ((2.0, 2.0, 0), (5.0, 9.0, 1), (8.0, 8.0, 2))
+    now = [replace(each, way=through) if each.index < 20 else each for each in good(fspa)]
+    text = "80% of the successful episodes pass through the north hall; before: 0%"
+    assert told(level, fspa, now)[1:] == [text]
+    assert told(level, fspa, good(fspa), now)[1:] == [text.replace("80%", "0%").replace("before: 0%", "before: 80%")]
+
+
+def test_every_episode_that_is_named_is_there(level: Level, fspa: Fspa) -> None:
+    now = [made(index, index % 3 > 0, states=to(fspa, index % 4)) for index in range(30)]
+    known = {each.index for each in now}
+    for finding in findings(level, fspa, now, good(fspa)):
+        assert set(finding.episodes) <= known
+        assert list(finding.episodes) == sorted(set(finding.episodes))

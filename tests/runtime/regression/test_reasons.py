@@ -1,0 +1,78 @@
+"""What verdicts are founded on, in sentences."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.regression.made import PLAYED, several
+from tltl_runtime.regression.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.suite import Thresholds
+from tltl_runtime.regression.verdict import judge
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.task import load_task
+from tltlc.record import replace
+
+DEFAULT = Thresholds()
+
+
+def said(passed: int, failed: int, reward: float = 0.0) -> list[str]:
+    """The reasons of the verdict on episodes whose rewards are otherwise by ``reward`` than the baseline's."""
+    before = several(passed + failed)
+    now = [replace(each, reward=each.reward + reward) for each in several(passed, failed)]
+    judgement = judge(now, before, passed + failed, DEFAULT, 0.05)
+    assert judgement is not None
+    return list(reasons(judgement, DEFAULT, now, before))
+
+
+@pytest.mark.parametrize(
+    ("passed", "failed", "text"),
+    [
+        (40, 0, "met in 40 of 40 episodes, before in 40 of 40: certainly in 85% or more"),
+        (2, 30, "met in 2 of 32 episodes, before in 32 of 32: certainly in less than 50%"),
+        (140, 60, "met in 140 of 200 episodes, before in 200 of 200: certainly in 50% to 85%"),
+    ],
+)
+def test_what_is_certain(passed: int, failed: int, text: str) -> None:
+    assert said(passed, failed)[0] == text
+
+
+def test_what_is_not_certain() -> None:
+    (first, *_) = said(86, 14)
+    assert first.startswith("met in 86 of 100 episodes, before in 100 of 100: ")
+    assert first.endswith(" can be said for certain, and 85% are asked for")
+
+
+def test_what_has_changed() -> None:
+    assert said(60, 0, -0.3)[1:] == ["reward is lower, 0.40 on average; before: 0.70"]
+    assert said(60, 0, 0.2)[1:] == ["reward is higher, 0.90 on average; before: 0.70"]
+
+
+def test_what_nobody_can_reach_is_told_for_certain() -> None:
+    level = load_level("navigation", "v2")
+    task = load_task(level.spec)
+    first, second = obstacles(level, task.fspa)
+    assert first == (
+        "nobody reaches `s2` in `navigation:v2`, so nobody can do what `navigation` asks: "
+        "the way ends at `corridor_block_2`, which is 2.2 m high"
+    )
+    assert second == first.replace("`s2`", "`exit`")
+    open_ = load_level("navigation", "v1")
+    assert list(obstacles(open_, task.fspa)) == []
+
+
+def test_which_files_have_changed(tmp_path: Path) -> None:
+    now = replace(PLAYED, files=(("room.toml", "d" * 64), ("assets/guard.toml", "0" * 64), ("overlays/x.toml", "1")))
+    assert list(edits(now, PLAYED, "branching", "v0")) == [
+        "changed since the baseline: assets/guard.toml, overlays/x.toml"
+    ]
+    gone = replace(PLAYED, files=PLAYED.files[:1])
+    assert list(edits(gone, PLAYED, "branching", "v0")) == ["changed since the baseline: assets/guard.toml"]
+    assert list(edits(PLAYED, PLAYED, "branching", "v0")) == []
+
+
+def test_what_overlays_say_that_they_change(tmp_path: Path) -> None:
+    wide = tmp_path / "wide.toml"
+    wide.write_text('doc = "The guard sees further."\n', encoding="utf-8")
+    assert list(edits(PLAYED, PLAYED, "branching", f"v0+{wide}")) == ["The guard sees further."]
