@@ -1,0 +1,240 @@
+"""``tltlc baseline`` and ``tltlc regress``: what they say, write and refuse; the policies were never trained."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.runtime.regression.game import SUITE, write_game
+from tltl_runtime.regression.baseline import read_baseline
+from tltl_runtime.regression.run import case_folder
+from tltl_runtime.regression.suite import read_suite
+
+Run = Callable[..., Outcome]
+NAMES = ["room:v0", "room:v1", "hopeless"]
+ONE = ("--workers", "1")
+
+
+@pytest.fixture(name="recorded", scope="module")
+def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A game with its baseline and what a first run of its suite has left."""
+    folder = tmp_path_factory.mktemp("recorded") / "game"
+    write_game(folder)
+    for command in ("baseline", "regress"):
+        words = [sys.executable, "-m", "tltlc", command, "game.toml", *ONE]
+        done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+        assert done.returncode == (command == "regress"), done.stderr
+    return folder
+
+
+@pytest.fixture(name="game")
+def _game(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    shutil.copytree(recorded, tmp_path / "game")
+    monkeypatch.chdir(tmp_path / "game")
+    return tmp_path / "game"
+
+
+def verdicts(out: str) -> list[str]:
+    return [" ".join(line.split()[:2]) for line in out.splitlines() if line[0] != " "][:-1]
+
+
+def test_the_report_for_people(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--out", "new", *ONE)
+    assert found.status == 1
+    lines = found.out.splitlines()
+    assert verdicts(found.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    assert re.fullmatch(
+        r"room:v0   pass    (\d\d) of \1   progress  1\.00 \( 1\.00\)  reward  -?\d\.\d\d \( ?-?\d\.\d\d\)", lines[0]
+    )
+    assert lines[2].startswith("hopeless  fail      0 of 25   progress")
+    assert lines[3] == "    met in 0 of 25 episodes, before in 0 of 50: certainly in less than 50%"
+    assert all(line.startswith("    ") for line in lines[3:-1])
+    assert lines[-1] == "3 cases: 2 pass, 1 fail"
+    told = found.err.splitlines()
+    assert "room:v0: 25 of at most 50 episodes, 25 met the spec" in told
+    assert "hopeless: 25 of at most 50 episodes, 0 met the spec" in told
+    assert told[-1] == "wrote new/report.html: open it in a browser"
+    page = Path("new/report.html").read_text(encoding="utf-8")
+    assert page.startswith("<!DOCTYPE html>") and all(name in page for name in NAMES)
+
+
+def test_what_was_played_before_is_said_to_be(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", *ONE)
+    assert [line.endswith("  (as before)") for line in found.out.splitlines() if line[0] != " "] == [True] * 3 + [False]
+    assert found.err == "wrote regression/game/report.html: open it in a browser\n"
+    fresh = tltlc("regress", "game.toml", "--fresh", *ONE)
+    assert fresh.out == found.out.replace("  (as before)", "")
+    assert "25 of at most 50" in fresh.err
+
+
+def test_several_workers_come_to_the_same(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--out", "new", "--workers", "2")
+    assert found.out == tltlc("regress", "game.toml", *ONE).out.replace("  (as before)", "")
+    suite = read_suite(Path("game.toml"))
+    for name in NAMES:
+        ours, theirs = (case_folder(suite, name, Path(run)) / "case.json" for run in ("new", "regression/game"))
+        assert ours.read_bytes() == theirs.read_bytes()
+
+
+def test_the_report_for_programs(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--json", "-", *ONE)
+    assert found.status == 1
+    said = json.loads(found.out)
+    head = ["format", "version", "suite", "seed", "error", "complete", "left_out", "verdicts", "cases"]
+    assert list(said) == head
+    assert (said["format"], said["suite"], said["complete"]) == ("tltl-regression", "game.toml", True)
+    assert said["verdicts"] == {"pass": 2, "review": 0, "fail": 1}
+    assert [case["name"] for case in said["cases"]] == NAMES
+    for case in said["cases"]:
+        assert {"level", "variant", "verdict", "pass_rate", "progress", "reward", "baseline", "reasons"} < case.keys()
+        assert case["episodes"] == len(case["accounts"])
+        assert sum(each["success"] for each in case["accounts"]) == pytest.approx(case["pass_rate"] * case["episodes"])
+    # What people read is on standard error then.
+    assert "3 cases: 2 pass, 1 fail" in found.err
+    again = tltlc("regress", "game.toml", "--json", "report.json", *ONE)
+    assert json.loads(Path("report.json").read_text(encoding="utf-8")) == said
+    assert "3 cases: 2 pass, 1 fail" in again.out
+
+
+def test_the_report_for_continuous_integration(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("GITHUB_WORKSPACE", str(game.parent))
+    found = tltlc("regress", "game.toml", "--junit", "report.xml", "--html", "page.html", "--github", *ONE)
+    (tests,) = ET.parse("report.xml").getroot()
+    assert [len(test.findall("failure")) for test in tests.iter("testcase")] == [0, 0, 1]
+    (command,) = (line for line in found.out.splitlines() if line.startswith("::"))
+    assert command.startswith("::error file=game/game.toml,title=hopeless%3A fail::met in 0 of 25 episodes")
+    assert Path("page.html").read_bytes() == Path("regression/game/report.html").read_bytes()
+    assert found.err.splitlines()[-1] == "wrote page.html: open it in a browser"
+
+
+def test_only_what_a_change_concerns(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", *ONE, "--changed", "soon.safetensors", "README.md", "--json", "report.json")
+    assert verdicts(found.out) == ["hopeless fail"]
+    told = found.err.splitlines()
+    assert told[:2] == [
+        "no case depends on README.md",
+        "left out, since nothing has changed that they depend on: room:v0, room:v1",
+    ]
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (said["left_out"], said["complete"], len(said["cases"])) == (NAMES[:2], True, 1)
+    both = tltlc("regress", "game.toml", *ONE, "--changed", "soon", "--changed", "guard_alert.toml", "easy")
+    assert verdicts(both.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    assert "left out" not in both.err
+
+
+@pytest.mark.parametrize("words", [[], ["README.md", "src/game.py"]])
+def test_where_nothing_is_concerned(tltlc: Run, game: Path, words: list[str]) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--junit", "report.xml", *ONE, "--changed", *words)
+    assert (found.status, found.out) == (0, "no case was to be played\n")
+    assert f"left out, since nothing has changed that they depend on: {', '.join(NAMES)}" in found.err
+    assert ("no case depends on README.md, src/game.py" in found.err) == bool(words)
+    (tests,) = ET.parse("report.xml").getroot()
+    assert tests.get("tests") == "0"
+
+
+def test_a_level_that_does_not_load_fails_with_the_reason(tltlc: Run, game: Path) -> None:  # noqa: F811
+    text = Path("room.toml").read_text(encoding="utf-8")
+    Path("room.toml").write_text(text.replace("[start]", "[strat]"), encoding="utf-8")
+    found = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "room.toml")
+    assert verdicts(found.out.partition("::")[0] + "\n.")[:1] == ["room:v0 fail"]
+    assert "    it cannot be played any more\n    room.toml:" in found.out
+    commands = [line for line in found.out.splitlines() if line.startswith("::error file=room.toml,")]
+    assert len(commands) == 3
+    assert "3 cases: 3 fail" in found.out.splitlines()
+    assert found.err.splitlines()[-1].startswith("wrote regression/game/report.html")
+
+
+def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", "--github", "--json", "-")
+    assert (found.status, found.out) == (2, "")
+    assert "--github and `--json -` both need standard output" in found.err
+    Path("taken").touch()
+    found = tltlc("regress", "game.toml", "--out", "taken/run", *ONE)
+    assert (found.status, found.out) == (3, "")
+    assert found.err == (
+        "error[TLT0005]: cannot write into `taken/run`: a part of its path is a file, and no folder\n"
+        "  help: see that there is room, and that you may write there, or name another folder with --out\n"
+    )
+    found = tltlc("regress", "nowhere.toml")
+    assert found.status == 3 and "TLT0001" in found.err
+    found = tltlc("regress", "game.toml", "--junit", "nowhere/report.xml", *ONE)
+    assert found.status == 3 and "name another place with --junit" in found.err
+    Path("game.baseline.json").unlink()
+    found = tltlc("regress", "game.toml", *ONE)
+    assert (found.status, found.out) == (1, "")
+    assert found.err == (
+        "error[TLT0903]: the suite `game.toml` has no baseline: there is no `game.baseline.json`\n"
+        "  help: record it: tltlc baseline game.toml\n"
+    )
+
+
+def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
+    before = Path("game.baseline.json").read_bytes()
+    found = tltlc("baseline", "game.toml", "--output", "again.json", *ONE)
+    assert found.status == 0
+    assert found.out == "room:v0: easy met in 50 of 50 episodes\nroom:v0: soon met in 0 of 50 episodes\n"
+    told = found.err.splitlines()
+    assert "hopeless: 50 of 50 episodes, 0 met the spec" in told
+    assert told[-1] == "wrote again.json"
+    assert Path("again.json").read_bytes() == before
+    assert len(read_baseline(Path("again.json"))) == 2
+    # It is known before anything is played that it cannot be written.
+    found = tltlc("baseline", "game.toml", "--output", "nowhere/again.json", *ONE)
+    assert (found.status, found.out) == (3, "") and "name another place with --output" in found.err
+
+
+@pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
+def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str, status: int) -> None:  # noqa: F811
+    Path("game.toml").write_text(SUITE.replace('name = "hopeless"', 'name = "hopeless"\nepisodes = 10000'))
+    with_more = 'thresholds = { fail_rate = 0.0 }\nname = "hopeless"'
+    text = Path("game.toml").read_text(encoding="utf-8").replace('name = "hopeless"', with_more)
+    Path("game.toml").write_text(text, encoding="utf-8")
+    command = [sys.executable, "-m", "tltlc", "regress", "game.toml", "--json", "report.json", *ONE]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as playing:
+        assert playing.stderr is not None
+        for line in playing.stderr:
+            if line.startswith("hopeless: 25 of at most 10000"):
+                break
+        playing.send_signal(getattr(signal, name))
+        out, err = playing.communicate(timeout=60)
+    assert playing.returncode == status
+    assert verdicts(out) == ["room:v0 pass", "room:v1 pass"]
+    assert (
+        "stopped: 2 of 3 cases are judged, and kept; to go on: tltlc regress game.toml --out regression/game"
+    ) in err.splitlines()
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (said["complete"], len(said["cases"])) == (False, 2)
+    assert Path("regression/game/report.html").exists()
+    # Nobody has to wait for a lock of a process that has gone.
+    Path("game.toml").write_text(text.replace("10000", "25"), encoding="utf-8")
+    found = tltlc("regress", "game.toml", *ONE)
+    assert [line.endswith("(as before)") for line in found.out.splitlines() if line[0] != " "][:2] == [True, True]
+
+
+def test_a_baseline_that_is_stopped_leaves_the_old_one(game: Path) -> None:
+    before = Path("game.baseline.json").read_bytes()
+    Path("game.toml").write_text(SUITE.replace("episodes = 50", "episodes = 10000"), encoding="utf-8")
+    command = [sys.executable, "-m", "tltlc", "baseline", "game.toml", *ONE]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as playing:
+        assert playing.stderr is not None
+        playing.stderr.readline()
+        playing.send_signal(signal.SIGINT)
+        _, err = playing.communicate(timeout=60)
+    assert playing.returncode == 130
+    assert "stopped: nothing was written, and `game.baseline.json` is as it was" in err
+    assert Path("game.baseline.json").read_bytes() == before
+    assert sorted(path.name for path in Path().glob(".*")) == []

@@ -1,0 +1,55 @@
+"""A small game with a suite: a level of its own, and policies that nobody trained."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.runtime.evaluation.untrained import SOON, untrained
+from tests.runtime.regression.made import ROOM
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.regression.baseline import baseline_path, write_baseline
+from tltl_runtime.regression.run import record_baseline
+from tltl_runtime.regression.suite import Suite, read_suite
+
+EASY = """\
+import stealth
+spec easy { limit 20 steps  reach alive }
+"""
+"""A plan that is met at the first step."""
+
+SUITE = """\
+seed = 3
+episodes = 50
+[[case]]
+level = "room.toml"
+policy = "easy.safetensors"
+[[case]]
+level = "room.toml"
+variant = "v1"
+policy = "easy.safetensors"
+[[case]]
+level = "room.toml"
+policy = "soon.safetensors"
+name = "hopeless"
+"""
+"""Two cases that pass, and one that never met its spec."""
+
+VARIANTS = '[variants]\nv0 = []\nv1 = ["guard_alert"]\n'
+
+
+def write_game(folder: Path, suite: str = SUITE) -> Path:
+    """Write level, policies and suite; the path of the suite."""
+    folder.mkdir(exist_ok=True)
+    (folder / "room.toml").write_text(ROOM + VARIANTS, encoding="utf-8")
+    for name, spec in (("easy", EASY), ("soon", SOON)):
+        write_policy(folder / f"{name}.safetensors", untrained(spec, str(folder / "room.toml")))
+    path = folder / "game.toml"
+    path.write_text(suite, encoding="utf-8")
+    return path
+
+
+def with_baseline(path: Path) -> Suite:
+    """The suite, whose baseline is recorded."""
+    suite = read_suite(path)
+    write_baseline(baseline_path(path), tuple(record_baseline(suite, 1, lambda *_: None)))
+    return suite

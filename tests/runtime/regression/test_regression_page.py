@@ -1,0 +1,114 @@
+"""docs/regression.md says what is so: every key, every field, every number."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import DOCS, blocks
+from tests.runtime.regression.made import ROOM, case, several, suite
+from tltl_runtime.regression import confidence
+from tltl_runtime.regression import suite as suite_module
+from tltl_runtime.regression.case_report import CaseReport, Figures, figures
+from tltl_runtime.regression.confidence import rate_interval
+from tltl_runtime.regression.document import FORMAT, VERSION, document
+from tltl_runtime.regression.junit import junit
+from tltl_runtime.regression.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
+
+PAGE = (DOCS / "regression.md").read_text(encoding="utf-8")
+
+
+def rows(heading: str) -> dict[str, str]:
+    """The rows of the table whose first column is called so: the names in the first cell, and the rest."""
+    table = re.search(rf"^\| {heading} \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", PAGE, re.MULTILINE)
+    assert table, heading
+    found = {}
+    for line in table[1].splitlines():
+        first, rest = line.strip("| ").split(" | ", 1)
+        found |= dict.fromkeys(re.findall(r"`\[*([\w.]+)\]*`", first), rest)
+    return found
+
+
+def test_every_key_of_a_suite_is_told_and_no_other() -> None:
+    source = Path(suite_module.__file__).read_text(encoding="utf-8")
+    read = set(re.findall(r"(?:table|found)\.(?:number|whole|text|names|tables?)\(\"(\w+)\"", source))
+    read |= set(Thresholds.__match_args__)
+    told = {*rows("key"), *rows("key of a case"), *rows("key of thresholds")}
+    assert {name.rpartition(".")[2] for name in told} == read
+
+
+def test_the_defaults_are_those() -> None:
+    told = rows("key of thresholds")
+    assert {name: float(rest.rpartition("|")[2]) for name, rest in told.items()} == {
+        name: getattr(Thresholds(), name) for name in Thresholds.__match_args__
+    }
+    assert rows("key")["episodes"].endswith(f"| {MOST_EPISODES}")
+    assert f"in [{LEAST_EPISODES}, 10000]" in rows("key")["episodes"]
+    assert f"from {LEAST_EPISODES} episodes on, and {MOST_EPISODES} at the most" in " ".join(PAGE.split())
+
+
+def test_the_suites_of_the_page_are_suites(tmp_path: Path) -> None:
+    files = ["vault.toml", "vault.tltl", "edits/crates_moved.toml", "training/vault/policy.safetensors"]
+    for name in files:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(ROOM, encoding="utf-8")
+    texts = [block.text for block in blocks(DOCS / "regression.md") if block.kind == "toml"]
+    assert len(texts) == 2
+    for text in texts:
+        (tmp_path / "game.toml").write_text(text, encoding="utf-8")
+        assert len(read_suite(tmp_path / "game.toml").cases) == 2
+
+
+def test_every_field_of_the_report_is_told_and_no_other() -> None:
+    report = CaseReport("a", "a", "v0", "pass", (), figures=figures(several(2)), accounts=tuple(several(1)))
+    said = document(suite(case("a")), [report], complete=True)
+    assert set(rows("field")) - {"tltl"} == set(said)
+    (found,) = said["cases"]
+    assert set(rows("field of a case")) == set(found)
+    assert (FORMAT, VERSION) == ("tltl-regression", 1)
+    assert f"| `{FORMAT}`, {VERSION} |" in PAGE
+    for name in (*Figures.__match_args__, *found["accounts"][0]):
+        assert f"`{name}`" in PAGE
+    json.dumps(said, allow_nan=False)
+
+
+def test_the_properties_are_those() -> None:
+    report = CaseReport("CASE", "a", "v0", "pass", (), figures=figures(several(2)), baseline=figures(several(2)))
+    names = set(re.findall(r'name="(CASE\.\w+)"', junit(suite(case("CASE")), [report])))
+    told = set(re.findall(r"`(CASE\.\w+)`", PAGE))
+    assert told <= names
+    assert {name for name in names if "baseline" not in name} <= told
+
+
+def test_the_numbers_of_episodes_are_those() -> None:
+    def least(cases: int) -> int:
+        return next(count for count in range(25, 99) if rate_interval(count, 0, 0.05 / cases)[0] >= 0.85)
+
+    said = " ".join(PAGE.split())
+    assert f"after {least(1)} episodes, with nine after {least(9)}, with thirty after {least(30)}" in said
+    most = max(failed for failed in range(99) if rate_interval(300 - failed, failed, 0.05 / 9)[0] >= 0.85)
+    assert f"in a suite of nine cases, {most} may fail" in said
+
+
+def test_the_bets_are_those() -> None:
+    assert ", ".join(f"({steep:g}, {share:g})" for steep, share in confidence._BETS) in " ".join(PAGE.split())
+    assert f"1/{confidence._POINTS} · Σ" in PAGE
+
+
+def test_every_option_is_told() -> None:
+    from tltl_runtime.commands.regress import command
+
+    options = {option for parameter in command.params for option in parameter.opts if option.startswith("--")}
+    told = set(re.findall(r"--[a-z]+", PAGE))
+    assert options - {"--workers", "--output", "--help"} <= told
+    (text,) = (block.text for block in blocks(DOCS / "regression.md") if block.kind == "yaml")
+    (run,) = re.findall(r"- run: (tltlc regress .*)", text)
+    assert set(re.findall(r"--[a-z]+", run)) - {"--name"} <= options
+
+
+@pytest.mark.parametrize("verdict", ["pass", "review", "fail"])
+def test_verdicts_are_told(verdict: str) -> None:
+    assert rows("verdict")[verdict]

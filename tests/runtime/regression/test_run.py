@@ -1,0 +1,281 @@
+"""Suites are run, stopped and gone on with; the policies were never trained."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.regression.game import SUITE, with_baseline, write_game
+from tests.runtime.regression.made import ROOM
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.baseline import baseline_of, baseline_path
+from tltl_runtime.regression.run import Done, case_folder, forget, record_baseline, regress
+from tltl_runtime.regression.suite import Case, Suite, read_suite
+from tltl_runtime.stealth.episodes.file import read_episode
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
+
+
+class Played:
+    """How many episodes of which cases were played."""
+
+    def __init__(self) -> None:
+        self.counts: dict[str, int] = {}
+
+    def __call__(self, case: Case, count: int, last: Account) -> None:
+        assert count == self.counts.get(case.name, 0) + 1
+        assert last.index == count - 1
+        self.counts[case.name] = count
+
+
+@pytest.fixture(name="recorded", scope="module")
+def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A game with its baseline and what a first run of its suite has left in ``run``."""
+    folder = tmp_path_factory.mktemp("recorded")
+    suite = with_baseline(write_game(folder))
+    list(regress(suite, suite.cases, baseline_of(suite.path), folder / "run", 1, Played()))
+    return folder
+
+
+@pytest.fixture(name="game")
+def _game(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    shutil.copytree(recorded, tmp_path / "game")
+    monkeypatch.chdir(tmp_path / "game")
+    return tmp_path / "game"
+
+
+def running(suite: Suite, folder: str = "run", told: Played | None = None) -> Iterator[Done]:
+    return regress(suite, suite.cases, baseline_of(suite.path), Path(folder), 1, told or Played())
+
+
+def run(folder: str = "run", suite: Suite | None = None) -> tuple[list[Done], dict[str, int]]:
+    """What a run comes to, and how many episodes it played."""
+    played = Played()
+    return list(running(suite or read_suite(Path("game.toml")), folder, played)), played.counts
+
+
+def test_cases_are_judged_in_their_order(game: Path) -> None:
+    found, played = run("new")
+    assert [(done.report.name, done.report.verdict) for done in found] == [
+        ("room:v0", "pass"),
+        ("room:v1", "pass"),
+        ("hopeless", "fail"),
+    ]
+    assert played["hopeless"] == 25 and 25 < played["room:v0"] == played["room:v1"] < 50
+    for done in found:
+        report = done.report
+        assert not done.kept and done.ready and done.reference
+        assert report.figures and report.figures.episodes == len(report.accounts) == played[report.name]
+        assert [account.index for account in report.accounts] == list(range(played[report.name]))
+        assert report.recordings
+        folder = case_folder(read_suite(Path("game.toml")), report.name, Path("new"))
+        assert {path.name for path in folder.iterdir()} == {"case.json", *dict(report.recordings).values()}
+        for index, name in report.recordings:
+            assert read_episode(folder / name).seed == report.accounts[index].seed
+
+
+def test_two_runs_come_to_the_same(game: Path) -> None:
+    first, _ = run("one")
+    second, _ = run("two")
+    assert [done.report for done in first] == [done.report for done in second]
+    for path in Path("one").rglob("*.json"):
+        assert path.read_bytes() == (Path("two") / path.relative_to("one")).read_bytes()
+
+
+def test_a_kept_case_is_not_played_again(game: Path) -> None:
+    kept, played = run()
+    assert played == {} and all(done.kept for done in kept)
+    new, _ = run("new")
+    assert [done.report for done in kept] == [done.report for done in new]
+
+
+def _edit(name: str, old: str, new: str) -> None:
+    text = Path(name).read_text(encoding="utf-8")
+    assert old in text
+    Path(name).write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def _last(line: str) -> Callable[[], None]:
+    """Add a line to the suite's last case."""
+    return lambda: _edit("game.toml", 'name = "hopeless"', f'name = "hopeless"\n{line}')
+
+
+CHANGES: dict[str, tuple[Callable[[], object], list[str]]] = {
+    "threshold": (_last("thresholds = { fail_rate = 0.45 }"), ["hopeless"]),
+    "episodes": (_last("episodes = 40"), ["hopeless"]),
+    "error": (lambda: _edit("game.toml", "seed = 3", "seed = 3\nerror = 0.04"), ["room:v0", "room:v1", "hopeless"]),
+    "level": (lambda: _edit("room.toml", "8.0, 8.0", "8.0, 8.5"), ["room:v0", "room:v1", "hopeless"]),
+    "overlay": (
+        lambda: [Path("overlays").mkdir(), Path("overlays/guard_alert.toml").write_text('doc = "None."\n')],
+        ["room:v1"],
+    ),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_has_changed_is_played_again_and_nothing_else(game: Path, change: str) -> None:
+    edit, names = CHANGES[change]
+    edit()
+    found, played = run()
+    assert list(played) == names
+    assert [done.report.name for done in found if not done.kept] == names
+    assert run()[1] == {}, "and is kept again"
+
+
+def test_another_baseline_is_another_comparison(game: Path) -> None:
+    path = baseline_path(Path("game.toml"))
+    document = json.loads(path.read_text(encoding="utf-8"))
+    document["references"][0]["accounts"][0]["reward"] += 0.001
+    path.write_text(json.dumps(document), encoding="utf-8")
+    _, played = run()
+    assert list(played) == ["room:v0", "room:v1"]
+
+
+def test_a_run_that_was_stopped_goes_on(game: Path) -> None:
+    suite, played = read_suite(Path("game.toml")), Played()
+    with closing(running(suite, "new", played)) as stopped:  # type: ignore[type-var]
+        assert next(stopped).report.name == "room:v0"
+    assert list(played.counts) == ["room:v0"]
+    found, played_again = run("new")
+    assert [done.kept for done in found] == [True, False, False]
+    assert list(played_again) == ["room:v1", "hopeless"]
+
+
+def test_a_case_that_was_stopped_in_the_middle_is_played_from_its_start(game: Path) -> None:
+    class StopError(Exception):
+        pass
+
+    def told(case: Case, count: int, last: Account) -> None:
+        if case.name == "room:v1" and count == 10:
+            raise StopError
+
+    suite = read_suite(Path("game.toml"))
+    with pytest.raises(StopError):
+        list(regress(suite, suite.cases, baseline_of(suite.path), Path("new"), 1, told))
+    found, played = run("new")
+    assert [done.kept for done in found] == [True, False, False]
+    assert [done.report for done in found] == [done.report for done in run()[0]]
+    assert played["room:v1"] > 25
+
+
+@pytest.mark.parametrize("damage", ["", "{", "[" * 9999, '{"identity": 3}', None])
+def test_what_was_damaged_is_played_again(game: Path, damage: str | None) -> None:
+    folder = case_folder(read_suite(Path("game.toml")), "room:v0", Path("run"))
+    if damage is None:
+        next(folder.glob("*.episode.npz")).unlink()
+    else:
+        (folder / "case.json").write_text(damage, encoding="utf-8")
+    assert list(run()[1]) == ["room:v0"]
+
+
+def test_what_is_forgotten_is_played_again(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    forget(suite, suite.cases[1:], Path("run"))
+    forget(suite, suite.cases[1:], Path("nowhere"))
+    assert list(run()[1]) == ["room:v1", "hopeless"]
+
+
+def test_a_level_that_does_not_load_fails_its_cases_and_the_others_go_on(game: Path) -> None:
+    _edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
+    Path("hall.toml").write_text(ROOM, encoding="utf-8")
+    suite = with_baseline(Path("game.toml"))
+    Path("room.toml").write_text(ROOM.replace("size = [10.0", "siez = [10.0"), encoding="utf-8")
+    found, played = run("new", suite)
+    assert list(played) == ["hall:v0"]
+    assert [done.report.verdict for done in found] == ["fail", "fail", "fail", "pass"]
+    assert found[0].report.reasons[:2] == (
+        "it cannot be played any more",
+        "room.toml:5: TLT0802, `[bounds]` has no key `siez` (did you mean `size`?)",
+    )
+    assert found[0].report.figures is None and not found[0].kept
+    # It is tried again each time.
+    assert not run("new", suite)[0][0].kept
+
+
+def test_a_policy_that_does_not_fit_fails_its_case(game: Path) -> None:
+    Path("hall.toml").write_text(
+        ROOM.replace('[[exit]]\nname = "exit"', '[[exit]]\nname = "way_out"'), encoding="utf-8"
+    )
+    _edit("game.toml", 'variant = "v1"', "")
+    _edit("game.toml", 'level = "room.toml"\n\npolicy', 'level = "hall.toml"\npolicy')
+    found, played = run("new")
+    assert list(played) == ["room:v0", "hopeless"]
+    (report,) = (done.report for done in found if done.report.name == "hall:v0")
+    assert report.verdict == "fail"
+    assert "TLT0843, the policy senses the entity `exit`, which the level `hall` does not have" in report.reasons[1]
+
+
+def test_a_level_that_a_player_leaves_fails_its_case_and_the_others_go_on(game: Path) -> None:
+    _edit("room.toml", "size = [10.0, 10.0, 4.5]", "size = [10.0, 10.0, 2.4]")
+    found, _ = run("new")
+    assert [done.report.name for done in found] == ["room:v0", "room:v1", "hopeless"]
+    report = found[2].report
+    assert report.verdict == "fail" and "TLT0806" in report.reasons[1]
+
+
+def test_a_case_that_the_baseline_lacks_is_told_before_anything_is_played(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    references = tuple(each for each in baseline_of(suite.path) if each.played.spec != "soon")
+    played = Played()
+    with pytest.raises(TltlError) as error:
+        list(regress(suite, suite.cases, references, Path("new"), 1, played))
+    assert [found.code for found in error.value.diagnostics] == ["TLT0903"]
+    assert (played.counts, Path("new").exists()) == ({}, False)
+    # What is not asked for may be missing.
+    assert len(list(regress(suite, suite.cases[:2], references, Path("new"), 1, played))) == 2
+
+
+def test_a_folder_that_cannot_be_written_is_told_before_anything_is_played(game: Path) -> None:
+    Path("file").touch()
+    played = Played()
+    for place in ("file", "file/run"):
+        with pytest.raises(TltlError) as error:
+            list(running(read_suite(Path("game.toml")), place, played))
+        assert [found.code for found in error.value.diagnostics] == ["TLT0005"]
+    assert played.counts == {}
+
+
+def test_a_folder_belongs_to_one_run_at_a_time(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    first = running(suite)
+    next(first)
+    with pytest.raises(TltlError) as error:
+        next(running(suite))
+    (found,) = error.value.diagnostics
+    assert (found.code, found.title) == ("TLT0904", "another run of `tltlc regress` plays in `run`")
+    assert next(running(suite, "new")).report.verdict == "pass", "elsewhere there is room"
+    assert len(list(first)) == 2
+    assert len(list(running(suite))) == 3
+
+
+def test_a_case_may_be_called_anything(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    names = ["..", "a/b", "a:b", "a-b", ".", "/", "…", "a\0b"]
+    odd = replace(suite, cases=tuple(replace(suite.cases[0], name=name) for name in names))
+    folders = [case_folder(odd, name, Path("new")) for name in names]
+    assert len(set(folders)) == len(names)
+    assert all(folder.parent == Path("new") and folder.name.strip(".") for folder in folders)
+
+
+def test_a_baseline_plays_each_place_once_and_all_of_its_episodes(game: Path) -> None:
+    suite, played = read_suite(Path("game.toml")), Played()
+    found = list(record_baseline(suite, 1, played))
+    assert [(each.played.spec, each.played.variant, len(each.accounts)) for each in found] == [
+        ("easy", "v0", 50),
+        ("soon", "v0", 50),
+    ]
+    assert played.counts == {"room:v0": 50, "hopeless": 50}
+    assert tuple(found) == baseline_of(suite.path)
+
+
+def test_a_baseline_of_what_cannot_be_played_is_refused_before_anything_is_played(game: Path) -> None:
+    Path("soon.safetensors").write_bytes(b"no policy")
+    played = Played()
+    with pytest.raises(TltlError, match="TLT0840"):
+        list(record_baseline(read_suite(Path("game.toml")), 1, played))
+    assert played.counts == {}
