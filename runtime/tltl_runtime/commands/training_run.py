@@ -18,6 +18,7 @@ from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.record_json import to_json
 from tltl_runtime.stealth.env import check_fit, spec_of
 from tltl_runtime.stealth.levels.file import level_path, load_level
+from tltl_runtime.stealth.levels.place import absolute_variant, level_place
 from tltl_runtime.stealth.senses.sensors import chosen
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
@@ -31,7 +32,6 @@ from tltl_runtime.training.settings_file import Method, read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source, reading_error
 from tltlc.record import record, replace
-from tltlc.spec_file import split
 
 T = TypeVar("T")
 
@@ -62,7 +62,7 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     if asked.level is None and asked.spec is not None and names_level(asked.spec):
         asked = replace(asked, level=asked.spec, spec=None)
     if asked.level is not None:
-        path, variant = split(asked.level)
+        path, variant = level_place(asked.level)
     elif asked.spec is not None:
         path, variant = own_level(asked.spec), None
     else:
@@ -84,7 +84,7 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
         fspa=task.fspa,
         params=task.params,
         level=path,
-        variant=level.variant,
+        variant=variant or "v0",
         sensors=sensors,
         settings=settings,
         seed=seed,
@@ -139,7 +139,7 @@ def _at_its_level(run: Run, asked: Asked) -> Run:
     if asked.level is None:
         check_there(run.level, run.variant, f"tltlc train --resume {quote(str(run.folder))}")
         return run
-    path, variant = split(asked.level)
+    path, variant = level_place(asked.level)
     if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):
         return run
     return replace(run, level=path, variant=variant or "v0")
@@ -204,8 +204,9 @@ def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
     """In what a training differs from what is asked for, a sentence each."""
     where = f"the training in `{run.folder}`"
     if asked.level is not None:
-        path, variant = split(asked.level)
-        if (level_path(path).resolve(), variant or "v0") != (level_path(run.level).resolve(), run.variant):
+        path, variant = level_place(asked.level)
+        ours = level_path(run.level).resolve(), absolute_variant(run.variant)
+        if (level_path(path).resolve(), absolute_variant(variant or "v0")) != ours:
             yield f"{where} is on the level `{run.level}:{run.variant}`, not on `{path}:{variant or 'v0'}`"
     if asked.spec is not None:
         fspa, _ = read_spec(asked.spec)

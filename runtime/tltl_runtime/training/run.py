@@ -18,6 +18,7 @@ from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.stealth.episodes.file import MAX_BYTES
 from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.levels.file import level_path, load_level
+from tltl_runtime.stealth.levels.place import absolute_variant
 from tltl_runtime.training.demonstrations import recordings
 from tltl_runtime.training.settings import Settings, read_settings
 from tltlc.automaton.fspa import Fspa
@@ -91,6 +92,7 @@ def write_run(run: Run) -> None:
         "version": _VERSION,
         **{name: to_json(getattr(run, name)) for name in _PLAIN},
         "level": level,
+        "variant": absolute_variant(run.variant),
         "demonstrations": run.demonstrations and str(Path(run.demonstrations).absolute()),
         "level_hash": level_hash(load_level(run.level, run.variant)),
         "artefact": json.loads(artefact),

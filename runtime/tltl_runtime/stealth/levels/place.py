@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from pathlib import Path
 from typing import Final
 
 _PLACE: Final = re.compile(r"(.+?):([A-Za-z_][A-Za-z0-9_]*(?:\+[^+]+)*)\Z", re.DOTALL)
@@ -21,3 +22,8 @@ def level_place(argument: str) -> tuple[str, str | None]:
     if len(level) == 1 and level.isalpha() and os.name == "nt":
         return argument, None
     return level, variant
+
+
+def absolute_variant(variant: str) -> str:
+    """The variant with the paths of its overlays made absolute, for whoever loads it from another folder."""
+    return "+".join(str(Path(each).absolute()) if each.endswith(".toml") else each for each in variant.split("+"))
