@@ -16,6 +16,7 @@ from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.workers import WorkersType
+from tltl_runtime.commands.writable import check_writable
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.record import record
@@ -116,6 +117,7 @@ def command(
         from tltl_runtime.regression.run import forget
         from tltl_runtime.regression.suite import SHIPPED, read_suite
 
+        check_writable({"--json": None if wanted.is_json else json_file, "--junit": junit_file, "--html": html_file})
         read = read_suite(suite or SHIPPED)
         cases, left_out = _chosen(read, named)
         references = baseline_of(read.path) if cases else ()

@@ -171,8 +171,13 @@ def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
     )
     found = tltlc("regress", "nowhere.toml")
     assert found.status == 3 and "TLT0001" in found.err
-    found = tltlc("regress", "game.toml", "--junit", "nowhere/report.xml", *ONE)
-    assert found.status == 3 and "name another place with --junit" in found.err
+    for option in ("--json", "--junit", "--html"):
+        found = tltlc("regress", "game.toml", "--fresh", option, "nowhere/report", *ONE)
+        assert (found.status, found.out) == (3, ""), "nothing was played"
+        assert found.err == (
+            "error[TLT0005]: cannot write `nowhere/report`: there is no such folder\n"
+            f"  help: name another place with {option}\n"
+        )
     Path("game.baseline.json").unlink()
     found = tltlc("regress", "game.toml", *ONE)
     assert (found.status, found.out) == (1, "")

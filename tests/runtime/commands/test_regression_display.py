@@ -1,0 +1,45 @@
+"""How far a suite is, on a terminal and elsewhere."""
+
+from __future__ import annotations
+
+import io
+import re
+import sys
+
+import pytest
+
+from tests.runtime.regression.made import case, made
+from tltl_runtime.commands.regression_display import RegressionDisplay
+from tltlc.record import replace
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_elsewhere_a_line_now_and_then(capsys: pytest.CaptureFixture[str]) -> None:
+    with RegressionDisplay("at most") as display:
+        for name, episodes in (("one", 60), ("other", 30)):
+            for count in range(1, episodes + 1):
+                display(replace(case(name), episodes=episodes), count, made(count - 1, count % 2 == 0))
+            display.over()
+    assert capsys.readouterr().err.splitlines() == [
+        "one: 25 of at most 60 episodes, 12 met the spec",
+        "one: 50 of at most 60 episodes, 25 met the spec",
+        "one: 60 of at most 60 episodes, 30 met the spec",
+        "other: 25 of at most 30 episodes, 12 met the spec",
+        "other: 30 of at most 30 episodes, 15 met the spec",
+    ]
+
+
+def test_on_a_terminal_a_bar_that_goes_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    with RegressionDisplay("at most") as display:
+        for count in (1, 2, 3):
+            display(replace(case("[b]odd"), episodes=50), count, made(count - 1, count != 2))
+        display.over()
+        drawn = sys.stderr.getvalue()  # type: ignore[attr-defined]
+    assert "[b]odd: 2 of 3 met" in re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", drawn)
+    assert drawn.rstrip().endswith("\x1b[2K") or "\x1b[1A\x1b[2K" in drawn
