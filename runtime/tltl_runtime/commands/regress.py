@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
 from shlex import join, quote
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from tltl_runtime.regression.dependencies import Selection
     from tltl_runtime.regression.run import Done
     from tltl_runtime.regression.suite import Case, Suite
+
+_MOST_NAMED: Final = 8
+"""Of the files on which no case depends, as many are named."""
 
 
 def _file(*, dash: bool = False) -> click.Path:
@@ -144,7 +147,8 @@ def _chosen(suite: Suite, changed: Sequence[str] | None) -> tuple[tuple[Case, ..
 
     found: Selection = select(suite, changed)
     if found.unknown:
-        click.echo(f"no case depends on {', '.join(found.unknown)}", err=True)
+        more = f" and {count} more" if (count := len(found.unknown) - _MOST_NAMED) > 0 else ""
+        click.echo(f"no case depends on {', '.join(found.unknown[:_MOST_NAMED])}{more}", err=True)
     left_out = tuple(case.name for case in found.left_out)
     if left_out:
         click.echo(f"left out, since nothing has changed that they depend on: {', '.join(left_out)}", err=True)
