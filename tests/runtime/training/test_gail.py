@@ -96,7 +96,8 @@ def test_equal_trainings_give_equal_numbers_and_so_do_equal_checkpoints(
     again = replace(run, folder=folder / "again")
     assert numbers(list(train(again))) == numbers(reports)
     assert equal(checkpoint_of(run).algorithm, checkpoint_of(again).algorithm)
-    longer = [replace(each, settings=imitating(folder, mine, stop__steps=320).settings) for each in (run, again)]
+    shutil.copytree(run.folder, folder / "copy")
+    longer = [imitating(folder / name, mine, stop__steps=320) for name in ("again", "copy")]
     resumed = [list(train(each, resume=True)) for each in longer]
     assert [each.iteration.number for each in resumed[0]] == [4, 5]
     assert numbers(resumed[0]) == numbers(resumed[1])
@@ -227,7 +228,7 @@ def test_an_algorithm_that_cannot_imitate_is_refused(tmp_path: Path, mine: Path)
     with pytest.raises(TltlError) as caught:
         next(train(run))
     assert "TLT0862" in str(caught.value)
-    assert "subclass of tltl_runtime.training.gail:Gail" in str(caught.value)
+    assert "no subclass of Gail" in str(caught.value)
 
 
 def test_what_is_shown_is_what_is_done(mine: Path, tmp_path: Path) -> None:
