@@ -200,9 +200,9 @@ def _tell(outcome: Outcome, wanted: _Wanted) -> None:
     if wanted.is_json:
         click.echo(json_text(outcome), nl=False)
     if wanted.github:
-        from tltl_runtime.regression.github import annotations
+        from tltl_runtime.regression.github import findings_as_commands
 
-        for line in annotations(outcome.suite, reports, Path(os.environ.get("GITHUB_WORKSPACE") or ".")):
+        for line in findings_as_commands(outcome.suite, reports, Path(os.environ.get("GITHUB_WORKSPACE") or ".")):
             click.echo(line)
     write_reports(outcome, None if wanted.is_json else wanted.json_file, wanted.junit_file)
     if outcome.cases or wanted.html_file:

@@ -15,7 +15,7 @@ from tltlc.diagnostics.formats.github import workflow_command
 _COMMANDS: Final = {"fail": "error", "review": "warning"}
 
 
-def annotations(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
+def findings_as_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
     """An ``::error`` for each case that fails, a ``::warning`` for each to be reviewed.
 
     The file is one that has changed since the baseline, else the level that does not load, else the suite; its path

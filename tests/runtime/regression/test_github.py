@@ -10,7 +10,7 @@ import pytest
 
 from tests.runtime.regression.made import PLAYED, ROOM, reference
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.github import annotations
+from tltl_runtime.regression.github import findings_as_commands
 from tltl_runtime.regression.suite import Suite, read_suite
 from tltlc.record import replace
 
@@ -30,7 +30,7 @@ def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
 
 
 def annotated(suite: Suite, report: CaseReport, root: str = "..") -> tuple[str, ...]:
-    (line,) = annotations(suite, [report], Path(root))
+    (line,) = findings_as_commands(suite, [report], Path(root))
     found = COMMAND.fullmatch(line)
     assert found, line
     return tuple(map(unquote, found.groups()))
@@ -44,10 +44,10 @@ def test_each_finding_is_a_command(suite: Suite) -> None:
         "the room: 100%, v0: fail",
         "dies: 100% of\n  them\nmore",
     )
-    (line,) = annotations(suite, [report], Path(".."))
+    (line,) = findings_as_commands(suite, [report], Path(".."))
     assert "title=the room%3A 100%25%2C v0%3A fail::dies: 100%25 of%0A  them%0Amore" in line
     assert annotated(suite, replace(report, verdict="review"))[0] == "warning"
-    assert list(annotations(suite, [replace(report, verdict="pass")], Path())) == []
+    assert list(findings_as_commands(suite, [replace(report, verdict="pass")], Path())) == []
 
 
 def test_the_file_is_what_has_changed(suite: Suite) -> None:
