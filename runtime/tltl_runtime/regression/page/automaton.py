@@ -18,6 +18,8 @@ from tltlc.record import record, replace
 _NUMBER: Final = re.compile(r"-?\d+(?:\.\d+)?")
 _TITLE: Final = "{http://www.w3.org/1999/xlink}title"
 _THINNEST, _THICKEST = 0.8, 7.0
+_HEIGHT, _MARGIN = 12.0, 4.0
+"""Of a letter, and around the picture, in its units."""
 _LETTER: Final = 6.4
 """Width of a figure of a badge, in the units of the picture."""
 
@@ -73,13 +75,14 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
             _mark_edge(group, title, (source, target), whole, now, before)
         else:
             group.remove(title)
-    _, _, width, height = _NUMBER.findall(root.get("viewBox", ""))
+    _, _, width, height = map(float, _NUMBER.findall(root.get("viewBox", "")))
+    top = _top(root)
     root.attrib = {
         "class": "automaton",
-        "viewBox": f"0 0 {width} {height}",
+        "viewBox": f"0 {short(top)} {short(width)} {short(height - top)}",
         "role": "img",
         "aria-label": f"The automaton of the spec {fspa.name}; the table below has its numbers.",
-        "style": f"--width: {float(width):.0f}",
+        "style": f"--width: {width:.0f}",
     }
     return Markup(ElementTree.tostring(root, encoding="unicode", short_empty_elements=True))
 
@@ -144,6 +147,18 @@ def _extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
     points = list(_points(group))
     xs, ys = [x for x, _ in points], [y for _, y in points]
     return min(xs), min(ys), max(xs), max(ys)
+
+
+def _top(root: ElementTree.Element) -> float:
+    """Where the graph itself begins, below the name of the spec, which is left out; in the units of the view box."""
+    (graph,) = (each for each in root if each.get("class") == "graph")
+    groups = [each for each in graph if each.get("class") is not None]
+    for each in set(graph) - set(groups):
+        graph.remove(each)
+    ys = [y for group in groups for _, y in _points(group)]
+    ys += [float(each.get("y", 0)) - _HEIGHT for group in groups for each in group.iter("text")]
+    moved = float(_NUMBER.findall(graph.get("transform", "").rpartition("translate")[2])[1])
+    return max(0.0, min(ys) + moved - _MARGIN)
 
 
 def _points(group: ElementTree.Element) -> Iterator[tuple[float, float]]:

@@ -50,7 +50,7 @@ def _way(bounds: Box, account: Account) -> dict[str, Any]:
         "x": across(bounds, [x for x, _, _ in account.way]),
         "y": down(bounds, [y for _, y, _ in account.way]),
         "state": runs(state for _, _, state in account.way),
-        "place": [across(bounds, [place[0]])[0], down(bounds, [place[1]])[0]],
+        "place": [across(bounds, place[:1]), down(bounds, place[1:2])],
     }
 
 

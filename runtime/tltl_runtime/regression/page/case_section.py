@@ -45,14 +45,17 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
         *_why(report, case.episodes, slug),
     ]
     if level is not None and fspa is not None and drawn is not None:
+        now, before = traffic(report.accounts), traffic(case.before)
         parts += [
             _toggles(case.before),
-            element("h3", "Automaton"),
-            *_automaton(fspa, drawn, traffic(report.accounts), traffic(case.before)),
+            element("h3", "Automaton", class_="automaton-title"),
+            *_automaton(fspa, drawn, now, before),
             element("h3", "Map"),
             element("div", _map(level), player_panel(fspa, case.episodes), class_="stage"),
             element("h3", "Progress"),
             element("div", *_curves(case), class_="curves"),
+            element("h3", "States"),
+            element("details", element("summary", "The automaton as a table"), counts_table(fspa, now, before)),
         ]
     return element(
         "section",
@@ -105,13 +108,12 @@ def _links(finding: Finding, episodes: Mapping[int, Episode], slug: str) -> Mark
 
 
 def _automaton(fspa: Fspa, drawn: Drawn, now: Traffic, before: Traffic) -> Iterator[Markup]:
-    """The picture, what it does not show, and its numbers as a table, for which no picture is needed."""
+    """The picture, and what it does not show."""
     if drawn.svg is not None:
         inside = picture(fspa, drawn.svg, now, before)
         yield element("div", inside, class_="scroll", tabindex=0, role="group", aria_label="Automaton")
         yield element("p", _KEY, class_="hint")
     yield from (element("p", note, class_="warning") for note in drawn.notes)
-    yield element("details", element("summary", "The numbers as a table"), counts_table(fspa, now, before))
 
 
 def _map(level: Level) -> Markup:

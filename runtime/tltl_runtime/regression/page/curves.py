@@ -32,7 +32,7 @@ def progress_curves(episodes: Mapping[int, Episode]) -> Markup:
     ]
     # The page moves it to the moment that it shows.
     scale = {"data_left": _LEFT, "data_right": _WIDTH - _RIGHT, "data_seconds": short(frame.x_most)}
-    cursor = element("line", class_="cursor", y1=_TOP, y2=_HEIGHT - _BOTTOM, hidden=True, **scale)
+    cursor = element("line", class_="cursor", y1=_TOP, y2=_HEIGHT - _BOTTOM, hidden="hidden", **scale)
     words = "Progress over time of the recorded episodes"
     return _diagram(words, frame, "time, s", [*lines, cursor], frame.x_ticks(whole=True))
 

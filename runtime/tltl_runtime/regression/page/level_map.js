@@ -54,7 +54,8 @@ class LevelMap {
     for (const way of ways) {
       const by = way.by.length ? `, ${way.by.join(", ")}` : "";
       const address = link(way.index);
-      const mark = this.#mark(way.end, way.place, `episode ${way.index}: ${way.cause}${by}`, address);
+      const place = way.place.flatMap(unstepped);
+      const mark = this.#mark(way.end, place, `episode ${way.index}: ${way.cause}${by}`, address);
       if (!address) mark.classList.add("unrecorded");
     }
   }

@@ -5,6 +5,7 @@ Its units are centimetres from the north-western corner of the level's bounds, x
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from math import cos, pi, sin
 from typing import Any, Final
@@ -65,7 +66,7 @@ def map_key(level: Level) -> Markup:
         **{f"solid {kind}": kind in solids for kind in ("platform", "low", "wall")},
     }
     rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if there.get(kind, True)]
-    return element("ul", *rows, class_="legend key", aria_label="Signs of the map")
+    return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
 
 
 def map_data(level: Level) -> dict[str, Any]:
@@ -152,10 +153,14 @@ def _entities(level: Level, plan: _Plan) -> Iterable[Markup]:
 
 
 def _names(level: Level, plan: _Plan) -> Iterable[Markup]:
+    lines: Counter[tuple[int, int]] = Counter()
     for region in level.regions:
-        (x0, y0, _), (x1, y1, _) = region.box.low, region.box.high
-        x, y = plan.at(((x0 + x1) / 2, (y0 + y1) / 2))
-        yield element("text", region.name.replace("_", " "), class_="region-name", x=x, y=y)
+        corner = plan.at((region.box.low[0], region.box.high[1]))
+        # Regions that begin at the same place have their names below each other.
+        lines[corner] += 1
+        words = {"dx": "0.4em", "dy": f"{1.2 * lines[corner]:.1f}em"}
+        x, y = corner
+        yield element("text", region.name.replace("_", " "), class_="region-name", x=x, y=y, **words)
     named = [(each.name, each.position, 35) for each in (*level.switches, *level.exits)]
     for barrier in level.barriers:
         low, high = barrier.box.low, barrier.box.high

@@ -2,10 +2,26 @@
 
 // Unpacks what packing.py has packed.
 
-/** The values of which `steps` has the first one, and by how much each differs from the one before. */
+const DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/** The values of which `steps` has the first one, and what each is more than the last, in base 64 VLQ. */
 function unstepped(steps) {
+  const values = [];
   let value = 0;
-  return steps.map((step) => (value += step));
+  let number = 0;
+  let weight = 1;
+  for (const letter of steps) {
+    const digit = DIGITS.indexOf(letter);
+    number += (digit % 32) * weight;
+    weight *= 32;
+    if (digit < 32) {
+      value += number % 2 ? -(number - 1) / 2 : number / 2;
+      values.push(value);
+      number = 0;
+      weight = 1;
+    }
+  }
+  return values;
 }
 
 /** The values of which `runs` has pairs: a value, and how often it stands there. */
@@ -18,7 +34,7 @@ function unpackedEpisode(packed) {
   const way = ({ x, y }) => ({ x: unstepped(x), y: unstepped(y) });
   return {
     ...packed,
-    time: unstepped(unrun(packed.time)),
+    time: unstepped(packed.time),
     state: unrun(packed.state),
     progress: unrun(packed.progress),
     health: unrun(packed.health),

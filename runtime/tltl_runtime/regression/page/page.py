@@ -8,7 +8,7 @@ from pathlib import Path
 from string import Template
 from typing import Any, Final
 
-from tltl_runtime.regression.page.automaton import drawn
+from tltl_runtime.regression.page.automaton import Drawn, drawn
 from tltl_runtime.regression.page.case_data import case_data
 from tltl_runtime.regression.page.case_section import case_section
 from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
@@ -17,6 +17,7 @@ from tltl_runtime.regression.page.slugs import slugs
 from tltl_runtime.regression.page.style import colours
 from tltl_runtime.regression.page.summary import summary
 from tltl_runtime.stealth.pictures.plan import state_colour
+from tltlc.automaton.fspa import Fspa
 
 __all__ = ["ReportedCase", "SuiteReport", "html_report"]
 
@@ -32,7 +33,8 @@ def html_report(suite: SuiteReport) -> str:
     names = slugs([case.report.name for case in suite.cases])
     pairs = list(zip(suite.cases, names, strict=True))
     # Variants of a level share their spec: each is laid out once.
-    pictures = {fspa: drawn(fspa) for fspa in {case.fspa: None for case in suite.cases} if fspa is not None}
+    automata = {case.fspa: None for case in suite.cases}
+    pictures: dict[Fspa | None, Drawn] = {fspa: drawn(fspa) for fspa in automata if fspa is not None}
     script = "\n".join(_asset(name) for name in _SCRIPTS)
     return Template(_asset("report.html")).substitute(
         title=element("title", f"{suite.suite}: regression report"),

@@ -64,7 +64,7 @@ class Player {
     this.which.value = "";
     this.controls.hidden = true;
     this.section.classList.remove("playing");
-    this.cursor.hidden = true;
+    this.cursor.setAttribute("hidden", "hidden");
     for (const curve of this.curves) curve.classList.remove("current");
     this.#highlight(null);
   }
@@ -189,7 +189,6 @@ class Player {
     const x = Number(left) + (seconds / Number(most)) * (Number(right) - Number(left));
     this.cursor.setAttribute("x1", x);
     this.cursor.setAttribute("x2", x);
-    this.cursor.hidden = false;
     this.cursor.removeAttribute("hidden");
   }
 }

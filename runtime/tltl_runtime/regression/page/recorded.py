@@ -26,7 +26,7 @@ def recorded(index: int, episode: Episode) -> dict[str, Any]:
         "end": episode.end,
         "success": episode.success,
         "why": cause(episode).text,
-        "time": runs(steps((shot.time for shot in shots), 1000)),
+        "time": steps((shot.time for shot in shots), 1000),
         "state": runs(episode.states.tolist()),
         "progress": runs(_scaled(episode.progress.tolist(), 1000)),
         "health": runs(_scaled([shot.health for shot in shots], 100)),
@@ -51,11 +51,11 @@ def recorded(index: int, episode: Episode) -> dict[str, Any]:
     }
 
 
-def _way(points: Sequence[Point], bounds: Box) -> dict[str, list[int]]:
+def _way(points: Sequence[Point], bounds: Box) -> dict[str, str]:
     return {"x": across(bounds, [x for x, _, _ in points]), "y": down(bounds, [y for _, y, _ in points])}
 
 
-def _turns(yaws: Sequence[float]) -> list[int]:
+def _turns(yaws: Sequence[float]) -> str:
     """In degrees without a jump at half a turn, so that what lies between two rows can be drawn."""
     return steps((degrees(yaw) for yaw in np.unwrap(yaws).tolist()), 1)
 

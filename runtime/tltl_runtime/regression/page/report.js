@@ -106,6 +106,9 @@ class Report {
     );
     for (const view of this.views.values()) near.observe(view.section);
     addEventListener("hashchange", () => this.#follow());
+    addEventListener("beforeprint", () => {
+      for (const view of this.views.values()) view.drawOnce();
+    });
     document.addEventListener("keydown", (event) => this.#press(event));
     this.#follow();
   }
@@ -126,7 +129,7 @@ class Report {
     else if (view?.player.episode) view.showAll();
     // Who chose the episode on the map or in the list looks at it already.
     if (section.querySelector(".stage")?.contains(document.activeElement)) return;
-    (isOpen ? section.querySelector(".toggles") : section).scrollIntoView();
+    (isOpen ? section.querySelector(".automaton-title") : section).scrollIntoView();
   }
 
   /** The address follows the player, but not at every frame. */

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.skipif(bool(chromium.MISSING), reason=f"not installed: {', '.join(chromium.MISSING)}")
 
+if not chromium.MISSING:
+    from playwright.sync_api import expect
+
 CASE = "cover_and_hide-v0"
 WIDE = {"viewport": {"width": 1280, "height": 900}}
 NARROW = {"viewport": {"width": 360, "height": 740}}
@@ -64,7 +67,7 @@ def test_the_table_has_a_row_for_each_case(tab: Tab) -> None:
     assert rows.locator(".verdict").all_inner_texts() == ["pass", "fail", "fail"]
     rows.nth(1).locator("th a").click()
     assert tab.url.endswith(f"#{CASE}")
-    tab.wait_for_function(f"Math.abs(document.querySelector('#{CASE}').getBoundingClientRect().top) < 60")
+    expect(tab.locator(f"#{CASE} h2")).to_be_in_viewport()
 
 
 def test_the_filter_leaves_findings(tab: Tab) -> None:
@@ -111,7 +114,7 @@ def test_scrubbing_shows_the_state_the_values_and_the_map_of_a_step(browser: Bro
             assert found == pytest.approx([100 * (x - level.bounds.low[0]), 100 * (level.bounds.high[1] - y)], abs=0.51)
         assert place.get_attribute("cx") != start
         assert tab.locator(f"#{CASE} .map .cone").count() == len(episode.level.enemies)
-        tab.wait_for_function(f"location.hash === '#{CASE}/0/{len(states) - 1}'")
+        expect(tab).to_have_url(re.compile(f"#{CASE}/0/{len(states) - 1}$"))
 
 
 def test_keys_play_and_step(browser: Browser, file: Path) -> None:
@@ -122,7 +125,7 @@ def test_keys_play_and_step(browser: Browser, file: Path) -> None:
             assert moment.inner_text().startswith(f"step {step} of ")
         tab.keyboard.press(" ")
         assert tab.locator(f"#{CASE} .play").get_attribute("aria-label") == "pause"
-        tab.wait_for_function(f"parseInt(document.querySelector('#{CASE} .moment').textContent.slice(5)) >= 3")
+        expect(moment).to_have_text(re.compile(r"step ([3-9]|\d\d) of"))
         tab.keyboard.press(" ")
         text = moment.inner_text()
         tab.wait_for_timeout(400)
