@@ -161,7 +161,8 @@ def _names(level: Level, plan: _Plan) -> Iterable[Markup]:
         words = {"dx": "0.4em", "dy": f"{1.2 * lines[corner]:.1f}em"}
         x, y = corner
         yield element("text", region.name.replace("_", " "), class_="region-name", x=x, y=y, **words)
-    named = [(each.name, each.position, 35) for each in (*level.switches, *level.exits)]
+    named = [(switch.name, switch.position, 35) for switch in level.switches]
+    named += [(way_out.name, way_out.position, 35) for way_out in level.exits]
     for barrier in level.barriers:
         low, high = barrier.box.low, barrier.box.high
         named.append((barrier.name, ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]), 0))

@@ -56,8 +56,8 @@ def _row(report: CaseReport, slug: str) -> Markup:
     cells = (
         ("Verdict", badge(report.verdict)),
         ("Met", _met(now, before) if now else "–"),
-        ("Progress", _against(now.progress.mean, before and before.progress.mean) if now else "–"),
-        ("Reward", _against(now.reward.mean, before and before.reward.mean) if now else "–"),
+        ("Progress", _against(now.progress.mean, before.progress.mean if before else None) if now else "–"),
+        ("Reward", _against(now.reward.mean, before.reward.mean if before else None) if now else "–"),
         ("Why", reason),
     )
     name = element("th", element("a", report.name, href=f"#{slug}"), scope="row")
