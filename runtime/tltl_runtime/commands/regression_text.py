@@ -13,8 +13,10 @@ _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
 
 def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
     """The lines on a case, whose name is given ``width`` columns."""
-    verdict = click.style(f"{report.verdict:<6}", fg=_COLORS[report.verdict], bold=True)
-    yield f"{report.name:<{width}}  {verdict}  {_figures(report)}{'  (as before)' if kept else ''}".rstrip()
+    verdict = click.style(report.verdict, fg=_COLORS[report.verdict], bold=True)
+    # Blanks stand outside of the colour, so that none is left at the end of a line.
+    beside = f"{' ' * (6 - len(report.verdict))}  {_figures(report)}{'  (as before)' if kept else ''}"
+    yield f"{report.name:<{width}}  {verdict}{beside.rstrip()}"
     if report.verdict != "pass":
         yield from (f"    {reason}" for reason in report.reasons)
 

@@ -150,8 +150,7 @@ def test_a_level_that_does_not_load_fails_with_the_reason(tltlc: Run, game: Path
     text = Path("room.toml").read_text(encoding="utf-8")
     Path("room.toml").write_text(text.replace("[start]", "[strat]"), encoding="utf-8")
     found = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "room.toml")
-    assert verdicts(found.out.partition("::")[0] + "\n.")[:1] == ["room:v0 fail"]
-    assert "    it cannot be played any more\n    room.toml:" in found.out
+    assert found.out.startswith("room:v0   fail\n    it cannot be played any more\n    room.toml:")
     commands = [line for line in found.out.splitlines() if line.startswith("::error file=room.toml,")]
     assert len(commands) == 3
     assert "3 cases: 3 fail" in found.out.splitlines()
@@ -204,9 +203,9 @@ def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
 
 @pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
 def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str, status: int) -> None:  # noqa: F811
-    Path("game.toml").write_text(SUITE.replace('name = "hopeless"', 'name = "hopeless"\nepisodes = 10000'))
-    with_more = 'thresholds = { fail_rate = 0.0 }\nname = "hopeless"'
-    text = Path("game.toml").read_text(encoding="utf-8").replace('name = "hopeless"', with_more)
+    # One that never meets its spec, and may: thousands of episodes would tell.
+    endless = 'name = "hopeless"\nepisodes = 10000\nthresholds = { pass_rate = 0.001, fail_rate = 0.0005 }'
+    text = SUITE.replace('name = "hopeless"', endless)
     Path("game.toml").write_text(text, encoding="utf-8")
     command = [sys.executable, "-m", "tltlc", "regress", "game.toml", "--json", "report.json", *ONE]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as playing:
@@ -215,7 +214,7 @@ def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str
             if line.startswith("hopeless: 25 of at most 10000"):
                 break
         playing.send_signal(getattr(signal, name))
-        out, err = playing.communicate(timeout=60)
+        out, err = playing.communicate(timeout=300)
     assert playing.returncode == status
     assert verdicts(out) == ["room:v0 pass", "room:v1 pass"]
     assert (
@@ -238,7 +237,7 @@ def test_a_baseline_that_is_stopped_leaves_the_old_one(game: Path) -> None:
         assert playing.stderr is not None
         playing.stderr.readline()
         playing.send_signal(signal.SIGINT)
-        _, err = playing.communicate(timeout=60)
+        _, err = playing.communicate(timeout=300)
     assert playing.returncode == 130
     assert "stopped: nothing was written, and `game.baseline.json` is as it was" in err
     assert Path("game.baseline.json").read_bytes() == before
