@@ -61,7 +61,7 @@ class Gail(PPO):
         example = storage.observations[0].to("cpu")
         self.discriminator = Discriminator(example, gail["branches"], gail["discriminator"]).to(self.device)
         if not self.is_multi_gpu:
-            self.discriminator.to(memory_format=torch.channels_last)
+            self.discriminator.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self._discriminating = torch.optim.Adam(self.discriminator.parameters(), lr=gail["discriminator_rate"])
 
     @staticmethod

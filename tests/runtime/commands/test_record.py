@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from threading import Timer
 
 import pytest
 
@@ -15,8 +16,11 @@ from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.commands.test_play import PLAYERS, ended, needs_screen
 from tests.runtime.stealth.xvfb import keys, screen
 from tests.runtime.training.imitating import SOON, kept, played
+from tltl_runtime.commands.record import _Kept
+from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.check import check
 from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.training.demonstrations import Demonstrations
 
 TltlcFunction = Callable[..., Outcome]
 
@@ -66,7 +70,7 @@ def test_what_fails_is_not_kept_and_is_told(tltlc: TltlcFunction, here: Path) ->
     found = tltlc("record", "cover_and_hide", "--spec", "vain.tltl", "--episodes", "1", "-o", "none")
     assert found.status == 1
     assert found.out.splitlines()[:2] == [
-        "seed 0: limit after 2 steps, 0.30 s, progress 0.63, return -0.373: not kept (0 of 1)",
+        "seed 0: limit after 2 steps, 0.30 s, progress 0.56, return -0.439: not kept (0 of 1)",
         "  limit after 2 steps, remaining: Reach near(exit)",
     ]
     assert found.err.startswith("error[TLT0920]: the expert met `vain` in none of 20 episodes in a row")
@@ -125,8 +129,8 @@ def test_asked_to_end_it_says_what_there_is(here: Path, name: str, status: int) 
 
 @needs_screen
 def test_a_person_until_there_are_enough(here: Path) -> None:
+    command = [sys.executable, "-m", "tltlc", "record", "cover_and_hide", "--by", "keyboard", "--spec", "soon.tltl"]
     with screen() as display:
-        command = [sys.executable, "-m", "tltlc", "record", "cover_and_hide", "--by", "keyboard", "--spec", "soon.tltl"]
         player = subprocess.Popen(
             [*command, "--episodes", "2", "--seed", "4", "-o", "mine"],
             env=display,
@@ -135,15 +139,36 @@ def test_a_person_until_there_are_enough(here: Path) -> None:
             text=True,
         )
         PLAYERS.append(player)
+        watchdog = Timer(90.0, player.kill)
+        watchdog.start()
         search = ["xdotool", "search", "--sync", "--onlyvisible", "--class", "."]
-        subprocess.run(search, env=display, check=True, timeout=30, capture_output=True)
-        # The first episode is begun again before its end, which is no success; the next two meet the spec.
-        keys(display, "sleep", "0.5", "keydown", "d", "sleep", "0.5", "keyup", "d", "key", "r")
+        subprocess.run(search, env=display, check=True, timeout=60, capture_output=True)
+        assert player.stdout is not None
+        said = []
         for _ in range(2):
-            keys(display, "sleep", "0.5", "keydown", "d", "sleep", "2.0", "keyup", "d", "key", "r")
-        said = ended(player).splitlines()
-    assert said[0].startswith("seed 4: stopped after ") and said[0].endswith("not kept (0 of 2)")
-    assert said[2].endswith("(1 of 2)") and said[3].endswith("(2 of 2)")
+            keys(display, "sleep", "0.5", "keydown", "d")
+            said.append(player.stdout.readline().strip())
+            keys(display, "keyup", "d", "sleep", "0.5", "key", "r")
+        rest = ended(player).splitlines()
+        watchdog.cancel()
+        PLAYERS.remove(player)
+    assert said[0].startswith("seed 4: success after 8 steps") and said[0].endswith("(1 of 2)")
+    assert said[1].endswith("(2 of 2)")
+    assert rest[0] == "2 of 2 demonstrations are in mine"
     episodes = [read_episode(path) for path in (here / "mine").iterdir()]
     assert [(each.player, each.success) for each in episodes] == [("keyboard", True)] * 2
-    PLAYERS.clear()
+
+
+def test_of_a_person_too_nothing_is_kept_that_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    env = make_env("cover_and_hide", "v0", SOON)
+    made = Demonstrations(tmp_path, env.unwrapped.level, env.task)  # type: ignore[attr-defined]
+    env.close()
+    taking = _Kept(made, 2)
+    taking.keep(played(4, steps=3))
+    assert taking.save(played(4, steps=5)) == "not kept, 0 of 2"
+    assert not list(tmp_path.iterdir())
+    assert taking.save(played(4)) == "cover_and_hide-v0-4.episode.npz, 1 of 2"
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].startswith("seed 4: stopped after 5 steps") and said[0].endswith("not kept (0 of 2)")
+    assert said[1] == "  stopped after 0.75 s, remaining: Keep alive throughout"
+    assert said[2].endswith("(1 of 2)")
