@@ -71,7 +71,7 @@ def test_what_fails_is_not_kept_and_is_told(tltlc: TltlcFunction, here: Path) ->
     assert found.status == 1
     assert found.out.splitlines()[:2] == [
         "seed 0: limit after 2 steps, 0.30 s, progress 0.56, return -0.439: not kept (0 of 1)",
-        "  limit after 2 steps, remaining: Reach near(exit)",
+        "  finds no way to `exit`; limit after 2 steps, remaining: Reach near(exit)",
     ]
     assert found.err.startswith("error[TLT0920]: the expert met `vain` in none of 20 episodes in a row")
     assert not (here / "none").exists()
