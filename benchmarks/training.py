@@ -172,7 +172,11 @@ class Cell:
 
     def _train(self, minutes: float) -> bool:
         """Train to the end, from where an earlier run stopped; whether that was reached."""
-        if (self.folder / "record.json").exists():
+        before = self._source.read_text(encoding="utf-8") if self._source.exists() else None
+        if before is None:
+            # Nobody knows of which source it is.
+            shutil.rmtree(self.folder, ignore_errors=True)
+        if self._has_ended():
             return True
         load = Load()
         source = {"revision": _revision(), "source": source_digest("tltlc", "runtime")}
@@ -181,11 +185,17 @@ class Cell:
         self._source.write_text(json.dumps(source), encoding="utf-8")
         self._run(minutes)
         # By its status alone an error looks like the end by a limit.
-        ended = (self.folder / "record.json").exists()
-        others = load.other_cores()
-        if ended and others is not None:
+        if not self._has_ended():
+            if before is not None:
+                # Perhaps it goes on elsewhere.
+                self._source.write_text(before, encoding="utf-8")
+            return False
+        if (others := load.other_cores()) is not None:
             (self.folder / OTHERS).write_text(f"{others:.2f}", encoding="utf-8")
-        return ended
+        return True
+
+    def _has_ended(self) -> bool:
+        return (self.folder / "record.json").exists()
 
     def _run(self, minutes: float) -> None:
         """Have ``tltlc train`` begin, or go on."""

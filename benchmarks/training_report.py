@@ -23,7 +23,7 @@ ABLATION: Final = "ablation: "
 GPU: Final = "cuda"
 PICTURE_NAME: Final = "training.png"
 
-_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#999999")
+_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#999999", "#b8a200")
 """Told apart by the colour-blind, too: those of M. Okabe and K. Ito, behind our own."""
 
 
@@ -79,7 +79,8 @@ def picture(records: Mapping[str, Record]) -> bytes:
 
     figure = Figure(figsize=(10.0, 4.5), dpi=100, layout="constrained")
     for axes, title, column in zip(figure.subplots(1, 2, sharey=True), ("progress", "pass rate"), (2, 1), strict=True):
-        for (name, record), color in zip(_ablated(records).items(), _COLORS, strict=False):
+        ablated = _ablated(records)
+        for (name, record), color in zip(ablated.items(), _COLORS[: len(ablated)], strict=True):
             points = [point for point in record["curve"] if point[column] is not None]
             axes.plot([point[0] for point in points], [point[column] for point in points], color=color, label=name)
         axes.set_title(title, loc="left", fontsize=11)

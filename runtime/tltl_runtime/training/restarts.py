@@ -23,7 +23,8 @@ _ENDS = 8
 _FRESH = 0.2, 0.97
 """The least share of decisions in episodes that begin at the level's start, and the greatest share of such episodes.
 
-It is one of decisions since an episode that gets nowhere may last until the spec's limit, or end soon in a violation.
+The former is one of decisions since an episode that gets nowhere may last until the spec's limit, or end soon in a
+violation.
 """
 _LEAST = 0.005
 """The weight of a part that teaches nothing any more: it may do so again."""
@@ -150,7 +151,7 @@ class Restarts:
         """How likely the next episode begins at the level's start."""
         share, most = _FRESH
         from_start, on_ways = self.lengths
-        least = share / (share + (1 - share) * from_start / on_ways)
+        least = min(most, share / (share + (1 - share) * from_start / on_ways))
         # From the level's start itself there may have been few episodes.
         passed = max(self.passed, float(np.mean([rates[0] for rates in self.rates.values()])))
         return float(least + (most - least) * passed)

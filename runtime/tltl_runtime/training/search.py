@@ -69,7 +69,7 @@ def end_of(infos: Mapping[str, Any], row: int) -> int:
 class Searched:
     """How far a search is: decisions (those played again apart), places that were reached, lengths of the ways.
 
-    It is ``complete`` where it ended by its own rule.  In ``seconds`` are those of one before that a limit broke off.
+    It is ``complete`` where it ended by its own rule.
     """
 
     steps: int
@@ -78,6 +78,21 @@ class Searched:
     places: int
     lengths: tuple[int, ...]
     complete: bool
+
+
+def together(broken_off: Searched, anew: Searched) -> Searched:
+    """A search that was broken off by a limit and the one that was made anew; ``places`` are those of the latter.
+
+    They are searches of different seeds, whose ways are all used.
+    """
+    return Searched(
+        steps=broken_off.steps + anew.steps,
+        replayed=broken_off.replayed + anew.replayed,
+        seconds=broken_off.seconds + anew.seconds,
+        places=anew.places,
+        lengths=(*broken_off.lengths, *anew.lengths),
+        complete=anew.complete,
+    )
 
 
 class Search:

@@ -24,9 +24,9 @@ from tltl_runtime.training.folder import held
 from tltl_runtime.training.metrics import Metrics
 from tltl_runtime.training.policy import card_of, policy_of
 from tltl_runtime.training.report import Confirmation, Report, StopReason
-from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, Run, identity
+from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, identity
 from tltl_runtime.training.runner import Iteration, Runner
-from tltl_runtime.training.search import Searched
+from tltl_runtime.training.search import Searched, together
 from tltl_runtime.training.settings import rsl_config
 from tltl_runtime.training.streams import Purpose, stream
 from tltl_runtime.training.windows import Windows
@@ -90,7 +90,7 @@ class _Training:
         self._card = card_of(run, runner.env)
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
         if begun is not None:
-            runner.alg.load(begun.algorithm, None, strict=True)
+            runner.take_up(begun.algorithm)
             runner.current_learning_iteration = begun.iteration
             self._windows.load(begun.window, begun.unbroken)
             self._fade_entropy()
@@ -114,7 +114,7 @@ class _Training:
         if searched:
             seconds = own.broadcast(self._state.seconds + searched.seconds)
             if before := self._state.searched:
-                searched = replace(searched, seconds=before.seconds + searched.seconds)
+                searched = together(before, searched)
             self._state = replace(self._state, searched=searched, seconds=seconds)
         if searched or begun is None:
             self._state = replace(self._state, processes=tuple(own.gather(_own(runner))))
@@ -277,7 +277,7 @@ class _Training:
         return policy_of(self._card, best.actor if best else self._state.algorithm["actor_state_dict"])
 
     def _write_policy(self, policy: Policy) -> None:
-        write_policy(self._run.folder / POLICY, policy)
+        write_policy(self._run.folder / POLICY, policy, WRITABLE)
         self._written = self._state.best
 
 

@@ -192,6 +192,19 @@ def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
     assert drawn()[None] > 800
 
 
+@pytest.mark.parametrize(("from_start", "on_ways"), [(1, 150), (5, 700), (100, 100), (600, 5)])
+def test_the_better_the_agent_the_more_episodes_begin_at_the_levels_start(from_start: int, on_ways: int) -> None:
+    shares = []
+    for passed in (0.0, 0.5, 1.0):
+        restarts = restarts_of([Way(1, [[0] * 5] * 80, 1)], 8)
+        restarts.lengths[:] = from_start, on_ways
+        restarts.passed = passed
+        shares.append(sum(restarts.draw().part is None for _ in range(2000)) / 2000)
+    assert shares[0] <= shares[1] + 0.03
+    assert shares[1] <= shares[2] + 0.03
+    assert 0.95 < shares[2] < 0.99
+
+
 @pytest.mark.parametrize("length", [30, 90, 900])
 def test_a_fifth_of_the_decisions_is_from_the_levels_start_however_long_episodes_are(length: int) -> None:
     way = Way(1, [[0] * 5] * 80, 1)

@@ -284,7 +284,8 @@ def test_a_search_that_a_limit_broke_off_is_made_anew(folder: Path) -> None:
     longer = replace(run, settings=run_in(folder, **changes).settings)
     last = list(train(longer, resume=True))[-1]
     assert last.searched is not None
-    assert (last.searched.complete, last.searched.steps, last.stop) == (True, 8000, "steps")
+    assert (last.searched.complete, last.searched.steps, last.stop) == (True, 8000 + report.searched.steps, "steps")
+    assert last.searched.lengths[: len(report.searched.lengths)] == report.searched.lengths
 
 
 def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -300,7 +301,7 @@ def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypa
         next(train(replace(run, settings=run_in(folder, **changes).settings), resume=True))
     searched = checkpoint_of(run).searched
     assert searched is not None
-    assert (searched.complete, searched.steps) == (True, 4000)
+    assert (searched.complete, searched.steps) == (True, 4000 + first.searched.steps)
     assert searched.seconds > first.searched.seconds + 0.3
 
 
