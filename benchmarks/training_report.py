@@ -20,6 +20,7 @@ PAPER_HOURS = {"navigation": 3.5, "cover_and_hide": 2.7, "branching": 6.8}
 LEVELS: Final = tuple(PAPER_HOURS)
 SEEDS: Final = (1, 2, 3)
 ABLATION: Final = "ablation: "
+ABLATION_STEPS: Final = 700_000
 GPU: Final = "cuda"
 PICTURE_NAME: Final = "training.png"
 
@@ -175,9 +176,9 @@ def _ablations(records: Mapping[str, Record]) -> str:
     return f"""
 ### Ablations
 
-One training each on cover_and_hide, of at most ten minutes, in which one setting differs from *as it is*. *Pass rate*
-and *progress* are those of its last episodes, at most 100 of them, as the training played them; a row that *ended* as
-`met` shows the steps and minutes that it took.
+One training each on cover_and_hide, of {ABLATION_STEPS:,} steps and at most ten minutes, in which one setting differs
+from *as it is*. *Pass rate* and *progress* are those of its last episodes, at most 100 of them, as the training played
+them; a row that *ended* as `met` shows the steps and minutes that it took.
 
 {table(header, body)}
 
