@@ -13,7 +13,14 @@ from rich.console import Console
 from rich.live import Live
 
 from tltl_runtime.commands.training_picture import Picture
-from tltl_runtime.commands.training_text import SEARCH_IS_LOST, found_line, line, search_end, search_line
+from tltl_runtime.commands.training_text import (
+    SEARCH_IS_LOST,
+    SEARCHED_AGAIN,
+    found_line,
+    line,
+    search_end,
+    search_line,
+)
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.report import Report
 from tltl_runtime.training.run import Run
@@ -68,16 +75,18 @@ class _Lines:
         self._has_searched = self._has_trained = False
 
     def searched(self, searched: Searched) -> None:
-        if not self._has_searched:
-            self._has_searched = True
+        if not self._has_searched and self._has_trained:
+            self._print(SEARCHED_AGAIN, always=True)
+        elif not self._has_searched:
             exploration = self._run.settings.exploration
             self._print(f"ways to meet the spec are searched first, by chance. {search_end(exploration)}", always=True)
             self._print(SEARCH_IS_LOST, always=True)
             self._next = 0.0
-        self._print(search_line(searched))
+        self._has_searched = True
+        self._print(search_line(searched), always=self._has_trained and searched.complete)
 
     def trained(self, report: Report) -> None:
-        first, self._has_trained = not self._has_trained, True
+        first, self._has_trained, self._has_searched = not self._has_trained, True, False
         if first and report.searched:
             self._print(found_line(report.searched), always=True)
         if first:

@@ -72,9 +72,9 @@ class Runner(OnPolicyRunner):
         self.alg.train_mode()
         if self.is_distributed:
             self.alg.broadcast_parameters()
-        observation = self.env.get_observations().to(self.device)
         while True:
             began = time.perf_counter()
+            observation = self.env.get_observations().to(self.device)
             with torch.inference_mode():
                 for _ in range(self.cfg["num_steps_per_env"]):
                     observation = self._step(observation)
