@@ -67,7 +67,11 @@ ABLATIONS: Mapping[str, Ablation] = {
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is measured: ``minutes`` and ``ablation_minutes`` limit a training, whose ``settings`` are of all cells."""
+    """What is measured: ``minutes`` limit a training of a level, ``ablation_minutes`` and ``ablation_steps`` one of an
+    ablation; ``settings`` are of all cells.
+
+    By steps ablations can be compared, also those that were disturbed more than others.
+    """
 
     levels: Sequence[str] = training_report.LEVELS
     seeds: Sequence[int] = training_report.SEEDS
@@ -75,6 +79,7 @@ class Plan:
     episodes: int = 100
     ablations: Mapping[str, Ablation] = field(default_factory=lambda: ABLATIONS)
     ablation_minutes: float = 10.0
+    ablation_steps: int = training_report.ABLATION_STEPS
     settings: Settings = field(default_factory=dict)
 
 
@@ -140,7 +145,7 @@ class Cell:
 
     def judged(self) -> Record:
         """The training's figures, and those of its policy over fresh episodes."""
-        if not self._train(self.plan.minutes):
+        if not self._train(self.plan.minutes, NO_LIMIT):
             return {"failed": "tltlc train"}
         report = self.folder / "evaluation.json"
         episodes = self.plan.episodes
@@ -153,7 +158,7 @@ class Cell:
 
     def curve(self) -> Record:
         """The training's figures, and how it came to them."""
-        if not self._train(self.plan.ablation_minutes):
+        if not self._train(self.plan.ablation_minutes, self.plan.ablation_steps):
             return {"failed": "tltlc train"}
         points = self._record()["curve"]
         stride = -(-len(points) // CURVE_POINTS)
@@ -166,30 +171,40 @@ class Cell:
 
         if not torch.cuda.is_available():
             return {"left_out": "no GPU is at hand"}
-        if not self._train(self.plan.ablation_minutes):
+        if not self._train(self.plan.ablation_minutes, NO_LIMIT):
             return {"failed": "tltlc train"}
         return {**self._figures(), "gpu": torch.cuda.get_device_name()}
 
-    def _train(self, minutes: float) -> bool:
+    def _train(self, minutes: float, steps: int) -> bool:
         """Train to the end, from where an earlier run stopped; whether that was reached."""
-        if (self.folder / "record.json").exists():
+        before = self._source.read_text(encoding="utf-8") if self._source.exists() else None
+        if before is None:
+            # Nobody knows of which source it is.
+            shutil.rmtree(self.folder, ignore_errors=True)
+        if self._has_ended():
             return True
         load = Load()
         source = {"revision": _revision(), "source": source_digest("tltlc", "runtime")}
         self.folder.parent.mkdir(parents=True, exist_ok=True)
         # A training outlives whoever kills this process, and its figures need the source.
         self._source.write_text(json.dumps(source), encoding="utf-8")
-        self._run(minutes)
+        self._run(minutes, steps)
         # By its status alone an error looks like the end by a limit.
-        ended = (self.folder / "record.json").exists()
-        others = load.other_cores()
-        if ended and others is not None:
+        if not self._has_ended():
+            if before is not None:
+                # Perhaps it goes on elsewhere.
+                self._source.write_text(before, encoding="utf-8")
+            return False
+        if (others := load.other_cores()) is not None:
             (self.folder / OTHERS).write_text(f"{others:.2f}", encoding="utf-8")
-        return ended
+        return True
 
-    def _run(self, minutes: float) -> None:
+    def _has_ended(self) -> bool:
+        return (self.folder / "record.json").exists()
+
+    def _run(self, minutes: float, steps: int) -> None:
         """Have ``tltlc train`` begin, or go on."""
-        limit = ("--minutes", minutes, "--steps", NO_LIMIT, "--workers", CORES)
+        limit = ("--minutes", minutes, "--steps", steps, "--workers", CORES)
         if (self.folder / "checkpoint.pt").exists():
             _tltlc("train", "--resume", self.folder, *limit)
             return

@@ -20,10 +20,11 @@ PAPER_HOURS = {"navigation": 3.5, "cover_and_hide": 2.7, "branching": 6.8}
 LEVELS: Final = tuple(PAPER_HOURS)
 SEEDS: Final = (1, 2, 3)
 ABLATION: Final = "ablation: "
+ABLATION_STEPS: Final = 700_000
 GPU: Final = "cuda"
 PICTURE_NAME: Final = "training.png"
 
-_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#999999")
+_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#999999", "#b8a200")
 """Told apart by the colour-blind, too: those of M. Okabe and K. Ito, behind our own."""
 
 
@@ -79,7 +80,8 @@ def picture(records: Mapping[str, Record]) -> bytes:
 
     figure = Figure(figsize=(10.0, 4.5), dpi=100, layout="constrained")
     for axes, title, column in zip(figure.subplots(1, 2, sharey=True), ("progress", "pass rate"), (2, 1), strict=True):
-        for (name, record), color in zip(_ablated(records).items(), _COLORS, strict=False):
+        ablated = _ablated(records)
+        for (name, record), color in zip(ablated.items(), _COLORS[: len(ablated)], strict=True):
             points = [point for point in record["curve"] if point[column] is not None]
             axes.plot([point[0] for point in points], [point[column] for point in points], color=color, label=name)
         axes.set_title(title, loc="left", fontsize=11)
@@ -174,9 +176,9 @@ def _ablations(records: Mapping[str, Record]) -> str:
     return f"""
 ### Ablations
 
-One training each on cover_and_hide, of at most ten minutes, in which one setting differs from *as it is*. *Pass rate*
-and *progress* are those of its last episodes, at most 100 of them, as the training played them; a row that *ended* as
-`met` shows the steps and minutes that it took.
+One training each on cover_and_hide, of {ABLATION_STEPS:,} steps and at most ten minutes, in which one setting differs
+from *as it is*. *Pass rate* and *progress* are those of its last episodes, at most 100 of them, as the training played
+them; a row that *ended* as `met` shows the steps and minutes that it took.
 
 {table(header, body)}
 

@@ -23,8 +23,8 @@ def write_files(
     Every file is first written under a temporary name beside its place, and only when all of them are there are
     they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005, with ``advice`` on where else to write.
 
-    Each ``durable`` file is a whole one after a loss of power, too, and is not lost once this has returned.  No other
-    process may write it meanwhile: what one left that was killed is written over.
+    Each ``durable`` file is a whole one after a loss of power, too, and is not lost once this has returned, as long as
+    its folder is not.  No other process may write it meanwhile: what one left that was killed is written over.
     """
     try:
         for place in {(folder / name).parent: None for name in files}:

@@ -86,9 +86,22 @@ def test_a_training_goes_on_from_its_checkpoint_or_begins_anew(
     cell = training.Cell(tmp_path / "cell", "navigation", 1, training.FULL)
     cell.folder.mkdir()
     (cell.folder / left).touch()
+    source = cell.folder.with_suffix(training.SOURCE)
+    source.write_text("of who began it")
     assert cell.judged() == {"failed": "tltlc train"}
     assert ran == [how]
+    assert source.read_text() == "of who began it"
     assert cell.folder.exists() == (how == "--resume")
+
+
+def test_a_training_of_an_unknown_source_begins_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ran: list[object] = []
+    monkeypatch.setattr(training, "_tltlc", lambda *arguments: ran.append(arguments[1]) or 1)
+    cell = training.Cell(tmp_path / "cell", "navigation", 1, training.FULL)
+    cell.folder.mkdir()
+    (cell.folder / "record.json").touch()
+    assert cell.judged() == {"failed": "tltlc train"}
+    assert ran == ["--level"]
 
 
 def test_settings_of_the_plan_and_of_an_ablation_come_together() -> None:
@@ -109,6 +122,14 @@ def test_the_settings_of_an_ablation_are_ones_that_a_training_takes(name: str, t
     assert changed.rollout.envs == 4
     (tmp_path / "settings.toml").write_text(training.settings_text(training.QUICK.settings))
     assert (changed == read_settings(tmp_path / "settings.toml")) == (not ablation.settings)
+
+
+def test_the_picture_has_a_curve_of_each_ablation() -> None:
+    pytest.importorskip("matplotlib")
+    curve = {"curve": [[64, 0.0, 0.1], [128, 0.5, 0.6]]}
+    records = {f"{training_report.ABLATION}{name}": {**trained(0.5, 10.0), **curve} for name in training.ABLATIONS}
+    one_less = dict(list(records.items())[:-1])
+    assert training_report.picture(records) != training_report.picture(one_less)
 
 
 def test_what_is_missed_is_named() -> None:

@@ -230,9 +230,10 @@ def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, w
         click.echo(files.text(), nl=False)
     else:
         click.echo(text, nl=False)
-    if files.removed:
-        names = ", ".join(files.removed[:_MOST_NAMED])
-        more = f" and {count} more" if (count := len(files.removed) - _MOST_NAMED) > 0 else ""
+    wrote = files.write(text)
+    if removed := files.removed:
+        names = ", ".join(removed[:_MOST_NAMED])
+        more = f" and {count} more" if (count := len(removed) - _MOST_NAMED) > 0 else ""
         click.echo(f"removed from {folder}, of an earlier evaluation: {names}{more}", err=True)
-    if wrote := files.write(text):
+    if wrote:
         click.echo(f"wrote {wrote}", err=True)

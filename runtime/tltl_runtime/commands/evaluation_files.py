@@ -57,7 +57,7 @@ class EvaluationFiles:
         self._played: dict[bool, list[Played]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}
         self._recorded: list[str] = []
-        self.removed: tuple[str, ...] = ()
+        self._removed: tuple[str, ...] = ()
         if folder is not None:
             writable_folder(folder)
         if self._json is not None:
@@ -68,11 +68,16 @@ class EvaluationFiles:
         """How many episodes were played, by the name of the way to choose actions."""
         return {CHOICES[sampled]: len(played) for sampled, played in self._played.items()}
 
+    @property
+    def removed(self) -> tuple[str, ...]:
+        """Names of what an earlier evaluation left in the folder, and what is neither there any more nor anew."""
+        return tuple(name for name in self._removed if self._folder and not (self._folder / name).exists())
+
     def add(self, result: Result) -> None:
         """Take the next result, and write its recording where there is one."""
         sampled = result.task.sampled
         if self._folder is not None and not any(self._played.values()):
-            self.removed = self._remove_older(self._folder)
+            self._removed = self._remove_older(self._folder)
         self._played[sampled].append(result.played)
         if result.trajectory is not None:
             self._trajectories[sampled].append(result.trajectory)
@@ -163,10 +168,10 @@ class EvaluationFiles:
                 older += [path, folder / f"{found[1]}.png"]
         there = [path for path in older if path.is_file()]
         for path in there:
-            # One that cannot be removed harms nobody: no other takes its name.
+            # What cannot be removed cannot be replaced, either, and that is told.
             with suppress(OSError):
                 path.unlink()
-        return tuple(path.name for path in there if not path.exists())
+        return tuple(path.name for path in there)
 
     def _is_of_another(self, path: Path) -> bool:
         """Whether a file is a recording of what another policy played, which this evaluation says nothing of."""
@@ -174,7 +179,7 @@ class EvaluationFiles:
             player = read_episode(path).player
         except TltlError:
             return False
-        return player.startswith("policy ") and player.partition(",")[0].split()[-1] != self._sha256[:8]
+        return player.startswith("policy ") and player.rsplit(", ", 2)[0].split()[-1] != self._sha256[:8]
 
     @property
     def _name(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shlex import quote
 
 import click
 
@@ -22,8 +23,8 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
     """Raise UsageError where a ``.toml`` stands for a spec: it is a level, or what the option ``settings`` takes."""
     path = split(spec)[0] if spec else ""
     if path.endswith(".toml"):
-        ways = [f"where it holds settings, write `{settings} {path}`"] if settings else []
-        ways.append(f"where it is a level, `--level {path}`")
+        ways = [f"where it holds settings, write `{settings} {quote(path)}`"] if settings else []
+        ways.append(f"where it is a level, `--level {quote(spec or path)}`")
         raise click.UsageError(f"`{path}` is no spec; {', '.join(ways)}", click.get_current_context())
 
 

@@ -58,7 +58,7 @@ def senses_options(command: Function) -> Function:
 def option_of(key: str, sensors: Sensors) -> str:
     """The option, as a shell takes it, that says of ``entities``, ``variables`` or ``map`` what these sensors have."""
     if key == "map" and sensors.map is not None:
-        said = f"cell={sensors.map.cell:g},extent={sensors.map.extent},types={','.join(sensors.map.types)}"
+        said = f"cell={sensors.map.cell!r},extent={sensors.map.extent},types={','.join(sensors.map.types)}"
     else:
         said = ",".join(getattr(sensors, key) or ())
     return f"--{key} {quote(said)}" if said else f"--no-{key}"

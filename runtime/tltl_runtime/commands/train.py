@@ -171,17 +171,21 @@ def command(
 def _begins(run: Run, *, resume: bool) -> Iterator[str]:
     """What is trained and where; what becomes of the files of a training that is resumed without its checkpoint."""
     from tltl_runtime.training.metrics import METRICS
-    from tltl_runtime.training.run import CHECKPOINT, POLICY
+    from tltl_runtime.training.run import CHECKPOINT, POLICY, RECORD
 
     place = f"{Path(run.level).stem} {run.variant}"
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
-    files = [name for name in (METRICS, POLICY) if (run.folder / name).exists()]
+    files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
     if not resume or not files or (run.folder / CHECKPOINT).exists():
         return
-    fates = {METRICS: "what was measured is lost", POLICY: f"{POLICY} stays until there is a new one"}
+    fates = {
+        METRICS: "what was measured is lost",
+        RECORD: "so is its record",
+        POLICY: f"{POLICY} stays until there is a new one",
+    }
     fate = ", and ".join(fates[name] for name in files)
-    ways = "; Ctrl-C before the end of its search leaves all as it is" if run.settings.searches else ""
+    ways = "; Ctrl-C before the end of its search leaves these files as they are" if run.settings.searches else ""
     yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
 
 

@@ -15,6 +15,7 @@ from rich.live import Live
 from tltl_runtime.commands.training_picture import Picture
 from tltl_runtime.commands.training_text import (
     SEARCH_IS_LOST,
+    SEARCHED_AGAIN,
     found_line,
     imitated_line,
     line,
@@ -83,20 +84,22 @@ class _Lines:
         self._has_searched = self._has_trained = False
 
     def searched(self, searched: Searched) -> None:
-        if not self._has_searched:
-            self._has_searched = True
+        if not self._has_searched and self._has_trained:
+            self._print(SEARCHED_AGAIN, always=True)
+        elif not self._has_searched:
             exploration = self._run.settings.exploration
             self._print(f"ways to meet the spec are searched first, by chance. {search_end(exploration)}", always=True)
             self._print(SEARCH_IS_LOST, always=True)
             self._next = 0.0
-        self._print(search_line(searched))
+        self._has_searched = True
+        self._print(search_line(searched), always=self._has_trained and searched.complete)
 
     def recorded(self, tried: Tried) -> None:
         wanted = self._run.settings.imitation.demonstrations
         self._print(recording_line(tried, wanted), always=tried.path is None or tried.kept == wanted)
 
     def trained(self, report: Report) -> None:
-        first, self._has_trained = not self._has_trained, True
+        first, self._has_trained, self._has_searched = not self._has_trained, True, False
         if first and report.imitated:
             self._print(imitated_line(report.imitated), always=True)
         if first and report.searched:

@@ -67,7 +67,7 @@ class Picture:
 
     def trained(self, report: Report) -> None:
         """Take up how far the training is."""
-        self._last, self._at = report, time.monotonic()
+        self._last, self._at, self._searched = report, time.monotonic(), None
         if report.confirmation:
             self._confirmation = confirmation_line(report.iteration.number, report.confirmation)
         if report.checkpointed:
@@ -110,6 +110,7 @@ class Picture:
         space = [Text()] if room >= _SPACED else []
         since = 0.0 if report.stop else now - self._at
         said = [self._confirmation] if self._confirmation else []
+        said += [search_line(self._searched)] if self._searched else []
         others = [*_figures(report, stop, since), *said, self._kept(now, report)]
         # Of an episode that violated the spec it is told where it was before.
         states = tuple(state for state in run.fspa.states if state.verdict != "violated")

@@ -118,7 +118,7 @@ def resumed_run(asked: Asked, folder: Path) -> Run:
 
 
 def check_limits(run: Run) -> None:
-    """TLT0862 where a training that is resumed gets a limit that it has passed: it would end at once, for good."""
+    """TLT0862 where a training that is resumed gets a limit that it has passed: it would end at once."""
     stop, before = run.settings.stop, read_run(run.folder).settings.stop
     checkpoint = None if stop == before else read_checkpoint(run.folder / CHECKPOINT)
     if checkpoint is None:
@@ -221,9 +221,9 @@ def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
         yield f"{where} is by the method `{run.settings.method}`, not by `{asked.method}`"
     sensors = chosen(load_level(run.level, run.variant), asked.sensors) if asked.sensors else run.sensors
     # What no option speaks of stays the training's own, whatever the level senses.
-    for own, other in ((option_of(key, run.sensors), option_of(key, sensors)) for key in asked.sensors):
-        if own != other:
-            yield f"{where} senses as `{own}` says, not as `{other}`"
+    for key in asked.sensors:
+        if getattr(sensors, key) != getattr(run.sensors, key):
+            yield f"{where} senses as `{option_of(key, run.sensors)}` says, not as `{option_of(key, sensors)}`"
     wanted = dict(leaves(to_json(settings)))
     for path, value in leaves(to_json(run.settings)):
         if path not in MAY_CHANGE and value != wanted[path]:

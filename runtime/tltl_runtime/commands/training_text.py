@@ -12,6 +12,7 @@ from tltl_runtime.training.search import Exploration, Searched
 from tltl_runtime.training.settings import Stop
 
 SEARCH_IS_LOST: Final = "Ctrl-C stops it; a search that is not over then begins anew."
+SEARCHED_AGAIN: Final = "the pass rate rises no more: ways are searched by chance from where episodes failed"
 
 
 def line(report: Report, stop: Stop) -> str:

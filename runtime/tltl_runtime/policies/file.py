@@ -44,14 +44,16 @@ _REFUSALS: Final = Refusals("a policy", "TLT0840", "TLT0841", "TLT0842", again="
 _HASH: Final = re.compile(r"[0-9a-f]{64}\Z")
 
 
-def write_policy(path: str | os.PathLike[str], policy: Policy) -> None:
-    """Write a policy to a file, which is there as a whole or not at all; equal policies give equal bytes.
+def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "name another place") -> None:
+    """Write a policy to a file, which is there as a whole or not at all, after a loss of power, too.
+
+    Equal policies give equal bytes.  ``advice`` says what to do where the system refuses.
 
     Raises:
         TltlError: TLT0005 where the system refuses; TLT0862, it is larger than :data:`MAX_BYTES`.
         ValueError: the record of the training is not JSON data.
     """
-    write_file(Path(path), to_bytes(policy))
+    write_file(Path(path), to_bytes(policy), advice, durable=True)
 
 
 def read_policy(path: str | os.PathLike[str]) -> Policy:
@@ -68,7 +70,7 @@ def read_policy(path: str | os.PathLike[str]) -> Policy:
 def to_bytes(policy: Policy) -> bytes:
     """What :func:`write_policy` writes."""
     text = json.dumps(card_json(policy.card), ensure_ascii=False, allow_nan=False)
-    weights = {f"{_PREFIX}{name}": each.contiguous() for name, each in policy.weights().items()}
+    weights = {f"{_PREFIX}{name}": each for name, each in policy.weights().items()}
     data = save(weights, {_KEY: text})
     if len(data) > MAX_BYTES:
         raise _too_large(len(data))

@@ -35,7 +35,8 @@ class Policy:
     """
 
     def __init__(self, card: Card, weights: Mapping[str, Tensor]) -> None:
-        rounded = {name: each.detach().cpu().half() for name, each in weights.items()}
+        # With an order of their own in memory they would be computed with in another one, too.
+        rounded = {name: each.detach().cpu().half().contiguous() for name, each in weights.items()}
         if not all(bool(each.isfinite().all()) for each in rounded.values()):
             raise NoNumbersError(
                 "a weight of the actor is no finite number in half precision: its training has diverged"

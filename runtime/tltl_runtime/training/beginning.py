@@ -134,8 +134,31 @@ def _searched(
 ) -> Searched | None:
     """Search ways for ``restarts``, until the training's limit of minutes at the latest."""
     iteration, before_s = (checkpoint.iteration, checkpoint.seconds) if checkpoint else (0, 0.0)
-    limit_s, searched = run.settings.stop.minutes * 60, None
     search = Search(played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration))
+    return _made(run, search, before_s, restarts, searching)
+
+
+def searched_again(
+    run: Run, own: Peers, env: TrainingEnv, iteration: int, before_s: float, searching: Callable[[Searched], None]
+) -> Searched | None:
+    """Search ways for what the agent fails in, after an iteration and ``before_s`` seconds; its episodes begin anew.
+
+    None where nothing is known of failures.
+    """
+    if env.restarts is None or not env.restarts.failures:
+        return None
+    seed = stream(run, own, Purpose.SEARCH, iteration)
+    search = Search(env.env, run.settings.exploration, seed, env.restarts.failures)
+    searched = _made(run, search, before_s, env.restarts, searching)
+    env.begin_anew()
+    return searched
+
+
+def _made(
+    run: Run, search: Search, before_s: float, restarts: Restarts, searching: Callable[[Searched], None]
+) -> Searched | None:
+    """Make a search, until the training's limit of minutes at the latest; the restarts know its ways then."""
+    limit_s, searched = run.settings.stop.minutes * 60, None
     for searched in search.run():
         searching(searched)
         if 0 < limit_s <= before_s + searched.seconds:

@@ -77,6 +77,7 @@ class TrainingEnv(VecEnv):
         # Nothing is cut by rsl-rl: the spec's limit ends an episode.
         self.max_episode_length = 2**31
         self.episode_length_buf = torch.zeros(self.num_envs, dtype=torch.long)
+        self._replayed_before = 0
         self._episodes = Episodes(env, restarts.draw) if restarts else None
         observation = self._episodes.observation if self._episodes else env.reset(seed=seed)[0]
         self._observation = self._tensors(observation)
@@ -102,7 +103,8 @@ class TrainingEnv(VecEnv):
             successes[row] = each.success
         if self._episodes and self.restarts:
             ends = {row: end_of(infos["final_info"], row) for row, each in ended.items() if each.success}
-            cut = _learned(self.restarts, self._episodes, over, ends)
+            states = {row: each.state for row, each in ended.items()}
+            cut = _learned(self.restarts, self._episodes, over, ends, states)
             ended = {row: each for row, each in ended.items() if self._episodes.starts[row].part is None}
             self._episodes.turn(over)
             if cut.any():
@@ -120,7 +122,15 @@ class TrainingEnv(VecEnv):
     @property
     def replayed(self) -> int:
         """How many decisions were played again to begin where others had been."""
-        return self._episodes.replayed if self._episodes else 0
+        return self._replayed_before + (self._episodes.replayed if self._episodes else 0)
+
+    def begin_anew(self) -> None:
+        """Break off all episodes, and begin others: something else has used the vector environment meanwhile."""
+        assert self._episodes is not None
+        assert self.restarts is not None
+        self._replayed_before += self._episodes.replayed
+        self._episodes = Episodes(self.env, self.restarts.draw)
+        self._observation = self._tensors(self._episodes.observation)
 
     def finished(self) -> tuple[Finished, ...]:
         """The episodes that ended since this was last asked, in the order of their ends."""
@@ -133,14 +143,18 @@ class TrainingEnv(VecEnv):
 
 
 def _learned(
-    restarts: Restarts, episodes: Episodes, over: NDArray[np.bool_], ends: Mapping[int, int]
+    restarts: Restarts,
+    episodes: Episodes,
+    over: NDArray[np.bool_],
+    ends: Mapping[int, int],
+    states: Mapping[int, int],
 ) -> NDArray[np.bool_]:
-    """Let the restarts learn from episodes that are over, with the ends of those that met the spec, and from those that
-    take too long: which these are.
+    """Let the restarts learn from episodes that are over, with the ends of those that met the spec and the states of
+    all, and from those that take too long: which these are.
     """
     spent = np.array([episodes.is_spent(row) for row in range(len(over))]) & ~over
     for row in [*np.flatnonzero(over).tolist(), *np.flatnonzero(spent).tolist()]:
-        restarts.ended(episodes.starts[row], episodes.actions[row], ends.get(row))
+        restarts.ended(episodes.starts[row], episodes.actions[row], ends.get(row), states.get(row))
     return spent
 
 

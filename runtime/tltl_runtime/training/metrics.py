@@ -139,6 +139,8 @@ def _append(path: Path, line: bytes) -> None:
     try:
         if os.write(descriptor, line) < len(line):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        # No checkpoint may outlast what was measured before it.
+        os.fsync(descriptor)
     finally:
         os.close(descriptor)
 

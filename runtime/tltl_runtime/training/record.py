@@ -18,7 +18,7 @@ from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.curve import draw_curve
 from tltl_runtime.training.metrics import METRICS, OF_THE_WINDOW, means, read_metrics
 from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, Run, read_run
+from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, read_run
 from tltl_runtime.training.versions import versions
 from tltlc.record import replace
 from tltlc.writing import write_files
@@ -39,10 +39,10 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     """
     policy = read_policy(run.folder / POLICY)
     made = training_record(run, policy.card, last, read_metrics(run.folder / METRICS))
-    write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.weights()))
+    write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.weights()), WRITABLE)
     text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
     title = f"{run.fspa.name} on {made['level']} {run.variant}, seed {run.seed}"
-    write_files(run.folder, {CURVE: draw_curve(title, made["curve"]), RECORD: text}, "make room there")
+    write_files(run.folder, {CURVE: draw_curve(title, made["curve"]), RECORD: text}, WRITABLE, durable=True)
     return made
 
 

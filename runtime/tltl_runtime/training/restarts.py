@@ -7,13 +7,14 @@ CoRL 2017; Salimans and Chen, Learning Montezuma's Revenge from a single demonst
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tltl_runtime.training.search import Way
+from tltl_runtime.training.search import Failure, Way
 from tltl_runtime.training.starts import Actions, Start
 
 _WAYS = 6
@@ -23,7 +24,8 @@ _ENDS = 8
 _FRESH = 0.2, 0.97
 """The least share of decisions in episodes that begin at the level's start, and the greatest share of such episodes.
 
-It is one of decisions since an episode that gets nowhere may last until the spec's limit, or end soon in a violation.
+The former is one of decisions since an episode that gets nowhere may last until the spec's limit, or end soon in a
+violation.
 """
 _LEAST = 0.005
 """The weight of a part that teaches nothing any more: it may do so again."""
@@ -37,6 +39,8 @@ then learn from.
 """
 _RATE = 0.1, 0.02
 """How fast success rates follow the episodes: those of a part, that from the level's start; so do mean lengths."""
+_FAILURES = 32
+"""Of the episodes from the level's start that failed, as many of the last are kept."""
 _SPARE = 1.5, 20
 """An episode may take so many times what is left of the way, and so many decisions more."""
 
@@ -57,6 +61,7 @@ class Restarts:
         self.rates: dict[int, NDArray[np.float64]] = {}
         self.passed = 0.0
         self.lengths = np.full(2, 100.0)
+        self.failures: deque[Failure] = deque(maxlen=_FAILURES)
 
     def add(self, way: Way) -> None:
         """Keep a way where it is among the shortest to its end."""
@@ -105,10 +110,10 @@ class Restarts:
             found.append((way, int(len(way.actions) * (part + self._random.random()) / self._parts)))
         return found
 
-    def ended(self, start: Start, actions: Actions, end: int | None) -> None:
+    def ended(self, start: Start, actions: Actions, end: int | None, state: int | None = None) -> None:
         """Learn how an episode ended that began at ``start``: in success with this ``end``, or None, without.
 
-        ``actions`` are all of it.
+        ``actions`` are all of it; ``state`` is that in which it failed, None where it was cut off.
         """
         of_part, from_start = _RATE
         success = end is not None
@@ -116,6 +121,8 @@ class Restarts:
         self.lengths[kind] += from_start * (len(actions) - len(start.actions) - self.lengths[kind])
         if start.part is None:
             self.passed += from_start * (success - self.passed)
+            if not success and state is not None:
+                self.failures.append(Failure(start.seed, actions, state))
         else:
             way_end, part = start.part
             self.rates[way_end][part] += of_part * (success - self.rates[way_end][part])
@@ -150,7 +157,7 @@ class Restarts:
         """How likely the next episode begins at the level's start."""
         share, most = _FRESH
         from_start, on_ways = self.lengths
-        least = share / (share + (1 - share) * from_start / on_ways)
+        least = min(most, share / (share + (1 - share) * from_start / on_ways))
         # From the level's start itself there may have been few episodes.
         passed = max(self.passed, float(np.mean([rates[0] for rates in self.rates.values()])))
         return float(least + (most - least) * passed)

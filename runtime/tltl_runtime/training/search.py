@@ -7,12 +7,15 @@ actions that led there again, and from there chance goes on: Ecoffet et al., Fir
 
 What goes on from a place has the seed of the episode that found it, and whatever the level draws from that, such as the
 door that opens, stays as it is.  So the places of a seed are forgotten as soon as a way was found with it.
+
+Where the learning comes to a standstill, ways are searched for what the agent fails in: from places to which its failed
+episodes led.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -28,6 +31,8 @@ _BURST = 60
 """Decisions from a place on."""
 _FRESH = 0.05
 """How many episodes begin at their beginning."""
+_FAILED = 0.3
+"""How many begin where failed episodes led, if there are any."""
 _TOLD_EVERY_S = 0.5
 
 
@@ -69,7 +74,7 @@ def end_of(infos: Mapping[str, Any], row: int) -> int:
 class Searched:
     """How far a search is: decisions (those played again apart), places that were reached, lengths of the ways.
 
-    It is ``complete`` where it ended by its own rule.  In ``seconds`` are those of one before that a limit broke off.
+    It is ``complete`` where it ended by its own rule.
     """
 
     steps: int
@@ -80,15 +85,45 @@ class Searched:
     complete: bool
 
 
+def together(before: Searched, later: Searched) -> Searched:
+    """Two searches of one training, whose ways are all used; ``places`` are those of the later one."""
+    return Searched(
+        steps=before.steps + later.steps,
+        replayed=before.replayed + later.replayed,
+        seconds=before.seconds + later.seconds,
+        places=later.places,
+        lengths=(*before.lengths, *later.lengths),
+        complete=later.complete,
+    )
+
+
+@record
+class Failure:
+    """An episode from the level's start that failed: its seed, all of its actions, and the state in which it did."""
+
+    seed: int
+    actions: Actions
+    state: int
+
+
 class Search:
     """A search in ``env``, whose environments are :class:`~tltl_runtime.training.starts.Replayed`.
 
-    ``ways`` are what was found.  Equal seeds give equal searches, whatever the workers.
+    ``ways`` are what was found.  Equal seeds give equal searches, whatever the workers.  With ``failures`` it goes on
+    from these, in the states in which they failed; without, from the level's start.
     """
 
-    def __init__(self, env: WorkerVectorEnv, exploration: Exploration, seed: np.random.SeedSequence) -> None:
+    def __init__(
+        self,
+        env: WorkerVectorEnv,
+        exploration: Exploration,
+        seed: np.random.SeedSequence,
+        failures: Sequence[Failure] = (),
+    ) -> None:
         self._env = env
         self._exploration = exploration
+        self._failures = list(failures)
+        self._states = {failure.state for failure in failures}
         self._random = np.random.default_rng(seed)
         self._known = _Known(self._random)
         self._places: set[tuple[int, int]] = set()
@@ -129,7 +164,7 @@ class Search:
     def _note(self, episodes: Episodes, row: int, infos: dict[str, NDArray[np.int64]]) -> bool:
         """Take note of the place that an environment is at; whether it is not among the known."""
         state, cell, seed = int(infos["state"][row]), int(infos["cell"][row]), episodes.starts[row].seed
-        if cell < 0 or any(way.seed == seed for way in self.ways):
+        if cell < 0 or any(way.seed == seed for way in self.ways) or (self._states and state not in self._states):
             return False
         self._places.add((state, cell))
         return self._known.note(state, cell, seed, episodes.actions[row])
@@ -138,12 +173,17 @@ class Search:
         if all(each.seed != way.seed for each in self.ways):
             self.ways.append(way)
             self._known.forget(way.seed)
+            self._failures = [each for each in self._failures if each.seed != way.seed]
 
     def _draw(self) -> Start:
-        """A place to begin at; now and then the beginning of a new episode."""
-        if not self._known or self._random.random() < _FRESH:
+        """A place to begin at; now and then the beginning of a new episode, or the second half of one that failed."""
+        if self._known and self._random.random() >= (_FAILED if self._failures else _FRESH):
+            return self._known.draw()
+        if not self._failures:
             return Start(int(self._random.integers(2**31)))
-        return self._known.draw()
+        failure = self._failures[self._random.integers(len(self._failures))]
+        length = len(failure.actions)
+        return Start(failure.seed, failure.actions[: int(self._random.integers(length // 2, length))])
 
     def _searched(self, steps: int, replayed: int, seconds: float, *, complete: bool) -> Searched:
         lengths = tuple(sorted(len(way.actions) for way in self.ways))

@@ -16,7 +16,7 @@ from tltl_runtime.policies.file import check_size, write_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.available import class_of, device_of
-from tltl_runtime.training.beginning import begun, demonstrated, environments, prepared
+from tltl_runtime.training.beginning import begun, demonstrated, environments, prepared, searched_again
 from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, write_checkpoint
 from tltl_runtime.training.confirmation import confirm
 from tltl_runtime.training.demonstrations import Tried
@@ -26,12 +26,12 @@ from tltl_runtime.training.gail import Gail
 from tltl_runtime.training.metrics import Metrics
 from tltl_runtime.training.policy import card_of, policy_of
 from tltl_runtime.training.report import Confirmation, Report, StopReason
-from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, Run, identity
+from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, identity
 from tltl_runtime.training.runner import Iteration, Runner
-from tltl_runtime.training.search import Searched
+from tltl_runtime.training.search import Searched, together
 from tltl_runtime.training.settings import algorithm_name, rsl_config
 from tltl_runtime.training.streams import Purpose, stream
-from tltl_runtime.training.windows import Windows
+from tltl_runtime.training.windows import Standstill, Windows
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import replace
 
@@ -84,16 +84,23 @@ def train(
             stack.callback(env.lessons.close)
         torch.manual_seed(int(stream(run, own, Purpose.TORCH).generate_state(1)[0]))
         config = rsl_config(run.settings, env.shapes, env.branches)
-        yield from _Training(run, own, runner(env, config, None, device), checkpoint, searched).reports()
+        training = _Training(run, own, runner(env, config, None, device), checkpoint, searched, searching)
+        yield from training.reports()
 
 
 class _Training:
     """A training of this process as one of ``own``; ``state`` is that after the last whole iteration."""
 
     def __init__(
-        self, run: Run, own: Peers, runner: Runner, begun: Checkpoint | None, searched: Searched | None
+        self,
+        run: Run,
+        own: Peers,
+        runner: Runner,
+        begun: Checkpoint | None,
+        searched: Searched | None,
+        searching: Callable[[Searched], None],
     ) -> None:
-        self._run, self._own, self._runner = run, own, runner
+        self._run, self._own, self._runner, self._searching = run, own, runner, searching
         self._stop = run.settings.stop
         demonstrated = runner.env.demonstrated
         self._imitated = demonstrated.about if demonstrated else None
@@ -101,7 +108,7 @@ class _Training:
         self._card = card_of(run, runner.env)
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
         if begun is not None:
-            runner.alg.load(begun.algorithm, None, strict=True)
+            runner.take_up(begun.algorithm)
             runner.current_learning_iteration = begun.iteration
             self._windows.load(begun.window, begun.unbroken)
             self._fade_entropy()
@@ -125,7 +132,7 @@ class _Training:
         if searched:
             seconds = own.broadcast(self._state.seconds + searched.seconds)
             if before := self._state.searched:
-                searched = replace(searched, seconds=before.seconds + searched.seconds)
+                searched = together(before, searched)
             self._state = replace(self._state, searched=searched, seconds=seconds)
         if searched or begun is None:
             self._state = replace(self._state, processes=tuple(own.gather(_own(runner))))
@@ -133,6 +140,7 @@ class _Training:
         self._replayed_before = self._state.replayed
         self._saved: Checkpoint | None = begun
         self._saved_at = self._began
+        self._standstill = Standstill(self._state.steps)
         self._written: Best | None = None
         """The best policy of which there is a file."""
 
@@ -150,6 +158,8 @@ class _Training:
                 yield (report := self._after(iteration, metrics))
                 if report.stop:
                     return
+                if self._standstill.add(self._windows.window, self._state.steps):
+                    self._search_again()
         finally:
             try:
                 self._save()
@@ -212,6 +222,18 @@ class _Training:
         if due:
             self._save()
         return report
+
+    def _search_again(self) -> None:
+        """Search ways for what the agent fails in; each process does so for its own failures."""
+        state = self._state
+        searched = searched_again(
+            self._run, self._own, self._runner.env, state.iteration, state.seconds, self._searching
+        )
+        processes = tuple(self._own.gather(_own(self._runner)))
+        if state.searched and searched:
+            # Whether it was broken off is asked of the search before the training alone.
+            searched = replace(together(state.searched, searched), complete=state.searched.complete)
+            self._state = replace(state, searched=searched, processes=processes)
 
     def _fade_entropy(self) -> None:
         """Weigh the entropy bonus the less, the more often the spec is met: then there is less to try."""
@@ -289,7 +311,7 @@ class _Training:
         return policy_of(self._card, best.actor if best else self._state.algorithm["actor_state_dict"])
 
     def _write_policy(self, policy: Policy) -> None:
-        write_policy(self._run.folder / POLICY, policy)
+        write_policy(self._run.folder / POLICY, policy, WRITABLE)
         self._written = self._state.best
 
 

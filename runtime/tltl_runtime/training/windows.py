@@ -12,6 +12,13 @@ from tltl_runtime.training.report import Window
 Score = tuple[float, float, float]
 """How good a policy is, the greater the better: pass rate, mean progress, mean reward."""
 
+_STANDSTILL_STEPS = 100_000
+_ENOUGH = 50
+"""Episodes whose share of successes is one that can be told to rise."""
+_RISE = 0.05
+_BETWEEN = 0.1, 0.8
+"""Below these pass rates the ways have not led to the level's start yet, and above them little is left to be found."""
+
 
 class Windows:
     """The last ``windows * episodes`` episodes; ``limit_steps`` is the spec's, None where it has none.
@@ -83,3 +90,20 @@ class Windows:
         if self._limit_steps is None:
             return episode.progress
         return episode.progress - (episode.steps / self._limit_steps if episode.success else 1.0)
+
+
+class Standstill:
+    """Whether a training has come to a standstill: it succeeds now and then, and its pass rate rises no more."""
+
+    def __init__(self, steps: int = 0) -> None:
+        self._best, self._since = 0.0, steps
+
+    def add(self, window: Window, steps: int) -> bool:
+        """Take the window after so many ``steps`` of all environments; True where it is one, and then counts anew."""
+        if window.count >= _ENOUGH and window.pass_rate >= self._best + _RISE:
+            self._best, self._since = window.pass_rate, steps
+        low, high = _BETWEEN
+        if not low <= self._best < high or steps - self._since < _STANDSTILL_STEPS:
+            return False
+        self._since = steps
+        return True

@@ -129,14 +129,13 @@ def test_a_limit_that_is_passed_already(tltlc: TltlcFunction, here: Path) -> Non
 def test_a_checkpoint_that_is_missing(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     assert tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run").status == 1
     Path("run/checkpoint.pt").unlink()
-    Path("run/record.json").unlink()
-    found = tltlc("train", "--resume", "run")
+    found = tltlc("train", "--resume", "run", "--steps", "192")
     assert found.err.splitlines()[:2] == [
         "training cover_and_hide on cover_and_hide v0, seed 0, in run",
         "there is no checkpoint.pt in run: the training begins anew, what was measured is lost, "
-        "and policy.safetensors stays until there is a new one",
+        "and so is its record, and policy.safetensors stays until there is a new one",
     ]
-    assert [line["steps"] for line in read_metrics(Path("run") / METRICS)] == [64, 128]
+    assert [line["steps"] for line in read_metrics(Path("run") / METRICS)] == [64, 128, 192]
 
 
 def test_senses_that_differ_are_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -147,7 +146,7 @@ def test_senses_that_differ_are_named(tltlc: TltlcFunction, here: Path) -> None:
     assert re.findall(r"^error\[TLT0870\]: the training in `it` senses as (.*)$", other.err, re.MULTILINE) == [
         "`--entities s1,exit` says, not as `--entities s1`",
         "`--variables health` says, not as `--variables 'distance(exit)'`",
-        "`--no-map` says, not as `--map cell=1,extent=15,types=wall,low`",
+        "`--no-map` says, not as `--map cell=1.0,extent=15,types=wall,low`",
     ]
     # What is left out agrees.
     assert tltlc("train", "--resume", "it", "--no-map", "--steps", "128").status == 1

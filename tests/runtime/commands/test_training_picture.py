@@ -75,7 +75,7 @@ def test_before_the_first_iteration(tmp_path: Path) -> None:
     assert "1,200 places, 2 ways to meet the spec, the shortest of 80 steps" in text
 
 
-def test_nothing_is_lost_before_the_first_checkpoint(tmp_path: Path, report: Report) -> None:
+def test_before_the_first_checkpoint_it_says_that_ctrl_c_writes_one(tmp_path: Path, report: Report) -> None:
     text = "\n".join(_lines(tmp_path, 80, 24, replace(report, checkpointed=False)))
     assert "no checkpoint yet; Ctrl-C writes one, and --resume goes on" in text
 

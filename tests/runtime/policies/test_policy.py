@@ -73,3 +73,15 @@ def test_choosing_leaves_no_trace(policy: Policy) -> None:
     again = pickle.loads(pickle.dumps(policy))
     assert again.logits(seen).tobytes() == logits.tobytes()
     assert again.card == policy.card
+
+
+def test_how_weights_lie_in_memory_does_not_count() -> None:
+    policy = policy_of(card_of("cover_and_hide", network=Network()))
+    lying = {
+        name: each.float().to(memory_format=torch.channels_last) if each.dim() == 4 else each.float()
+        for name, each in policy.weights().items()
+    }
+    other = Policy(policy.card, lying)
+    for seed in range(20):
+        seen = observation_of(policy.card, np.random.default_rng(seed))
+        assert (other.logits(seen) == policy.logits(seen)).all()

@@ -79,6 +79,35 @@ def test_what_is_learned_is_imitated_no_more(rates: list[float], parts: set[int]
     assert (Lessons(make, restarts).draw() is None) == (not parts)
 
 
+def test_a_runner_takes_up_weights_that_lie_otherwise_in_memory() -> None:
+    run = run_in(Path("none"))
+    played = make_vec("cover_and_hide", "v0", 2, 1)
+    env = TrainingEnv(played, 1)
+    config = rsl_config(run.settings, env.shapes, env.branches)
+    begun, other = (Runner(env, dict(config)) for _ in range(2))
+    lessons = Lessons(make, restarts_of([WAY], 4))
+    drawn = lessons.draw()
+    lessons.close()
+    played.close()
+    assert drawn is not None
+    imitate(begun.alg, *drawn)
+    saved = begun.alg.save()
+    for model in (other.alg.actor, other.alg.critic):
+        model.to(memory_format=torch.contiguous_format)
+    other.take_up(saved)
+    weights = other.alg.optimizer.param_groups[0]["params"]
+    lying = [each.stride() for each in begun.alg.optimizer.param_groups[0]["params"]]
+    assert lying != [each.stride() for each in weights]
+    # The critic's have none yet.
+    moments = saved["optimizer_state_dict"]["state"]
+    for number in moments:
+        for name in ("exp_avg", "exp_avg_sq"):
+            taken = other.alg.optimizer.state[weights[number]][name]
+            assert taken.stride() == weights[number].stride()
+            assert taken.equal(moments[number][name])
+    assert len(moments) == len(list(other.alg.actor.parameters()))
+
+
 def test_imitation_makes_the_actions_likelier() -> None:
     run = run_in(Path("none"))
     played = make_vec("cover_and_hide", "v0", 2, 1)

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.restarts import Restarts
-from tltl_runtime.training.search import Exploration, Search, Searched, Way
+from tltl_runtime.training.search import Exploration, Failure, Search, Searched, Way
 from tltl_runtime.training.starts import Episodes, Replayed, Start
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltl_runtime.vector.errors import WorkerError
+from tltlc.record import replace
 
 NEAR = "import spatial\nentity s1\nspec near_s1 { level navigation  limit 300 steps  reach near(s1) }"
 FAR = "import spatial\nentity exit\nspec out { level navigation  limit 300 steps  reach near(exit) }"
@@ -56,6 +57,22 @@ def test_ways_meet_the_spec_when_they_are_played_again(env: WorkerVectorEnv) -> 
         infos = [alone.step(action)[4] for action in way.actions]
         assert [info["success"] for info in infos] == [False] * (len(infos) - 1) + [True]
     alone.close()
+
+
+def test_ways_are_found_from_where_episodes_failed(env: WorkerVectorEnv) -> None:
+    exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
+    # Up to shortly before the switch is reached, as ways lead there.
+    failures = [Failure(way.seed, way.actions[:-3], 0) for way in search(env, exploration)[0]]
+    found = Search(env, exploration, np.random.SeedSequence(8), failures)
+    steps = list(found.run())[-1].steps
+    assert {way.seed for way in found.ways} == {failure.seed for failure in failures}
+    for way in found.ways:
+        (failure,) = (each for each in failures if each.seed == way.seed)
+        half = len(failure.actions) // 2
+        assert way.actions[:half] == failure.actions[:half]
+    assert steps < 5000
+    elsewhere = [Failure(failure.seed, failure.actions, 1) for failure in failures]
+    assert list(Search(env, replace(exploration, steps=64), np.random.SeedSequence(8), elsewhere).run())[-1].places == 0
 
 
 def test_any_number_of_workers_finds_the_same_ways(env: WorkerVectorEnv) -> None:
@@ -192,6 +209,19 @@ def test_learning_moves_from_the_end_of_a_way_to_its_beginning() -> None:
     assert drawn()[None] > 800
 
 
+@pytest.mark.parametrize(("from_start", "on_ways"), [(1, 150), (5, 700), (100, 100), (600, 5)])
+def test_the_better_the_agent_the_more_episodes_begin_at_the_levels_start(from_start: int, on_ways: int) -> None:
+    shares = []
+    for passed in (0.0, 0.5, 1.0):
+        restarts = restarts_of([Way(1, [[0] * 5] * 80, 1)], 8)
+        restarts.lengths[:] = from_start, on_ways
+        restarts.passed = passed
+        shares.append(sum(restarts.draw().part is None for _ in range(2000)) / 2000)
+    assert shares[0] <= shares[1] + 0.03
+    assert shares[1] <= shares[2] + 0.03
+    assert 0.95 < shares[2] < 0.99
+
+
 @pytest.mark.parametrize("length", [30, 90, 900])
 def test_a_fifth_of_the_decisions_is_from_the_levels_start_however_long_episodes_are(length: int) -> None:
     way = Way(1, [[0] * 5] * 80, 1)
@@ -204,6 +234,16 @@ def test_a_fifth_of_the_decisions_is_from_the_levels_start_however_long_episodes
         if index >= 2000:
             decisions[start.part is None] += taken
     assert 0.15 < decisions[True] / decisions.total() < 0.25
+
+
+def test_the_last_failures_from_the_levels_start_are_kept() -> None:
+    restarts = restarts_of([Way(1, [[0] * 5] * 80, 1)], 8)
+    for seed in range(40):
+        restarts.ended(Start(seed), [[0] * 5] * 9, None, 2)
+        restarts.ended(Start(seed, part=(1, 3)), [[0] * 5] * 9, None, 2)
+        restarts.ended(Start(seed), [[0] * 5] * 9, 1, 3)
+        restarts.ended(Start(seed), [[0] * 5] * 9, None)
+    assert [(each.seed, each.state) for each in restarts.failures] == [(seed, 2) for seed in range(8, 40)]
 
 
 def test_a_start_lies_in_its_part_and_leaves_time_for_the_rest() -> None:

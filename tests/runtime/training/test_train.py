@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,7 @@ from tltl_runtime.training.run import (
     write_run,
 )
 from tltl_runtime.training.runner import Iteration, Runner
+from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Settings, read_settings
 from tltl_runtime.training.train import train
 from tltlc.diagnostics.diagnostic import TltlError
@@ -284,7 +286,8 @@ def test_a_search_that_a_limit_broke_off_is_made_anew(folder: Path) -> None:
     longer = replace(run, settings=run_in(folder, **changes).settings)
     last = list(train(longer, resume=True))[-1]
     assert last.searched is not None
-    assert (last.searched.complete, last.searched.steps, last.stop) == (True, 8000, "steps")
+    assert (last.searched.complete, last.searched.steps, last.stop) == (True, 8000 + report.searched.steps, "steps")
+    assert last.searched.lengths[: len(report.searched.lengths)] == report.searched.lengths
 
 
 def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -300,8 +303,28 @@ def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypa
         next(train(replace(run, settings=run_in(folder, **changes).settings), resume=True))
     searched = checkpoint_of(run).searched
     assert searched is not None
-    assert (searched.complete, searched.steps) == (True, 4000)
+    assert (searched.complete, searched.steps) == (True, 4000 + first.searched.steps)
     assert searched.seconds > first.searched.seconds + 0.3
+
+
+def test_a_training_at_a_standstill_searches_again_for_what_fails(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tltl_runtime.training.windows._BETWEEN", (0.0, 2.0))
+    monkeypatch.setattr("tltl_runtime.training.windows._STANDSTILL_STEPS", 256)
+    told: list[Searched] = []
+    run = run_in(folder / "standstill", CHANCE, exploration__ways=4, exploration__steps=2000, stop__steps=640)
+    reports = list(train(run, searching=told.append))
+    searches = [report.searched for report in reports if report.searched]
+    assert [report.steps for report in reports] == list(range(64, 641, 64))
+    first, last = searches[0], searches[-1]
+    ends = [each for each in told if each.complete]
+    assert len(ends) > 1, "it was searched again"
+    assert last.steps == sum(each.steps for each in ends)
+    assert len(last.lengths) == sum(len(each.lengths) for each in ends)
+    assert last.steps > first.steps
+    assert all(one.replayed <= other.replayed for one, other in pairwise(reports))
+    assert checkpoint_of(run).searched == last
 
 
 @pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])

@@ -101,11 +101,6 @@ def test_a_checkpoint_that_does_not_fit_is_refused(copy: Run, name: str, change:
     compare(name, caught.value)
 
 
-def test_without_a_checkpoint_a_training_begins_anew(copy: Run) -> None:
-    (copy.folder / CHECKPOINT).unlink()
-    assert next(train(copy, resume=True)).iteration.number == 1
-
-
 def test_a_new_training_writes_over_no_other(copy: Run) -> None:
     with pytest.raises(TltlError) as caught:
         next(train(copy))

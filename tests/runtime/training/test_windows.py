@@ -7,7 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tltl_runtime.training.environment import Finished
-from tltl_runtime.training.windows import Windows
+from tltl_runtime.training.report import Window
+from tltl_runtime.training.windows import Standstill, Windows
 
 SUCCESS = Finished(True, 1.0, 40, 4, violated=False)
 FAILURE = Finished(False, 0.6, 25, 2, violated=True)
@@ -64,3 +65,20 @@ def test_the_state_goes_on_where_it_was(before: list[bool], after: list[bool]) -
     windows.add(SUCCESS if each else FAILURE for each in after)
     whole = _windows(before + after)
     assert (windows.state(), windows.unbroken) == (whole.state(), whole.unbroken)
+
+
+def window_of(successes: int) -> Window:
+    return Window(100, successes, 0.5, 0.1, 100.0, {}, {})
+
+
+def test_a_standstill_is_a_pass_rate_that_rises_no_more() -> None:
+    standstill = Standstill()
+    assert not standstill.add(Window(2, 1, 0.5, 0.1, 100.0, {}, {}), 0)
+    rates = [(0, 0), (150_000, 0), (200_000, 9), (250_000, 40), (300_000, 44), (340_000, 38)]
+    assert not any(standstill.add(window_of(successes), steps) for steps, successes in rates)
+    assert standstill.add(window_of(44), 350_000)
+    assert not standstill.add(window_of(44), 449_999), "it counts anew"
+    assert standstill.add(window_of(30), 450_000)
+    assert not standstill.add(window_of(50), 549_999), "it has risen"
+    assert not standstill.add(window_of(80), 600_000)
+    assert not standstill.add(window_of(70), 900_000), "little is left to be found"
