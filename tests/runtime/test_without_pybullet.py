@@ -32,7 +32,9 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("command", ["demonstrate navigation", "record navigation", "play navigation", "replay {} --check"])
+@pytest.mark.parametrize(
+    "command", ["demonstrate navigation", "record navigation", "play navigation", "replay {} --check"]
+)
 def test_what_plays_says_what_it_lacks(command: str, recording: Path, tmp_path: Path) -> None:
     done = run(COMMAND, *command.format(recording).split(), cwd=tmp_path)
     assert done.returncode == 4

@@ -35,6 +35,9 @@ OF_THE_RUNTIME: Final = {
     "train": "Train an agent until it meets a spec.",
     "evaluate": "Have a trained policy play, and report how often it meets the spec.",
     "inspect": "Show what a policy was trained for, or export it as ONNX.",
+    "regress": "Report which levels still play as designed, and where and why not.",
+    "baseline": "Record the figures that a suite is judged against.",
+    "table1": "Train and play what the paper's Table I is of, and print ours beside it.",
 }
 """Commands that come with tltlc and need an extra; they are entry points like those of others."""
 

@@ -1,0 +1,61 @@
+"""Our Table I: what is played is kept, and stands beside the paper's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.policies.examples import card_of, policy_of
+from tltl_runtime.evaluation.statistics import Spread
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.regression import table_cells
+from tltl_runtime.regression.paper_table import LEVELS, MODELS, PAPER, VARIANTS, Figures, Row, markdown
+from tltl_runtime.regression.table_cells import Cell, Went, figures, measured
+
+
+@pytest.fixture(name="few", autouse=True)
+def _few(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(table_cells, "EPISODES", 3)
+
+
+def test_the_paper_has_a_row_of_each_model_on_each_level() -> None:
+    assert set(PAPER) == {(level, model) for level in LEVELS for model in MODELS}
+    assert all(tuple(row.figures) == VARIANTS for row in PAPER.values())
+    assert {model for (_, model), row in PAPER.items() if row.hours is None} == {"expert"}
+
+
+def test_a_row_of_ours_stands_above_the_papers() -> None:
+    made = Figures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
+    text = markdown({("navigation", "ours"): Row({"v0": made}, 0.1)})
+    assert text.splitlines()[2:] == [
+        "| navigation | ours | 0.95 (0.89–0.98) | 0.97 ± 0.10 | 0.60 ± 0.20 | 6 min |",
+        "|  | *the paper: ours* | 1.00 / 0.90 / 0.00 | 1.00 ± 0.00 / 0.93 ± 0.21 / 0.49 ± 0.05 "
+        "| 0.64 ± 0.01 / 0.39 ± 0.37 / -0.51 ± 0.05 | 3.5 h |",
+    ]
+
+
+def test_figures_are_of_the_first_runs() -> None:
+    cell = Cell("", (Went(True, 1.0, 0.5), Went(False, 0.5, -0.5), Went(True, 1.0, 0.7)))
+    found = figures(cell, 2)
+    assert (found.runs, found.pass_rate, found.progress.mean, found.reward.mean) == (2, 0.5, 0.75, 0.0)
+    assert found.progress.std == pytest.approx(0.35355, abs=1e-4)
+
+
+def test_what_a_policy_played_is_kept_until_it_is_another_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "policy.safetensors"
+    write_policy(path, policy_of(card_of()))
+    cell = measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1)
+    assert len(cell.episodes) == 3
+    with monkeypatch.context() as patched:
+        patched.setattr(table_cells, "evaluate", lambda *_, **__: pytest.fail("it is played again"))
+        assert measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1) == cell
+    write_policy(path, policy_of(card_of(), seed=1))
+    assert measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1).identity != cell.identity
+
+
+def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) -> None:
+    alone = measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1)
+    assert [each.success for each in alone.episodes] == [True] * 3
+    (tmp_path / "several").mkdir()
+    assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == alone
