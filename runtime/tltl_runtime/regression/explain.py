@@ -8,7 +8,7 @@ from typing import Final
 
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.places import obstacle, place_name
-from tltl_runtime.regression.stages import chain, deed
+from tltl_runtime.regression.stages import chain, deed, together
 from tltl_runtime.stealth.level import Level, Region
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record
@@ -54,13 +54,13 @@ def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> It
             if len(came) / len(now) > 1 - _DIFFERENT:
                 done.append(deed(fspa, state))
             continue
-        first = f"{_joined(done)} as before, then " if done else ""
+        first = f"{together(done)} as before, then " if done else ""
         failed = tuple(each.index for each in now if each not in came)
         text = f"{first}{deed(fspa, state)} in {_of(len(came), now)}; before: in {_of(len(used), before)}"
         yield Finding(text, failed)
         return
     if done:
-        yield Finding(f"{_joined(done)} as before", ())
+        yield Finding(f"{together(done)} as before", ())
 
 
 def _passed(fspa: Fspa, accounts: Sequence[Account], distance: int) -> list[Account]:
@@ -152,7 +152,3 @@ def _of(count: int, accounts: Sequence[Account]) -> str:
 
 def _names(names: Sequence[str]) -> str:
     return " and ".join(f"`{name}`" for name in names)
-
-
-def _joined(words: Sequence[str]) -> str:
-    return ", ".join(words)

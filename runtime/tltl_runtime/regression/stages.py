@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Final
 
 from tltlc.automaton.fspa import Fspa
@@ -10,6 +11,7 @@ from tltlc.expression import Signal, nodes
 from tltlc.monitor.tables import tables
 from tltlc.resolve.spec import Atom
 
+_REACHES: Final = "reaches "
 _DISTANCE: Final = re.compile(r"distance\((.+)\)\Z")
 
 
@@ -22,16 +24,24 @@ def target_of(atom: Atom) -> str | None:
 
 def deed(fspa: Fspa, state: int) -> str:
     """What leads from a state nearer to acceptance: ``reaches `s1```, ``reaches `a` or `b```, ``makes `open` true``."""
-    found: list[str] = []
-    for edge in tables(fspa).improving[state]:
-        nearest = min(edge.guard.primes, key=len)
-        wanted = [fspa.atoms[atom] for atom, holds in nearest if holds]
-        targets = [f"`{target}`" for atom in wanted if (target := target_of(atom))]
-        others = [f"`{atom.name}`" for atom in wanted if target_of(atom) is None and not _is_kept(fspa, atom)]
-        words = [f"reaches {' and '.join(targets)}"] if targets else []
-        words += [f"makes {' and '.join(others)} true"] if others and not targets else []
-        found += [" and ".join(words)] if words else []
-    return " or ".join(dict.fromkeys(found)) or "meets the spec"
+    found = [
+        words
+        for edge in tables(fspa).improving[state]
+        for prime in edge.guard.primes
+        if (words := _deed(fspa, [fspa.atoms[atom] for atom, holds in prime if holds]))
+    ]
+    distinct = list(dict.fromkeys(found))
+    if distinct and all(each.startswith(_REACHES) for each in distinct):
+        return _REACHES + " or ".join(each.removeprefix(_REACHES) for each in distinct)
+    return " or ".join(distinct) or "meets the spec"
+
+
+def _deed(fspa: Fspa, wanted: list[Atom]) -> str:
+    """What makes these atoms true at once: where one is to go somewhere, that alone; of what is kept, nothing."""
+    if targets := [f"`{target}`" for atom in wanted if (target := target_of(atom))]:
+        return f"{_REACHES}{' and '.join(targets)}"
+    others = [f"`{atom.name}`" for atom in wanted if not _is_kept(fspa, atom)]
+    return f"makes {' and '.join(others)} true" if others else ""
 
 
 def chain(fspa: Fspa) -> tuple[int, ...]:
@@ -48,3 +58,10 @@ def _is_kept(fspa: Fspa, atom: Atom) -> bool:
     index = fspa.atoms.index(atom)
     kept = [edge for edge in fspa.edges if fspa.states[edge.target].distance is not None]
     return all((index, True) in prime for edge in kept for prime in edge.guard.primes)
+
+
+def together(deeds: Sequence[str]) -> str:
+    """Several deeds, one after the other: ``reaches `s1`, `s2```."""
+    if deeds and all(each.startswith(_REACHES) for each in deeds):
+        return _REACHES + ", ".join(each.removeprefix(_REACHES) for each in deeds)
+    return ", ".join(deeds)

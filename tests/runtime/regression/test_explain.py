@@ -55,7 +55,7 @@ def told(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Acco
 
 def test_all_as_before(level: Level, fspa: Fspa) -> None:
     (only,) = findings(level, fspa, good(fspa), good(fspa))
-    assert only.text == "reaches `s1`, reaches `s2`, reaches `exit` as before"
+    assert only.text == "reaches `s1`, `s2`, `exit` as before"
     assert only.episodes == ()
 
 
@@ -68,7 +68,7 @@ def test_the_first_stage_that_is_not_as_before_is_told_and_where_it_ends(level: 
     now[3] = replace(now[3], nearest=replace(near, robustness=-0.5, distance=6.0))
     stage, end = findings(level, fspa, now, good(fspa))
     assert stage.text == (
-        "reaches `s1`, reaches `s2` as before, then reaches `exit` in 11 of 25 episodes; before: in 25 of 25 episodes"
+        "reaches `s1`, `s2` as before, then reaches `exit` in 11 of 25 episodes; before: in 25 of 25 episodes"
     )
     assert stage.episodes == end.episodes == tuple(range(14))
     assert end.text == (
@@ -102,7 +102,7 @@ def test_an_end_of_few_episodes_is_not_told(level: Level, fspa: Fspa) -> None:
 def test_ends_as_before_say_so(level: Level, fspa: Fspa) -> None:
     now = [made(index, index >= 10, states=to(fspa, 3 if index >= 10 else 2)) for index in range(25)]
     texts = told(level, fspa, now, now)
-    assert texts[0] == "reaches `s1`, reaches `s2` as before"
+    assert texts[0] == "reaches `s1`, `s2` as before"
     assert texts[1] == "is in the middle when time is up in 10 of 25 episodes; before: in 10 of 25 episodes"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.regression.stages import chain, deed, target_of
+from tltl_runtime.regression.stages import chain, deed, target_of, together
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 
@@ -27,7 +27,20 @@ def test_a_sequence_is_told_step_by_step() -> None:
 
 def test_what_is_reached_in_any_order() -> None:
     fspa = spec("reach near(s1)\n reach near(s2)")
-    assert deed(fspa, 0) in ("reaches `s1` or reaches `s2`", "reaches `s2` or reaches `s1`")
+    assert deed(fspa, 0) in ("reaches `s1` or `s2`", "reaches `s2` or `s1`")
+
+
+def test_whichever_way_is_open_is_told() -> None:
+    fspa = spec(
+        "reach (open_a and near(s1)) or (open_b and near(s2))",
+        "entity s1, s2\nsignal open_a: bool\nsignal open_b: bool\n",
+    )
+    assert deed(fspa, 0) in ("reaches `s1` or `s2`", "reaches `s2` or `s1`")
+
+
+def test_deeds_together_say_once_that_they_are_reached() -> None:
+    assert together(["reaches `s1`", "reaches `s2` or `s3`"]) == "reaches `s1`, `s2` or `s3`"
+    assert together(["reaches `s1`", "makes `open` true"]) == "reaches `s1`, makes `open` true"
 
 
 def test_what_is_no_place_is_made_true() -> None:
