@@ -35,5 +35,6 @@ def test_an_episode_of_the_baseline_is_played_again() -> None:
     made = ready(case, SUITE.seed)
     (again,) = episodes(made, 1)
     reference = reference_of(read_baseline(baseline_path(SHIPPED)), made.played, SHIPPED)
-    if reference.played.versions == made.played.versions:
-        assert to_json(again.account) == to_json(reference.accounts[0])
+    if reference.played.versions != made.played.versions:
+        pytest.skip("the baseline was recorded with other versions")
+    assert to_json(again.account) == to_json(reference.accounts[0])
