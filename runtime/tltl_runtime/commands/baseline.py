@@ -11,7 +11,7 @@ from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_file
-from tltl_runtime.commands.workers import WorkersType
+from tltl_runtime.commands.workers import all_cores_option
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 
@@ -24,13 +24,7 @@ Examples:
 )
 @click.argument("suite", metavar="[SUITE]", required=False, type=click.Path(path_type=Path))
 @output_file("FILE", "Where to write it (default: SUITE.baseline.json, beside the suite).")
-@click.option(
-    "--workers",
-    metavar="N|ray",
-    type=WorkersType(),
-    default=0,
-    help="Processes that play (default: one a core), or those of a Ray cluster.",
-)
+@all_cores_option
 @level_faults()
 def command(suite: Path | None, path: Path | None, workers: Any) -> int:
     """Record the figures of the policies of a suite on the levels as they are now, for `tltlc regress`.

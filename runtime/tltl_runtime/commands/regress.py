@@ -15,7 +15,7 @@ from tltl_runtime.commands.changed_option import ChangedCommand
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import output_folder
-from tltl_runtime.commands.workers import WorkersType
+from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import check_writable
 from tltlc.cli import exits
 from tltlc.cli.report import Report
@@ -85,13 +85,7 @@ Examples:
 @click.option("--html", "html_file", metavar="FILE", type=_file(), help="Write the page here, too.")
 @click.option("--github", is_flag=True, help="Print findings as annotations of GitHub Actions, too.")
 @click.option("--fresh", is_flag=True, help="Play cases again of which nothing has changed since they were played.")
-@click.option(
-    "--workers",
-    metavar="N|ray",
-    type=WorkersType(),
-    default=0,
-    help="Processes that play (default: one a core), or those of a Ray cluster.",
-)
+@all_cores_option
 @output_folder("The folder for the page and for what was played (default: regression/SUITE).")
 def command(
     suite: Path | None,

@@ -13,7 +13,7 @@ import click
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import output_folder
-from tltl_runtime.commands.workers import WorkersType
+from tltl_runtime.commands.workers import all_cores_option
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -34,13 +34,7 @@ Examples:
 @click.option(
     "--minutes", metavar="M", type=click.FloatRange(min=0), default=60.0, show_default=True, help="Of each training."
 )
-@click.option(
-    "--workers",
-    metavar="N",
-    type=WorkersType(),
-    default=0,
-    help="Processes that play (default: one a core), or those of a Ray cluster.",
-)
+@all_cores_option
 def command(folder: Path, shipped: bool, minutes: float, workers: Any) -> int:
     """Train and play what the paper's Table I is of, and print our table beside it.
 

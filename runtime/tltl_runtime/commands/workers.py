@@ -1,4 +1,4 @@
-"""The option that says who plays: processes, or a Ray cluster."""
+"""The options that say who plays: processes, or a Ray cluster."""
 
 from __future__ import annotations
 
@@ -32,3 +32,12 @@ class WorkersType(_Type):
         if number is None:
             self.fail(f"`{value}` is neither `ray` nor {kind}", param, ctx)
         return number
+
+
+all_cores_option = click.option(
+    "--workers",
+    metavar="N|ray",
+    type=WorkersType(),
+    default=0,
+    help="Processes that play (default: one a core), or those of a Ray cluster.",
+)

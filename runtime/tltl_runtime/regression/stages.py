@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import Final
 
+from tltl_runtime.stealth.expert.goals import distant_entity
 from tltlc.automaton.fspa import Fspa
 from tltlc.expression import Signal, nodes
 from tltlc.monitor.tables import tables
 from tltlc.resolve.spec import Atom
 
 _REACHES: Final = "reaches "
-_DISTANCE: Final = re.compile(r"distance\((.+)\)\Z")
 
 
 def target_of(atom: Atom) -> str | None:
     """The entity to which an atom measures the distance, None where it speaks of anything else, too."""
     names = {node.name for node in nodes(atom.expression) if isinstance(node, Signal)}
-    match = _DISTANCE.match(next(iter(names))) if len(names) == 1 else None
-    return match[1] if match else None
+    return distant_entity(next(iter(names))) if len(names) == 1 else None
 
 
 def deed(fspa: Fspa, state: int) -> str:

@@ -14,7 +14,7 @@ from tltl_runtime.evaluation.evaluate import Pool, evaluate
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
-from tltl_runtime.regression.paper_table import RUNS, Figures, Model
+from tltl_runtime.regression.paper_table import Figures, Model
 from tltl_runtime.stealth.episodes.outcome import outcome
 from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.levels.file import load_level
@@ -117,8 +117,3 @@ def _expert_part(level: str, variant: str, seeds: tuple[int, ...]) -> list[Went]
         found.append(Went(went.success, went.progress, went.reward))
     env.close()
     return found
-
-
-def short_and_long(cell: Cell) -> tuple[Figures, Figures]:
-    """The figures of as many episodes as the paper has, and of all."""
-    return figures(cell, RUNS), figures(cell)

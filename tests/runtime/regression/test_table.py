@@ -7,11 +7,13 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.policies.examples import card_of, policy_of
+from tltl_runtime.commands import table1
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression import table_cells
 from tltl_runtime.regression.paper_table import LEVELS, MODELS, PAPER, VARIANTS, Figures, Row, markdown
 from tltl_runtime.regression.table_cells import Cell, Went, figures, measured
+from tltlc.diagnostics.diagnostic import TltlError
 
 
 @pytest.fixture(name="few", autouse=True)
@@ -59,3 +61,12 @@ def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) ->
     assert [each.success for each in alone.episodes] == [True] * 3
     (tmp_path / "several").mkdir()
     assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == alone
+
+
+def test_a_training_that_did_not_end_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    began: list[tuple[str, ...]] = []
+    monkeypatch.setattr(table1, "_train", lambda *arguments: began.append(arguments))
+    with pytest.raises(TltlError, match="did not end") as caught:
+        table1._policy(tmp_path, "navigation", "imitation", False, 5.0)
+    assert [each.code for each in caught.value.diagnostics] == ["TLT0930"]
+    assert "imitation" in began[0]

@@ -60,6 +60,12 @@ def _goals(implicant: Implicant, entities: list[str | None], settled: list[bool 
 def _entity(atom: Atom, places: Collection[str]) -> str | None:
     """The entity whose distance an atom is about."""
     for node in nodes(atom.expression):
-        if isinstance(node, Signal) and (match := _DISTANCE.match(node.name)) and match[1] in places:
-            return match[1]
+        if isinstance(node, Signal) and (entity := distant_entity(node.name)) in places:
+            return entity
     return None
+
+
+def distant_entity(signal: str) -> str | None:
+    """The entity to which a signal of that name is the distance, None where it is none."""
+    match = _DISTANCE.match(signal)
+    return match[1] if match else None
