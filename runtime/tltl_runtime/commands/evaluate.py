@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import closing, nullcontext
 from pathlib import Path
-from shlex import join, quote
+from shlex import join
 from typing import TYPE_CHECKING, Any, Final
 
 import click
@@ -20,7 +20,6 @@ from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_folder, seed_option
 from tltl_runtime.commands.workers import WorkersType
 from tltlc.cli.report import Report
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 if TYPE_CHECKING:
     from tltl_runtime.commands.evaluation_files import EvaluationFiles
@@ -98,6 +97,7 @@ def command(
 
         check_no_toml(spec)
         from tltl_runtime.commands.evaluation_files import EvaluationFiles
+        from tltl_runtime.commands.policy_path import check_known, policy_place
         from tltl_runtime.evaluation.evaluate import results, set_up
         from tltl_runtime.evaluation.player import Task
         from tltl_runtime.policies.file import MAX_BYTES, from_bytes
@@ -106,13 +106,13 @@ def command(
         from tltlc.files import read_bytes
         from tltlc.record import replace
 
-        path, name, variant = _chosen(policy, level)
+        path, name, variant = policy_place(policy, level, "tltlc evaluate")
         # A training that goes on may write another one there meanwhile.
         data = read_bytes(path, str(path), MAX_BYTES)
         trained, kept = from_bytes(data, str(path)), (recorded or "failures") if folder else None
         sha256 = hashlib.sha256(data).hexdigest()
         if name is None:
-            _check_known(trained.card.level, path)
+            check_known(trained.card.level, path, "tltlc evaluate")
         setup = set_up(trained, name, variant, spec, seed, kept)
         # A level's own spec is mostly called like it.
         of = dict.fromkeys((trained.card.level, trained.card.fspa.name))
@@ -130,56 +130,11 @@ def command(
     return report.status
 
 
-def _chosen(policy: Path | None, level: str | None) -> tuple[Path, str | None, str | None]:
-    """The file of the policy, and the level and the variant where it plays; None: where it was trained."""
-    from tltl_runtime.commands.level_argument import check_there, names_level
-    from tltl_runtime.commands.policy_path import policy_path
-    from tltl_runtime.stealth.levels.place import level_place
-    from tltl_runtime.training.run import RUN, read_place
-
-    name, variant = (None, None) if level is None else level_place(level)
-    if policy is not None and names_level(str(policy)):
-        named, its = level_place(str(policy))
-        return _shipped(named), name or named, variant if name else its
-    if policy is None:
-        assert name is not None
-        return _shipped(name), name, variant
-    path = policy_path(policy)
-    if name is None and (policy / RUN).is_file():
-        # The card has the level's name alone, and here is the path of its file.
-        name, variant = read_place(policy)
-        check_there(name, variant, f"tltlc evaluate {quote(str(policy))}")
-    return path, name, variant
-
-
-def _check_known(level: str, policy: Path) -> None:
-    """TLT0800 where a policy, of whose training there is its file alone, was trained on a level of one's own."""
-    from tltl_runtime.stealth.levels.file import level_names
-
-    if level not in level_names():
-        title = f"there is no level `{level}`: the policy was trained on a level of your own"
-        help_ = f"name its file: `tltlc evaluate {quote(str(policy))} --level {level}.toml`"
-        raise TltlError([Diagnostic("TLT0800", title, help=help_)])
-
-
 def _command(policy: Path | None, level: str | None, spec: str | None, seed: int) -> str:
     """What plays episodes of the same evaluation again, to be pasted."""
     words = ["tltlc", "evaluate", *([] if policy is None else [str(policy)])]
     words += [word for name, given in (("--level", level), ("--spec", spec)) if given for word in (name, given)]
     return join([*words, "--seed", str(seed)])
-
-
-def _shipped(level: str) -> Path:
-    """The policy that comes with a level."""
-    from tltl_runtime.policies.shipped import shipped_policy
-    from tltl_runtime.stealth.levels.file import load_level
-
-    found = shipped_policy(level)
-    if found is None:
-        load_level(level)
-        help_ = f"name one that was trained, e.g. after `tltlc train --level {level}`"
-        raise TltlError([Diagnostic("TLT0853", f"no policy comes with the level `{level}`", help=help_)])
-    return found
 
 
 def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:

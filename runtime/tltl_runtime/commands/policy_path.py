@@ -1,13 +1,50 @@
-"""The policy that a command is to take: a file, or that of the training in a folder."""
+"""The policy that a command is to take: a file, that of the training in a folder, or that which comes with a level."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
 
+from tltl_runtime.commands.level_argument import check_there, names_level
+from tltl_runtime.policies.shipped import shipped_policy
+from tltl_runtime.stealth.levels.file import level_names, load_level
+from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.training.metrics import METRICS, read_metrics
-from tltl_runtime.training.run import POLICY, RUN, named_trainings
+from tltl_runtime.training.run import POLICY, RUN, named_trainings, read_place
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+
+def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[Path, str | None, str | None]:
+    """The file of a policy, and the level and the variant that it is taken for; None: as its card says.
+
+    ``policy`` is a path, or ``LEVEL`` or ``LEVEL:VARIANT`` for the policy that comes with it, as that of ``level`` is
+    where there is none.  One of the two is given.  ``command`` takes a policy as its argument, for messages.
+
+    Raises:
+        TltlError: TLT0853, no policy comes with the level; TLT0800, there is no such level; TLT0001, the file of its
+            level is gone; and as :func:`policy_path`.
+    """
+    name, variant = (None, None) if level is None else level_place(level)
+    if policy is not None and names_level(str(policy)):
+        named, its = level_place(str(policy))
+        return _shipped(named), name or named, variant if name else its
+    if policy is None:
+        assert name is not None
+        return _shipped(name), name, variant
+    path = policy_path(policy)
+    if name is None and (policy / RUN).is_file():
+        # The card has the level's name alone, and here is the path of its file.
+        name, variant = read_place(policy)
+        check_there(name, variant, f"{command} {quote(str(policy))}")
+    return path, name, variant
+
+
+def check_known(level: str, policy: Path, command: str) -> None:
+    """TLT0800 where a policy, of whose training there is its file alone, was trained on a level of one's own."""
+    if level not in level_names():
+        title = f"there is no level `{level}`: the policy was trained on a level of your own"
+        help_ = f"name its file: `{command} {quote(str(policy))} --level {level}.toml`"
+        raise TltlError([Diagnostic("TLT0800", title, help=help_)])
 
 
 def policy_path(path: Path) -> Path:
@@ -42,3 +79,13 @@ def progress(folder: Path) -> str:
         return "its first iteration is not over"
     episodes = sum(each["episodes"] for each in measured)
     return f"after {measured[-1]['steps']:,} steps, {episodes or 'no'} episode{'s' * (episodes != 1)} ended"
+
+
+def _shipped(level: str) -> Path:
+    """The policy that comes with a level."""
+    found = shipped_policy(level)
+    if found is None:
+        load_level(level)
+        help_ = f"name one that was trained, e.g. after `tltlc train --level {level}`"
+        raise TltlError([Diagnostic("TLT0853", f"no policy comes with the level `{level}`", help=help_)])
+    return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import closing, contextmanager
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any
@@ -18,7 +17,6 @@ from tltl_runtime.commands.workers import WorkersType
 from tltl_runtime.texts import share
 from tltlc.cli import exits
 from tltlc.cli.report import Report
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 if TYPE_CHECKING:
     from tltl_runtime.training.report import Report as Trained
@@ -48,6 +46,7 @@ Examples:
   tltlc train --print-config > settings.toml
   tltlc train plans.tltl --config settings.toml
   tltlc train cover_and_hide --method imitation --demonstrations mine
+  tltlc train --from training/vault-v0-careful-0 --level vault.toml:v1
 
 \b
 Watching, from another terminal:
@@ -82,6 +81,13 @@ Watching, from another terminal:
     metavar="DIR",
     type=click.Path(path_type=Path, file_okay=False),
     help="What is imitated, as `tltlc record` made it (default: the expert's, recorded first).",
+)
+@click.option(
+    "--from",
+    "policy",
+    metavar="POLICY",
+    type=click.Path(path_type=Path),
+    help="Begin with the weights of this policy, named as for `tltlc evaluate`, by default for its spec and level.",
 )
 @click.option(
     "--steps",
@@ -152,12 +158,18 @@ def command(
             for line in _begins(run, resume=resume is not None):
                 click.echo(line, err=True)
         # What comes now takes seconds, these imports among it.
+        from tltl_runtime.commands.shown_training import stopped_line, train_shown
         from tltl_runtime.stealth.levels.file import load_level
         from tltl_runtime.stealth.supply.feasible import reach_warnings
         from tltl_runtime.training.record import write_record
 
         report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
-        last = _train(run, resume=resume is not None)
+        try:
+            last = train_shown(run, resume=resume is not None, again=_resume(run.folder))
+        except KeyboardInterrupt:
+            if line := stopped_line(run, _resume(run.folder)):
+                click.echo(line, err=True)
+            raise
         if peers().rank > 0:
             # torchrun ends all processes as soon as one fails, and the first has a record to write.
             return exits.CLEAN
@@ -176,6 +188,9 @@ def _begins(run: Run, *, resume: bool) -> Iterator[str]:
     place = f"{Path(run.level).stem} {run.variant}"
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
+    if run.initial:
+        alone = f"; its critic is new, and learns alone in the first {run.settings.ppo.warm_up} iterations"
+        yield f"it begins with the weights of {run.initial.path}{alone if run.settings.ppo.warm_up else ''}"
     files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]
     if not resume or not files or (run.folder / CHECKPOINT).exists():
         return
@@ -187,42 +202,6 @@ def _begins(run: Run, *, resume: bool) -> Iterator[str]:
     fate = ", and ".join(fates[name] for name in files)
     ways = "; Ctrl-C before the end of its search leaves these files as they are" if run.settings.searches else ""
     yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
-
-
-def _train(run: Run, *, resume: bool) -> Trained:
-    """Train to the end, showing how it goes; the last report."""
-    from tltl_runtime.commands.training_display import display
-    from tltl_runtime.training.run import CHECKPOINT, RUN
-    from tltl_runtime.training.train import train
-
-    try:
-        with _broken_off(run.folder), display(run) as shown:
-            training = train(run, resume=resume, searching=shown.searched, recording=shown.recorded)
-            with closing(training) as reports:
-                for last in reports:
-                    shown.trained(last)
-            return last
-    except KeyboardInterrupt:
-        if (run.folder / RUN).exists():
-            before = "before the first iteration" if run.settings.imitates else "in the search, which then begins anew"
-            when = "" if (run.folder / CHECKPOINT).exists() else f" {before}"
-            click.echo(f"stopped{when}; to go on: {_resume(run.folder)}", err=True)
-        raise
-
-
-@contextmanager
-def _broken_off(folder: Path) -> Iterator[None]:
-    """TLT0871 where a worker is lost."""
-    from tltl_runtime.vector.errors import WorkerError
-
-    try:
-        yield
-    except WorkerError as error:
-        why = [str(error.loss), *error.loss.traceback.splitlines()[-1:]]
-        played = [f"it played {each}" for each in error.playing if each.busy]
-        title = f"the training broke off: {': '.join(why)}"
-        help_ = "; ".join([*played, f"to go on from the last checkpoint: {_resume(folder)}"])
-        raise TltlError([Diagnostic("TLT0871", title, help=help_)]) from error
 
 
 def _ended(run: Run, last: Trained) -> Iterator[str]:

@@ -9,6 +9,15 @@ from typing import Any, Literal, TypeVar
 
 import click
 
+from tltl_runtime.commands.initial_policy import (
+    Beginning,
+    as_its_policy,
+    beginning,
+    check_beginning,
+    is_another,
+    moved,
+    own_parameters,
+)
 from tltl_runtime.commands.level_argument import check_there, names_level, own_level
 from tltl_runtime.commands.senses import option_of
 from tltl_runtime.commands.training_text import duration, minutes
@@ -51,56 +60,64 @@ class Asked:
     sensors: Mapping[str, Any]
     method: Method | None = None
     demonstrations: Path | None = None
+    policy: Path | None = None
 
 
 def new_run(asked: Asked, folder: Path | None) -> Run:
     """A new training, by default in a folder that is called like it.
 
-    Raises TltlError for all that is wrong with its spec, level, senses and settings, TLT0873 for a folder that has
-    files of something else.
+    Raises TltlError for all that is wrong with its spec, level, senses and settings, and for a policy to begin with
+    that does not fit these, TLT0873 for a folder that has files of something else.
     """
     if asked.level is None and asked.spec is not None and names_level(asked.spec):
         asked = replace(asked, level=asked.spec, spec=None)
-    if asked.level is not None:
-        path, variant = level_place(asked.level)
-    elif asked.spec is not None:
-        path, variant = own_level(asked.spec), None
-    else:
-        raise _usage("say what to train for: a spec, a level, or both")
+    begun = _begun(asked)
+    path, variant = _place(asked, begun)
     settings = new_settings(asked)
     _check_demonstrations(asked.demonstrations, settings)
-    level = load_level(path, variant or "v0")
-    spec = asked.spec or spec_of(level)
-    task = load_task(spec, offered=params(level))
+    level = load_level(path, variant)
+    offered = params(level)
+    if asked.spec is None and begun is not None:
+        spec, task = begun.card.fspa, load_task(begun.card.fspa, own_parameters(begun, offered), offered=offered)
+    else:
+        spec = asked.spec or spec_of(level)
+        task = load_task(spec, offered=offered)
     check_fit(level, task.fspa, spec)
     check_limit(task.fspa)
     seed = asked.seed or 0
-    sensors = chosen(level, asked.sensors or None)
-    name = f"{level.name}-{level.variant}-{task.fspa.name}-{seed}"
-    folder = folder or Path("training") / (f"{name}-{settings.method}" if settings.imitates else name)
+    sensors = (
+        chosen(level, asked.sensors or None)
+        if begun is None
+        else check_beginning(begun, level, task.fspa, asked.sensors)
+    )
+    suffix = f"-{settings.method}" if settings.imitates else "-tuned" if begun else ""
+    folder = folder or Path("training") / f"{level.name}-{level.variant}-{task.fspa.name}-{seed}{suffix}"
     _check_folder(folder)
     return Run(
         folder=folder,
         fspa=task.fspa,
         params=task.params,
         level=path,
-        variant=variant or "v0",
+        variant=variant,
         sensors=sensors,
         settings=settings,
         seed=seed,
         demonstrations=str(asked.demonstrations) if asked.demonstrations else None,
+        initial=begun.initial if begun else None,
     )
 
 
 def new_settings(asked: Asked) -> Settings:
     """The settings that a new training would have; errors as of :func:`read_settings`."""
     settings = _with_limits(read_settings(asked.config), asked)
-    return replace(settings, method=_or(asked.method, settings.method))
+    settings = replace(settings, method=_or(asked.method, settings.method))
+    begun = _begun(asked)
+    return settings if begun is None else as_its_policy(settings, begun, asked.config)
 
 
 def resumed_run(asked: Asked, folder: Path) -> Run:
     """The training in ``folder``, with those settings that are asked for and may change; all others stay, and so does
-    the level and the demonstrations, whose files may lie elsewhere now.
+    the level, the demonstrations and the policy to begin with, whose files may lie elsewhere now.
 
     Raises TltlError for a folder that cannot be read, TLT0001 for a level that is not where it was, TLT0870 where
     anything else is asked for than it was begun with.
@@ -114,6 +131,8 @@ def resumed_run(asked: Asked, folder: Path) -> Run:
     if asked.demonstrations is not None:
         _check_demonstrations(asked.demonstrations, settings)
         run = replace(run, demonstrations=str(asked.demonstrations))
+    if asked.policy is not None:
+        run = moved(run, asked.policy)
     return replace(run, settings=_with_limits(settings, asked))
 
 
@@ -132,6 +151,23 @@ def check_limits(run: Run) -> None:
         help_, where = "give a limit greater than that, or leave it out", f"the training in `{run.folder}`"
         titles = [f"{where} has {done}, and a limit of {limit} would end it at once" for done, limit in passed]
         raise TltlError([Diagnostic("TLT0862", title, help=help_) for title in titles])
+
+
+def _begun(asked: Asked) -> Beginning | None:
+    """The policy to begin with, None where there is none."""
+    return None if asked.policy is None else beginning(asked.policy, asked.level)
+
+
+def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
+    """Level and variant of a new training: what is asked for, else that of the spec, else that of the policy."""
+    if asked.level is not None:
+        path, variant = level_place(asked.level)
+        return path, variant or "v0"
+    if asked.spec is not None:
+        return own_level(asked.spec), "v0"
+    if begun is not None:
+        return begun.level, begun.variant
+    raise _usage("say what to train for: a spec, a level, or both")
 
 
 def _at_its_level(run: Run, asked: Asked) -> Run:
@@ -219,6 +255,8 @@ def _differences(run: Run, asked: Asked, settings: Settings) -> Iterator[str]:
         yield f"{where} has the seed {run.seed}, not {asked.seed}"
     if asked.method is not None and asked.method != run.settings.method:
         yield f"{where} is by the method `{run.settings.method}`, not by `{asked.method}`"
+    if asked.policy is not None and (other := is_another(run, asked.policy)):
+        yield other
     sensors = chosen(load_level(run.level, run.variant), asked.sensors) if asked.sensors else run.sensors
     # What no option speaks of stays the training's own, whatever the level senses.
     for key in asked.sensors:

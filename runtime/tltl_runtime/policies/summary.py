@@ -56,6 +56,7 @@ def summary_text(said: Mapping[str, Any]) -> str:
         "map": _map(map_) if map_ else "",
         "network": f"{layers} ({network['activation']}), {said['weights']:,} weights",
         "training": _training(said["training"]),
+        "initial": _initial(said["training"]),
         "kept": _kept(said["training"]),
         "ended": _ENDS.get(str(said["training"].get("end")), ""),
         "search": _search(said["training"]),
@@ -92,6 +93,15 @@ def _kept(record: Mapping[str, Any]) -> str:
     steps, confirmed = best.get("steps"), ", confirmed in fresh episodes" if best.get("confirmed") else ""
     after = f", after {steps:,} steps" if isinstance(steps, int) else ""
     return f"the best policy, pass rate {share(best['pass_rate'])} in its window{after}{confirmed}"
+
+
+def _initial(record: Mapping[str, Any]) -> str:
+    """Which policy the training began with, as far as its record tells."""
+    initial = record.get("initial")
+    if not isinstance(initial, dict):
+        return ""
+    weights, level, variant = (str(initial.get(key)) for key in ("weights", "level", "variant"))
+    return f"it began with the weights of another policy, for {level} {variant} (hash {weights[:12]})"
 
 
 def _search(record: Mapping[str, Any]) -> str:

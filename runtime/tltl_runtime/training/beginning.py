@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from shlex import quote
 
 import numpy as np
+from torch import Tensor
 
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint
@@ -15,6 +16,7 @@ from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import Peers, cores
 from tltl_runtime.training.environment import TrainingEnv
 from tltl_runtime.training.imitation import Lessons
+from tltl_runtime.training.initial import read_initial
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.run import CHECKPOINT, RUN, Run, demonstrations_of, identity, read_run, write_run
 from tltl_runtime.training.search import Search, Searched
@@ -79,6 +81,17 @@ def demonstrated(run: Run, own: Peers, recording: Callable[[Tried], None]) -> De
             record_expert(folder, run.settings.imitation.demonstrations, make, recording)
         found = read_demonstrations(folder, make)
     return own.broadcast(found)
+
+
+def initial_weights(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Mapping[str, Tensor] | None:
+    """The weights that the actor begins with, by name; None where they are drawn, or a checkpoint has them.
+
+    Raises:
+        TltlError: TLT0940, their policy is another one now; what is wrong with its file.
+    """
+    if run.initial is None or checkpoint is not None:
+        return None
+    return own.broadcast(read_initial(run.initial, run.folder).weights() if own.rank == 0 else None)
 
 
 def prepared(

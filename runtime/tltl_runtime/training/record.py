@@ -60,6 +60,7 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
         "variant": card.variant,
         "level_hash": card.level_hash,
         "seed": run.seed,
+        "initial": _initial(run),
         "end": last.stop,
         "best": _best(last.best_pass_rate, last.best_steps, confirmed=last.stop == "met"),
         "iterations": last.iteration.number,
@@ -81,13 +82,19 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
     }
 
 
+def _initial(run: Run) -> dict[str, Any] | None:
+    """What is told of the policy that the training began with: where it lay is of this machine alone."""
+    return None if run.initial is None else {k: v for k, v in to_json(run.initial).items() if k != "path"}
+
+
 def record_so_far(folder: Path) -> dict[str, Any]:
     """What there is yet of the record of a training that goes on, or was broken off, in a folder.
 
     Raises:
         TltlError: its files cannot be read.
     """
-    made: dict[str, Any] = {"seed": read_run(folder).seed, "end": None}
+    run = read_run(folder)
+    made: dict[str, Any] = {"seed": run.seed, "initial": _initial(run), "end": None}
     if measured := read_metrics(folder / METRICS):
         last = measured[-1]
         made |= {name: last[name] for name in ("steps", "seconds")}

@@ -26,7 +26,7 @@ from tltlc.backends import emit
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import MAX_ARTEFACT_BYTES, read_bytes, read_source
 from tltlc.pipeline import read_artefact
-from tltlc.record import record
+from tltlc.record import record, replace
 from tltlc.source import SourceFile
 from tltlc.writing import write_files
 
@@ -51,12 +51,27 @@ _MOST_NAMED: Final = 8
 
 
 @record
+class Initial:
+    """A policy whose weights a training begins with: the ``path`` of its file, and what that was when it was read.
+
+    ``weights`` is their SHA-256, in hexadecimal; ``level``, ``variant`` and ``level_hash`` are those of its card.
+    """
+
+    path: str
+    weights: str
+    level: str
+    variant: str
+    level_hash: str
+
+
+@record
 class Run:
     """What is trained, and the folder that keeps it.
 
     ``params`` are values of the params of ``fspa`` in SI units; ``level`` is what
     :func:`~tltl_runtime.stealth.levels.file.load_level` takes.  ``demonstrations`` is the folder of those that are
-    imitated, None for the training's own, where the expert's are recorded.
+    imitated, None for the training's own, where the expert's are recorded.  ``initial`` is the policy whose weights the
+    actor begins with, None where they are drawn.
     """
 
     folder: Path
@@ -68,6 +83,7 @@ class Run:
     settings: Settings
     seed: int
     demonstrations: str | None = None
+    initial: Initial | None = None
 
 
 _PLAIN: Final[Mapping[str, Any]] = {
@@ -78,6 +94,7 @@ _PLAIN: Final[Mapping[str, Any]] = {
     "settings": Settings,
     "seed": int,
     "demonstrations": str | None,
+    "initial": Initial | None,
 }
 """The fields that stand in the file as they are, and their types."""
 
@@ -94,6 +111,7 @@ def write_run(run: Run) -> None:
         "level": level,
         "variant": absolute_variant(run.variant),
         "demonstrations": run.demonstrations and str(Path(run.demonstrations).absolute()),
+        "initial": run.initial and to_json(replace(run.initial, path=str(Path(run.initial.path).absolute()))),
         "level_hash": level_hash(load_level(run.level, run.variant)),
         "artefact": json.loads(artefact),
     }
@@ -165,7 +183,7 @@ def _values(source: SourceFile, document: Mapping[str, Any], names: Sequence[str
 def identity(run: Run) -> dict[str, str]:
     """What a checkpoint depends on, in parts that messages tell apart: the hashes of ``level`` and ``spec``, the
     ``seed``, and a SHA-256, in hexadecimal, of the senses and of all ``settings`` but for :data:`MAY_CHANGE`; by
-    imitation one of the recordings of ``demonstrations``, too.
+    imitation one of the recordings of ``demonstrations``, too, and that of the weights of a ``policy`` to begin with.
     """
     counts = {
         "observation": OBSERVATION,
@@ -179,6 +197,8 @@ def identity(run: Run) -> dict[str, str]:
         "seed": str(run.seed),
         "settings": hashlib.sha256(json.dumps(counts, sort_keys=True).encode()).hexdigest(),
         **({"demonstrations": _content_hash(demonstrations_of(run))} if run.settings.imitates else {}),
+        # As it was recorded: once there is a checkpoint, its file need not be there any more.
+        **({"policy": run.initial.weights} if run.initial else {}),
     }
 
 

@@ -40,8 +40,9 @@ class Iteration:
 class Runner(OnPolicyRunner):
     """rsl-rl's runner whose loop yields after each iteration, so that who drives it sees, keeps and stops.
 
-    It prints nothing.  Updates are computed in ``cfg["threads"]`` threads, since nobody plays meanwhile.  With several
-    processes, :func:`~tltl_runtime.training.distributed.joined` is around it.
+    It prints nothing.  Updates are computed in ``cfg["threads"]`` threads, since nobody plays meanwhile.  In the first
+    ``cfg["warm_up"]`` iterations the critic alone learns.  With several processes,
+    :func:`~tltl_runtime.training.distributed.joined` is around it.
     """
 
     env: TrainingEnv
@@ -67,6 +68,10 @@ class Runner(OnPolicyRunner):
             # The fused optimiser takes it for granted that all of them lie as the weights do.
             state |= {name: _like(each, parameter) for name, each in state.items() if each.shape == parameter.shape}
 
+    def begin_with(self, weights: Mapping[str, Tensor]) -> None:
+        """Give the actor these weights, by name; the critic's stay as they were drawn."""
+        self.alg.actor.load_state_dict({name: each.float() for name, each in weights.items()})
+
     def iterations(self) -> Iterator[Iteration]:
         """Run an iteration each time that one is asked for, without end."""
         self.alg.train_mode()
@@ -80,8 +85,11 @@ class Runner(OnPolicyRunner):
                     observation = self._step(observation)
                 self.alg.compute_returns(observation)
             collected = time.perf_counter()
+            warms_up = self.current_learning_iteration < self.cfg.get("warm_up", 0)
+            # What has no gradient is left as it is by PPO's optimiser, its moments among it.
+            self.alg.actor.requires_grad_(not warms_up)
             with threads(self.cfg.get("threads", 1)):
-                losses = {**self.alg.update(), **self._imitate()}
+                losses = {**self.alg.update(), **({} if warms_up else self._imitate())}
             self.current_learning_iteration += 1
             yield Iteration(
                 number=self.current_learning_iteration,

@@ -26,7 +26,11 @@ _SETTING: Final = re.compile(r"(?P<head>(?P<key>\w+) = [^#]*?)\s*(?P<comment>#.*
 
 @record
 class Ppo:
-    """rsl-rl's PPO; learning rate, entropy, clip, lambda and gamma are by default the paper's (section VI)."""
+    """rsl-rl's PPO; learning rate, entropy, clip, lambda and gamma are by default the paper's (section VI).
+
+    A training that begins with a policy has a critic that knows nothing: in its first ``warm_up`` updates the critic
+    learns alone, so that the policy is not spoilt by what it says.
+    """
 
     learning_rate: float
     entropy: float
@@ -38,6 +42,7 @@ class Ppo:
     minibatches: int
     value_loss: float
     max_gradient: float
+    warm_up: int
 
 
 @record

@@ -120,6 +120,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "minibatches": Whole(1, 100_000),
         "value_loss": Number(0.0, 1_000.0),
         "max_gradient": Number(0.0, 1_000_000.0, open=True),
+        "warm_up": Whole(0, 100_000),
     },
     "rollout": {
         "envs": Whole(1, 100_000),

@@ -16,7 +16,14 @@ from tltl_runtime.policies.file import check_size, write_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.available import class_of, device_of
-from tltl_runtime.training.beginning import begun, demonstrated, environments, prepared, searched_again
+from tltl_runtime.training.beginning import (
+    begun,
+    demonstrated,
+    environments,
+    initial_weights,
+    prepared,
+    searched_again,
+)
 from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, write_checkpoint
 from tltl_runtime.training.confirmation import confirm
 from tltl_runtime.training.demonstrations import Tried
@@ -63,7 +70,7 @@ def train(
             checkpoint cannot be resumed from; TLT0865, another process trains in the folder; TLT0866, a loss is no
             number any more; TLT0867, the folder holds a training and ``resume`` is false; TLT0868, the level has
             changed meanwhile; TLT0920 and TLT0921, there are no demonstrations to imitate;
-            TLT0922, they are others now.
+            TLT0922, they are others now; TLT0940, so is the policy to begin with.
         WorkerError: a process that plays was lost.
     """
     runner = class_of("runner", run.settings.classes.runner, Runner)
@@ -78,13 +85,17 @@ def train(
         checkpoint = own.broadcast(checkpoint)
         stack.enter_context(threads(1))
         to_imitate = demonstrated(run, own, recording)
+        weights = initial_weights(run, own, checkpoint)
         played = stack.enter_context(closing(environments(run)))
         env, searched = prepared(run, own, device, played, checkpoint, searching, to_imitate)
         if env.lessons:
             stack.callback(env.lessons.close)
         torch.manual_seed(int(stream(run, own, Purpose.TORCH).generate_state(1)[0]))
         config = rsl_config(run.settings, env.shapes, env.branches)
-        training = _Training(run, own, runner(env, config, None, device), checkpoint, searched, searching)
+        made = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
+        if weights:
+            made.begin_with(weights)
+        training = _Training(run, own, made, checkpoint, searched, searching)
         yield from training.reports()
 
 

@@ -44,6 +44,7 @@ epochs = 1
 minibatches = 2
 value_loss = 0.5
 max_gradient = 10.0
+warm_up = 3
 [rollout]
 envs = 4
 steps = 16

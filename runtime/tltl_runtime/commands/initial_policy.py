@@ -1,0 +1,121 @@
+"""What `tltlc train --from POLICY` begins with, and what is then up to the policy: spec, senses, network, place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from tltl_runtime.commands.policy_path import check_known, policy_place
+from tltl_runtime.commands.senses import option_of
+from tltl_runtime.policies.card import Card
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.policies.fit import check_policy
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.stealth.level import Level, Sensors
+from tltl_runtime.stealth.senses.sensors import chosen
+from tltl_runtime.training.initial import initial_of, weights_hash
+from tltl_runtime.training.run import Initial, Run
+from tltl_runtime.training.settings import Settings
+from tltl_runtime.training.settings_file import read_values
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import read_source
+from tltlc.record import record, replace
+
+_COMMAND = "tltlc train --from"
+
+
+@record
+class Beginning:
+    """A policy to begin with, its file, and the level and variant that it was named for, by default its own."""
+
+    policy: Policy
+    path: Path
+    level: str
+    variant: str
+
+    @property
+    def card(self) -> Card:
+        """What the policy was trained for."""
+        return self.policy.card
+
+    @property
+    def initial(self) -> Initial:
+        """What a training records of it."""
+        return initial_of(self.path, self.policy)
+
+
+def beginning(named: Path, level: str | None) -> Beginning:
+    """The policy that ``--from`` names as `tltlc evaluate` names one, and where it is to be trained.
+
+    ``level`` is what ``--level`` says.  Raises TltlError for a policy that is none, or whose level is not known.
+    """
+    path, name, variant = policy_place(named, level, _COMMAND)
+    policy = read_policy(path)
+    if name is None:
+        check_known(policy.card.level, path, _COMMAND)
+        name, variant = policy.card.level, policy.card.variant
+    return Beginning(policy, path, name, variant or "v0")
+
+
+def own_parameters(begun: Beginning, offered: Mapping[str, float]) -> dict[str, float]:
+    """The values of the policy's params that the level does not offer, for its own spec."""
+    return {name: value for name, value in begun.card.params.items() if name not in offered}
+
+
+def as_its_policy(settings: Settings, begun: Beginning, config: Path | None) -> Settings:
+    """The settings with the policy's network.
+
+    Raises:
+        TltlError: TLT0941, the file ``config`` asks for another one.
+        UsageError: the settings are for imitation.
+    """
+    if settings.imitates:
+        message = "--from is for the method `automaton`: an agent that imitates begins with what it is shown"
+        raise click.UsageError(message, click.get_current_context())
+    network = begun.card.network
+    if settings.network != network and config is not None and "network" in read_values(read_source(config)):
+        title = f"`{begun.path}` has another network than `[network]` in `{config}` asks for"
+        raise TltlError([Diagnostic("TLT0941", title, help=f"leave `[network]` out of `{config}`, or --from")])
+    return replace(settings, network=network)
+
+
+def check_beginning(begun: Beginning, level: Level, fspa: Fspa, asked: Mapping[str, Any]) -> Sensors:
+    """What the agent senses, which is what the policy does; ``asked`` is what options say of it.
+
+    Raises:
+        TltlError: TLT0843, the policy does not fit the level or the spec; TLT0941, other senses are asked for.
+    """
+    check_policy(begun.card, level, fspa)
+    titles = list(_other_senses(begun, level, asked))
+    if titles:
+        help_ = "leave the option out, or train without --from"
+        raise TltlError([Diagnostic("TLT0941", title, help=help_) for title in titles])
+    return begun.card.sensors
+
+
+def is_another(run: Run, named: Path) -> str | None:
+    """In what a training differs from one that ``--from`` such a policy would be, a sentence; None where in nothing."""
+    where = f"the training in `{run.folder}` begins with"
+    path, *_ = policy_place(named, None, _COMMAND)
+    if run.initial is None:
+        return f"{where} weights that are drawn, not with the policy `{named}`"
+    same = weights_hash(read_policy(path)) == run.initial.weights
+    return None if same else f"{where} another policy than `{named}`"
+
+
+def moved(run: Run, named: Path) -> Run:
+    """The training with its policy where it is now."""
+    assert run.initial is not None
+    path, *_ = policy_place(named, None, _COMMAND)
+    return replace(run, initial=replace(run.initial, path=str(path)))
+
+
+def _other_senses(begun: Beginning, level: Level, asked: Mapping[str, Any]) -> Iterator[str]:
+    own, sensors = begun.card.sensors, chosen(level, asked) if asked else begun.card.sensors
+    for key in asked:
+        if getattr(sensors, key) != getattr(own, key):
+            yield f"`{begun.path}` senses as `{option_of(key, own)}` says, not as `{option_of(key, sensors)}`"

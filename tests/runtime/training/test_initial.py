@@ -1,0 +1,123 @@
+"""Trainings that begin with a policy's weights."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+import torch
+
+from tests.runtime.training.runs import checkpoint_of, run_in
+from tests.runtime.training.test_settings import compare
+from tltl_runtime.policies.file import read_policy, write_policy
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.summary import summary, summary_text
+from tltl_runtime.training.initial import initial_of, weights_hash
+from tltl_runtime.training.record import record_so_far, write_record
+from tltl_runtime.training.report import Report
+from tltl_runtime.training.run import CHECKPOINT, POLICY, Run, identity, read_run
+from tltl_runtime.training.train import train
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
+
+
+def tuned(folder: Path, path: Path, **changes: object) -> Run:
+    """A training that begins with the policy in a file."""
+    return replace(run_in(folder, **changes), initial=initial_of(path, read_policy(path)))
+
+
+@pytest.fixture(name="policy")
+def _policy(tmp_path: Path, whole: tuple[Run, list[Report]]) -> Path:
+    shutil.copy(whole[0].folder / POLICY, tmp_path / "old.safetensors")
+    return tmp_path / "old.safetensors"
+
+
+def weights(run: Run) -> dict[str, torch.Tensor]:
+    return {name: each.half() for name, each in checkpoint_of(run).algorithm["actor_state_dict"].items()}
+
+
+def differ(one: dict[str, torch.Tensor], other: dict[str, torch.Tensor]) -> list[str]:
+    return [name for name in one if not torch.equal(one[name], other[name])]
+
+
+def test_the_critic_learns_first_and_then_the_actor(tmp_path: Path, policy: Path) -> None:
+    run, old = tuned(tmp_path / "run", policy, ppo__warm_up=2), read_policy(policy).weights()
+    critics = []
+    training = train(run)
+    for report in training:
+        checkpoint = checkpoint_of(run)
+        critics.append(checkpoint.algorithm["critic_state_dict"])
+        assert bool(differ(old, weights(run))) == (report.iteration.number == 3)
+        assert report.iteration.losses["value"] > 0.0
+    assert len(critics) == 3
+    assert all(differ(one, next_) for one, next_ in pairwise(critics))
+
+
+def test_without_a_warm_up_the_actor_learns_at_once(tmp_path: Path, policy: Path) -> None:
+    run = tuned(tmp_path / "run", policy, ppo__warm_up=0, stop__steps=64)
+    list(train(run))
+    assert differ(read_policy(policy).weights(), weights(run))
+
+
+def test_a_new_actor_does_not_wait(tmp_path: Path) -> None:
+    waiting, other = (run_in(tmp_path / str(number), ppo__warm_up=number, stop__steps=64) for number in (5, 0))
+    list(train(waiting))
+    list(train(other))
+    assert not differ(weights(waiting), weights(other))
+
+
+def test_with_a_checkpoint_it_goes_on_without_its_policy(tmp_path: Path, policy: Path) -> None:
+    run, old = tuned(tmp_path / "run", policy, ppo__warm_up=2), read_policy(policy).weights()
+    part = replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, steps=64)))
+    list(train(part))
+    policy.unlink()
+    assert read_run(run.folder) == part
+    changed = [bool(differ(old, weights(run))) for _ in train(run, resume=True)]
+    assert (changed, checkpoint_of(run).iteration) == ([False, True], 3)
+
+
+def test_its_policy_is_part_of_what_is_trained(tmp_path: Path, policy: Path) -> None:
+    run = tuned(tmp_path / "run", policy)
+    without = identity(replace(run, initial=None))
+    assert identity(run) == {**without, "policy": weights_hash(read_policy(policy))}
+
+
+def test_the_record_in_a_file_does_not_make_another_policy(tmp_path: Path, policy: Path) -> None:
+    old = read_policy(policy)
+    again = tmp_path / "again.safetensors"
+    write_policy(again, Policy(replace(old.card, training={"seed": 1}), old.weights()))
+    assert again.read_bytes() != policy.read_bytes()
+    assert weights_hash(read_policy(again)) == weights_hash(old)
+
+
+@pytest.mark.parametrize("name", ["TLT0940", "TLT0940_gone"])
+def test_without_a_checkpoint_it_needs_the_policy_that_it_began_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, policy: Path, name: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    run = tuned(Path("run"), Path("old.safetensors"), stop__steps=64, ppo__warm_up=0)
+    list(train(run))
+    (run.folder / CHECKPOINT).unlink()
+    if name == "TLT0940":
+        shutil.copy(run.folder / POLICY, policy)
+    else:
+        policy.unlink()
+    with pytest.raises(TltlError) as caught:
+        next(train(run, resume=True))
+    compare(name, caught.value)
+
+
+def test_the_record_says_where_it_began(tmp_path: Path, policy: Path) -> None:
+    run, old = tuned(tmp_path / "run", policy, stop__steps=64), read_policy(policy)
+    (last,) = train(run)
+    so_far = record_so_far(run.folder)["initial"]
+    made = write_record(run, last)["initial"]
+    assert made == so_far == {
+        "weights": weights_hash(old), "level": "cover_and_hide", "variant": "v0", "level_hash": old.card.level_hash
+    }  # fmt: skip
+    assert str(tmp_path) not in json.dumps(made)
+    text = summary_text(summary(read_policy(run.folder / POLICY)))
+    assert f"cover_and_hide v0 (hash {made['weights'][:12]})" in " ".join(text.split())
