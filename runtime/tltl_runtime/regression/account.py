@@ -32,8 +32,8 @@ class Nearest:
     """How near an episode came to leaving the state in which it failed, towards acceptance.
 
     ``atom`` is the one that was the limit at the best moment, ``robustness`` the guard's then, in [-1, 1], ``place``
-    where that was.  Where the atom speaks of one distance, ``target`` is to what and ``distance`` how far it was, in
-    metres.
+    where that was.  Where the atom speaks of one distance, ``target`` is to what and ``distance`` the least, in metres,
+    while the episode was in that state.
     """
 
     atom: str
@@ -49,8 +49,8 @@ class Account:
 
     ``progress``, ``reward``, ``steps`` and ``unmet`` are as in
     :class:`~tltl_runtime.evaluation.play.Played`; ``arrivals`` begin with the first sample.  ``cause``, ``by`` and
-    ``place`` say how the episode ended, ``seen_by`` who saw the player in the seconds before.  ``way`` has the
-    player's x and y, in metres, and the automaton's state each second.
+    ``place`` say how the episode ended, ``seen_by`` who saw the player in the seconds before, ``broke`` which atoms
+    broke the spec.  ``way`` has the player's x and y, in metres, and the automaton's state each second.
     """
 
     index: int
@@ -68,6 +68,7 @@ class Account:
     arrivals: tuple[Arrival, ...]
     nearest: Nearest | None
     way: tuple[tuple[float, float, int], ...]
+    broke: tuple[str, ...] = ()
 
 
 def account(played: Played, episode: Episode) -> Account:
@@ -89,6 +90,7 @@ def account(played: Played, episode: Episode) -> Account:
         arrivals=_arrivals(episode),
         nearest=None if played.success else _nearest(episode, played.unmet),
         way=_way(episode),
+        broke=found.broke,
     )
 
 
@@ -117,17 +119,17 @@ def _nearest(episode: Episode, state: int) -> Nearest | None:
     best, step = max((max(robustness(guard, atoms[step]) for guard in guards), -step) for step in steps)
     row = -step
     atom = bounding_atom(guards, atoms[row])
-    target, distance = _distance(episode, atom, row)
+    target, distance = _distance(episode, atom, steps)
     return Nearest(fspa.atoms[atom].name, round(best, 4), _place(episode, row + 1), target, distance)
 
 
-def _distance(episode: Episode, atom: int, row: int) -> tuple[str | None, float | None]:
-    """What an atom measures the distance to, and that distance after decision ``row``; None where it does not."""
+def _distance(episode: Episode, atom: int, rows: Sequence[int]) -> tuple[str | None, float | None]:
+    """What an atom measures the distance to, and the least after any of these decisions; None where it does not."""
     target = target_of(episode.fspa.atoms[atom])
     if target is None:
         return None, None
     column = [signal.name for signal in episode.fspa.signals].index(f"distance({target})")
-    return target, round(float(episode.signals[row + 1, column]), 2)
+    return target, round(min(float(episode.signals[row + 1, column]) for row in rows), 2)
 
 
 def _way(episode: Episode) -> tuple[tuple[float, float, int], ...]:

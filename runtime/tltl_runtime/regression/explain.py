@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from statistics import fmean
 from typing import Final
@@ -9,6 +10,7 @@ from typing import Final
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.places import obstacle, place_name
 from tltl_runtime.regression.stages import chain, deed, together
+from tltl_runtime.stealth.episodes.cause import Kind
 from tltl_runtime.stealth.level import Level, Region
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record
@@ -74,36 +76,58 @@ def _distances(fspa: Fspa, account: Account) -> list[int]:
 
 
 def _ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
-    """How the failed episodes end, the most frequent first."""
-    groups: dict[tuple[object, ...], list[Account]] = {}
+    """How the failed episodes end, the most frequent first; no two sentences are equal."""
+    groups: dict[tuple[_End, str], list[Account]] = {}
     for each in now:
         if not each.success:
-            groups.setdefault(_kind(level, each), []).append(each)
+            groups.setdefault(_kind(level, fspa, each), []).append(each)
     often = sorted(groups.items(), key=lambda item: -len(item[1]))
-    for kind, accounts in often[:_FEW]:
+    stages = Counter(end for end, _ in groups)
+    for (end, undone), accounts in often[:_FEW]:
         if len(accounts) < _FEW and 10 * len(accounts) < len(now):
             continue
-        used = sum(not each.success and _kind(level, each) == kind for each in before)
-        text = f"{_end(level, accounts)} in {_of(len(accounts), now)}; before: in {_of(used, before)}"
+        used = sum(not each.success and _kind(level, fspa, each) == (end, undone) for each in before)
+        # Where one end comes in several stages, the sentences must tell them apart.
+        stage = f" before it {undone}" if stages[end] > 1 else ""
+        text = f"{_told(level, end, accounts)}{stage} in {_of(len(accounts), now)}; before: in {_of(used, before)}"
         yield Finding(text + _approach(accounts), tuple(each.index for each in accounts))
 
 
-def _kind(level: Level, account: Account) -> tuple[object, ...]:
-    return account.unmet, account.cause, account.by, place_name(level, account.place)
+@record
+class _End:
+    """How and where an episode failed."""
+
+    cause: Kind
+    by: tuple[str, ...]
+    where: str
 
 
-def _end(level: Level, accounts: Sequence[Account]) -> str:
-    first = accounts[0]
-    where = place_name(level, first.place)
-    by = f" by {_names(first.by)}" if first.by else ""
-    seen = [name for name in first.seen_by if name not in first.by]
-    saw = f", seen by {_names(seen)}" if seen else ""
-    if first.cause == "killed":
-        return f"dies {where}{by}{saw}"
-    if first.cause == "violated":
-        return f"breaks the spec {where} ({', '.join(first.by)}){saw}"
+def _kind(level: Level, fspa: Fspa, account: Account) -> tuple[_End, str]:
+    """How an episode failed, and what it would have had to do next."""
+    return _End(account.cause, account.by, place_name(level, account.place)), deed(fspa, account.unmet)
+
+
+def _told(level: Level, end: _End, accounts: Sequence[Account]) -> str:
+    """The end of these episodes, in words."""
+    by = f" by {_names(end.by)}" if end.by else ""
+    broke = _mostly("breaking", [each.broke for each in accounts])
+    saw = _mostly("seen by", [[name for name in each.seen_by if name not in end.by] for each in accounts])
+    if end.cause == "killed":
+        return f"dies {end.where}{by}{broke}{saw}"
+    if end.cause == "violated":
+        return f"breaks the spec {end.where} ({_names(end.by)}){saw}"
     solid = obstacle(level, [each.place for each in accounts])
-    return f"is {where} when time is up" + (f", at `{solid}`" if solid else "")
+    return f"is {end.where} when time is up" + (f", at `{solid}`" if solid else "")
+
+
+def _mostly(what: str, named: Sequence[Sequence[str]]) -> str:
+    """The names that more than half of the episodes have, behind a comma; empty where there is none."""
+    counts = Counter(name for names in named for name in names)
+    often = [name for name, count in counts.items() if 2 * count > len(named)]
+    if not often:
+        return ""
+    rarely = any(counts[name] < len(named) for name in often)
+    return f", {'mostly ' if rarely else ''}{what} {_names(often)}"
 
 
 def _approach(accounts: Sequence[Account]) -> str:
@@ -112,9 +136,10 @@ def _approach(accounts: Sequence[Account]) -> str:
     if not near:
         return ""
     best = max(near, key=lambda each: each.robustness)
-    if best.target is not None:
-        return f"; closest approach to `{best.target}`: {best.distance:.1f} m"
-    return f"; the limit is `{best.atom}`, {best.robustness:+.2f} at best"
+    if best.target is None:
+        return f"; the limit is `{best.atom}`, {best.robustness:+.2f} at best"
+    least = min(each.distance for each in near if each.target == best.target and each.distance is not None)
+    return f"; closest approach to `{best.target}`: {least:.1f} m"
 
 
 def _lengths(now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:

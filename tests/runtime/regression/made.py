@@ -45,6 +45,7 @@ def made(
     cause: Kind | None = None,
     by: tuple[str, ...] = (),
     seen_by: tuple[str, ...] = (),
+    broke: tuple[str, ...] = (),
     place: Point = (5.0, 5.0, 0.0),
     nearest: Nearest | None = None,
     way: tuple[tuple[float, float, int], ...] = ((2.0, 2.0, 0),),
@@ -66,6 +67,7 @@ def made(
         arrivals=tuple(Arrival(state, 10 * row, place) for row, state in enumerate(states)),
         nearest=nearest,
         way=way,
+        broke=broke,
     )
 
 

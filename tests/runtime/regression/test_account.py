@@ -13,6 +13,7 @@ from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.explain import findings
 from tltl_runtime.regression.stages import chain
 from tltl_runtime.stealth.episodes.episode import Episode
+from tltlc.record import replace
 
 EPISODES = ("navigation", "branching", "cover_and_hide_met", "cover_and_hide_failed")
 
@@ -63,12 +64,25 @@ def test_who_dies_is_told_with_who_killed_and_how_near_it_came() -> None:
     assert found.cause in ("killed", "violated")
     assert found.by
     assert found.seen_by == ("guard",)
+    assert found.broke == ("alive",)
     near = found.nearest
     assert near is not None and near.robustness <= 0.0
     if near.target is not None:
         column = [signal.name for signal in episode.fspa.signals].index(f"distance({near.target})")
         rows = [row for row in range(len(episode.actions)) if episode.states[row] == found.unmet]
         assert near.distance == pytest.approx(min(episode.signals[row + 1, column] for row in rows), abs=0.01)
+
+
+def test_the_closest_approach_is_the_least_distance_whatever_else_the_guard_asks() -> None:
+    episode = samples.cover_and_hide_failed()[0]
+    found = samples.account_of(0, episode)
+    assert found.nearest is not None and found.nearest.target is not None
+    column = [signal.name for signal in episode.fspa.signals].index(f"distance({found.nearest.target})")
+    rows = [row for row in range(len(episode.actions)) if episode.states[row] == found.unmet]
+    signals = episode.signals.copy()
+    signals[rows[0] + 1, column] = 0.25
+    nearer = samples.account_of(0, replace(episode, signals=signals)).nearest
+    assert nearer == replace(found.nearest, distance=0.25), "the guard was as near as before"
 
 
 def test_what_is_told_of_episodes_that_fail_now() -> None:

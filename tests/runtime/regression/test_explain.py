@@ -65,7 +65,8 @@ def test_the_first_stage_that_is_not_as_before_is_told_and_where_it_ends(level: 
     now = good(fspa)
     for index in range(14):
         now[index] = made(index, False, states=to(fspa, 2), **died)  # type: ignore[arg-type]
-    now[3] = replace(now[3], nearest=replace(near, robustness=-0.5, distance=6.0))
+    # The one that came nearest to the guard did so with its target farther away.
+    now[3] = replace(now[3], nearest=replace(near, robustness=-0.1, distance=6.0))
     stage, end = findings(level, fspa, now, good(fspa))
     assert stage.text == (
         "reaches `s1`, `s2` as before, then reaches `exit` in 11 of 25 episodes; before: in 25 of 25 episodes"
@@ -86,7 +87,45 @@ def test_ends_are_told_by_kind_and_place_the_most_frequent_first(level: Level, f
     texts = told(level, fspa, now)
     assert texts[1:] == [
         "is near `exit` when time is up in 7 of 25 episodes; before: in 0 of 25 episodes",
-        "breaks the spec in the middle (seen), seen by `guard` in 5 of 25 episodes; before: in 0 of 25 episodes",
+        "breaks the spec in the middle (`seen`), seen by `guard` in 5 of 25 episodes; before: in 0 of 25 episodes",
+    ]
+
+
+def deaths(fspa: Fspa, count: int, **changed: object) -> list[Account]:
+    died = [
+        made(index, False, states=to(fspa, 2), cause="killed", by=("guard",), place=NORTH) for index in range(count)
+    ]
+    return [*(replace(each, **changed) for each in died), *good(fspa)[count:]]
+
+
+@pytest.mark.parametrize(
+    ("saw", "words"),
+    [
+        (14, ", seen by `camera`"),
+        (9, ", mostly seen by `camera`"),
+        (7, ""),
+        (1, ""),
+    ],
+)
+def test_who_saw_the_player_is_said_of_most_of_the_episodes(level: Level, fspa: Fspa, saw: int, words: str) -> None:
+    now = deaths(fspa, 14, seen_by=("guard",))
+    now[:saw] = [replace(each, seen_by=("guard", "camera")) for each in now[:saw]]
+    assert told(level, fspa, now)[1].startswith(f"dies in the north hall by `guard`{words} in 14 of 25 episodes")
+
+
+def test_a_death_names_what_broke(level: Level, fspa: Fspa) -> None:
+    now = deaths(fspa, 14, broke=("alive",), seen_by=("guard", "camera"))
+    end = told(level, fspa, now)[1]
+    assert end.startswith("dies in the north hall by `guard`, breaking `alive`, seen by `camera` in 14 of 25")
+
+
+def test_ends_of_two_stages_are_told_apart(level: Level, fspa: Fspa) -> None:
+    now = [made(index, False, states=to(fspa, 1 if index < 14 else 2)) for index in range(25)]
+    ends = [each for each in findings(level, fspa, now, good(fspa)) if "when time is up" in each.text]
+    same = "is in the middle when time is up before it reaches"
+    assert [(each.text.partition(" of 25")[0], len(each.episodes)) for each in ends] == [
+        (f"{same} `s2` in 14", 14),
+        (f"{same} `exit` in 11", 11),
     ]
 
 

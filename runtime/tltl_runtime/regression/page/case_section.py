@@ -83,12 +83,13 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
 
 def _why(report: CaseReport, episodes: Mapping[int, Episode], slug: str) -> Iterator[Markup]:
     """The reasons; those that are explanations with links to the episodes that they speak of."""
-    told = {finding.text: finding for finding in report.explanation}
+    told = list(report.explanation)
     lines = []
     for reason in report.reasons:
-        finding = told.pop(reason, None)
+        # Reasons tell the findings in their order; equal sentences may speak of other episodes.
+        finding = told.pop(0) if told and told[0].text == reason else None
         lines.append(element("li", prose(reason), _links(finding, episodes, slug) if finding else None))
-    lines += [element("li", prose(text), _links(finding, episodes, slug)) for text, finding in told.items()]
+    lines += [element("li", prose(each.text), _links(each, episodes, slug)) for each in told]
     if lines:
         yield element("h3", "Why")
         yield element("ul", *lines, class_="reasons")

@@ -13,7 +13,9 @@ from tltl_runtime.stealth.expert.routes import routes_of, shut_of
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.snapshot import Snapshot, places, touches
 from tltl_runtime.stealth.world.player import PlayerKind
+from tltlc.expression import Signal, nodes
 from tltlc.record import record
+from tltlc.resolve.spec import Atom
 
 Kind = Literal["success", "killed", "violated", "limit", "no way", "stopped"]
 
@@ -27,6 +29,7 @@ class Cause:
 
     ``by`` names the enemies and lasers that killed, who took most first; the atoms that broke the spec; or the entities
     that no way leads to.  ``time`` is in seconds since the reset, ``place`` that of the player's feet then.
+    ``broke`` names the atoms that broke the spec, whatever the ``kind``; nothing where it was not violated.
     """
 
     kind: Kind
@@ -34,6 +37,7 @@ class Cause:
     time: float
     place: Point
     text: str
+    broke: tuple[str, ...] = ()
 
 
 def cause(episode: Episode) -> Cause:
@@ -62,18 +66,34 @@ def _killed(episode: Episode, died: int) -> Cause:
     by = tuple(name for name, _ in took.most_common())
     names = [f"the laser `{name}`" if name in lasers else f"`{name}`" for name in by]
     how = "burnt" if by and lasers.issuperset(by) else "killed"
-    return _here("killed", by, shots[-1], f"{how} by {' and '.join(names)}" if by else how)
+    broke = tuple(name for name, _ in _broken(episode)) if episode.end == "violation" else ()
+    return _here("killed", by, shots[-1], f"{how} by {' and '.join(names)}" if by else how, broke=broke)
 
 
 def _violated(episode: Episode) -> Cause:
-    """By the atoms for which the last transition was taken: those of a guard's prime implicant that held."""
+    """By the atoms for which the last transition was taken."""
+    broken = _broken(episode)
+    by = tuple(name for name, _ in broken)
+    words = [f"{name} {'holds' if holds else 'does not hold'}" for name, holds in broken]
+    return _here("violated", by, episode.snapshots[-1], "violated", ", ".join(words), by)
+
+
+def _broken(episode: Episode) -> list[tuple[str, bool]]:
+    """The atoms of a violation, and whether each held: a prime implicant, which held, of the guard that was taken.
+
+    Where several did, one that reads the health of a player who died.
+    """
     fspa, taken = episode.fspa, (int(episode.states[-2]), int(episode.states[-1]))
     holds = [value > 0.0 for value in episode.atoms[-1].tolist()]
     primes = [prime for edge in fspa.edges if (edge.source, edge.target) == taken for prime in edge.guard.primes]
-    broke = next((prime for prime in primes if all(holds[atom] == wanted for atom, wanted in prime)), ())
-    words = [f"{fspa.atoms[atom].name} {'holds' if wanted else 'does not hold'}" for atom, wanted in broke]
-    by = tuple(fspa.atoms[atom].name for atom, _ in broke)
-    return _here("violated", by, episode.snapshots[-1], "violated", ", ".join(words))
+    held = [prime for prime in primes if all(holds[atom] == wanted for atom, wanted in prime)]
+    if episode.snapshots[-1].health <= 0.0:
+        held.sort(key=lambda prime: not any(_reads_health(fspa.atoms[atom]) for atom, _ in prime))
+    return [(fspa.atoms[atom].name, wanted) for atom, wanted in (held[0] if held else ())]
+
+
+def _reads_health(atom: Atom) -> bool:
+    return any(isinstance(node, Signal) and node.name == "health" for node in nodes(atom.expression))
 
 
 def _limit(episode: Episode) -> Cause:
@@ -90,10 +110,12 @@ def _limit(episode: Episode) -> Cause:
     return Cause("limit", (), last.time, last.player.position, remaining)
 
 
-def _here(kind: Kind, by: tuple[str, ...], shot: Snapshot, what: str, why: str = "") -> Cause:
+def _here(
+    kind: Kind, by: tuple[str, ...], shot: Snapshot, what: str, why: str = "", broke: tuple[str, ...] = ()
+) -> Cause:
     place = shot.player.position
     text = f"{what} at {shot.time:.2f} s at ({place[0]:.1f}, {place[1]:.1f})"
-    return Cause(kind, by, shot.time, place, f"{text}: {why}" if why else text)
+    return Cause(kind, by, shot.time, place, f"{text}: {why}" if why else text, broke)
 
 
 def _remaining(episode: Episode) -> str:

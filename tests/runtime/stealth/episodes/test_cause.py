@@ -14,6 +14,7 @@ from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.world.player import DECISION
+from tltlc.record import replace
 
 
 def careless(level: str, seed: int, spec: Path | None = None) -> Episode:
@@ -39,7 +40,7 @@ def walked(level: str, action: list[int], steps: int, seed: int, spec: str | Non
 
 def test_a_guard_kills() -> None:
     why = cause(careless("cover_and_hide", 1))
-    assert (why.kind, why.by) == ("killed", ("guard",))
+    assert (why.kind, why.by, why.broke) == ("killed", ("guard",), ("alive",))
     x, y, _ = why.place
     assert why.text == f"killed by `guard` at {why.time:.2f} s at ({x:.1f}, {y:.1f})"
 
@@ -79,8 +80,36 @@ def test_what_broke_is_named(tmp_path: Path) -> None:
     )
     episode = walked("navigation", [1, 2, 0, 0, 0], 90, 1, str(spec))
     why = cause(episode)
-    assert (why.kind, why.by) == ("violated", ("near(s1)",))
+    assert (why.kind, why.by, why.broke) == ("violated", ("near(s1)",), ("near(s1)",))
     assert why.text.endswith("): near(s1) holds")
+
+
+def test_of_what_broke_at_a_death_what_reads_the_health_is_named(tmp_path: Path) -> None:
+    """The spec has another atom that is kept, which is made to break at the same moment."""
+    within = "signal position.x: length\npredicate within in [-1, 1] = clamp(1 - position.x / 100 m, -1, 1)\n"
+    episode = careless("cover_and_hide", 1, way(tmp_path, within, "keep within\n keep alive"))
+    names = [atom.name for atom in episode.fspa.atoms]
+    atoms = episode.atoms.copy()
+    assert names.index("within") < names.index("alive") and atoms[-1, names.index("alive")] <= 0.0
+    atoms[-1, names.index("within")] = -1.0
+    assert cause(replace(episode, atoms=atoms)).broke == ("alive",)
+
+
+def test_a_death_that_the_spec_allows_breaks_nothing() -> None:
+    """Time was up then, and no transition into a trap was taken."""
+    why = cause(replace(careless("cover_and_hide", 1), end="limit"))
+    assert (why.kind, why.by, why.broke) == ("killed", ("guard",), ())
+
+
+def way(folder: Path, declared: str, kept: str) -> Path:
+    """A spec of the way through `cover_and_hide`, with what is to be kept."""
+    path = folder / "way.tltl"
+    path.write_text(
+        f"import stealth\nentity s1, s2, exit\nexclusive near(s1), near(s2), near(exit)\n{declared}"
+        f"spec way {{ limit 400 steps\n {kept}\n reach near(s1) then near(s2) then near(exit) }}\n",
+        encoding="utf-8",
+    )
+    return path
 
 
 def test_what_remained_is_told(tmp_path: Path) -> None:
