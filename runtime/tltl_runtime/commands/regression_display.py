@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import click
 
+from tltl_runtime.commands.plain import plain
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.suite import Case
 
@@ -33,7 +34,7 @@ class RegressionDisplay:
             self._draw(case, count)
         elif count % _EACH == 0 or count == case.episodes:
             said = f"{count} of {self._most}{case.episodes} episodes, {self._met} met the spec"
-            click.echo(f"{case.name}: {said}", err=True)
+            click.echo(f"{plain(case.name)}: {said}", err=True)
 
     def over(self) -> None:
         """The case is over: its bar makes room for other lines."""
@@ -48,9 +49,9 @@ class RegressionDisplay:
             from rich.progress import Progress
 
             self._bar = Progress(console=Console(stderr=True), transient=True)
-            self._bar.add_task(escape(case.name), total=case.episodes)
+            self._name = escape(plain(case.name))
+            self._bar.add_task(self._name, total=case.episodes)
             self._bar.start()
-            self._name = escape(case.name)
         self._bar.update(
             self._bar.task_ids[0], completed=count, description=f"{self._name}: {self._met} of {count} met"
         )

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import click
 
+from tltl_runtime.commands.plain import plain
 from tltl_runtime.regression.case_report import CaseReport, Figures
 
 _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
@@ -16,9 +17,9 @@ def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
     verdict = click.style(report.verdict, fg=_COLORS[report.verdict], bold=True)
     # Blanks stand outside of the colour, so that none is left at the end of a line.
     beside = f"{' ' * (6 - len(report.verdict))}  {_figures(report)}{'  (as before)' if kept else ''}"
-    yield f"{report.name:<{width}}  {verdict}{beside.rstrip()}"
+    yield f"{plain(report.name):<{width}}  {verdict}{beside.rstrip()}"
     if report.verdict != "pass":
-        yield from (f"    {reason}" for reason in report.reasons)
+        yield from (f"    {plain(reason)}" for reason in report.reasons)
 
 
 def sum_line(reports: Sequence[CaseReport]) -> str:

@@ -116,7 +116,7 @@ class Report {
   /** Open what the address names: `#case`, `#case/episode` or `#case/episode/step`. */
   #follow() {
     clearTimeout(this.waiting);
-    const [slug, episode, step] = decodeURIComponent(location.hash.slice(1)).split("/");
+    const [slug, episode, step] = address();
     const section = document.getElementById(slug);
     if (!section?.classList.contains("case")) return;
     if (section.hidden) {
@@ -124,7 +124,7 @@ class Report {
       this.#applyFilter();
     }
     const view = this.views.get(slug);
-    const isOpen = view && episode !== undefined && view.open(Number(episode), Number(step) || 0);
+    const isOpen = view && episode !== undefined && view.open(Number(episode), Math.round(Number(step)) || 0);
     if (isOpen) this.active = view;
     else if (view?.player.episode) view.showAll();
     // Who chose the episode on the map or in the list looks at it already.
@@ -163,6 +163,15 @@ class Report {
     for (const each of document.querySelectorAll("[data-verdict]")) {
       each.hidden = this.filter.checked && each.dataset.verdict === "pass";
     }
+  }
+}
+
+/** The parts of the page's address; of one that no text was encoded as, an empty one. */
+function address() {
+  try {
+    return decodeURIComponent(location.hash.slice(1)).split("/");
+  } catch {
+    return [""];
   }
 }
 

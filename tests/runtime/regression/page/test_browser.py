@@ -136,6 +136,21 @@ def test_keys_play_and_step(browser: Browser, file: Path) -> None:
         assert "The end: " in tab.locator(f"#{CASE} .state").inner_text()
 
 
+@pytest.mark.parametrize("address", ["#%", "#%/0/1", f"#{CASE}/0/%"])
+def test_an_address_that_is_none_shows_the_page(browser: Browser, file: Path, address: str) -> None:
+    with chromium.opened(browser, file, address, **WIDE) as tab:
+        assert not tab.locator(f"#{CASE} .controls").is_visible()
+        tab.locator(f"#{CASE} .reasons a.episode").first.click()
+        tab.locator(f"#{CASE} .controls").wait_for(state="visible")
+
+
+@pytest.mark.parametrize(("step", "shown"), [("1.5", 2), ("-3", 0), ("x", 0)])
+def test_a_step_that_is_none_opens_the_next_one(browser: Browser, file: Path, step: str, shown: int) -> None:
+    with chromium.opened(browser, file, f"#{CASE}/0/{step}", **WIDE) as tab:
+        assert tab.locator(f"#{CASE} .moment").inner_text().startswith(f"step {shown} of ")
+        assert "NaN" not in tab.locator(f"#{CASE} .player").inner_text()
+
+
 def test_episodes_are_chosen_and_left(tab: Tab) -> None:
     which = tab.locator(f"#{CASE} .which")
     which.scroll_into_view_if_needed()

@@ -1,0 +1,54 @@
+"""What files hold is printed, and gives no commands."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.runtime.regression.made import case, made
+from tltl_runtime.commands.plain import plain
+from tltl_runtime.commands.regression_display import RegressionDisplay
+from tltl_runtime.commands.regression_text import case_lines
+from tltl_runtime.regression.case_report import CaseReport
+from tltlc.record import replace
+
+EVIL = "x\n::error::forged\r\n\x1b[31mred\x07"
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("navigation:v1", "navigation:v1"),
+        ("dies `in` the hall — 14 of 25", "dies `in` the hall — 14 of 25"),
+        ("a::b", "a::b"),
+        ("x\n::error::y", "x ::error::y"),
+        ("a\r\nb\u2028c\xa0d", "a  b c d"),
+        ("\x1b[31mred\x00\u202e", "\ufffd[31mred\ufffd\ufffd"),
+        ("::warning::y", ": :warning::y"),
+        (" \t::set-output name=a::b", "  : :set-output name=a::b"),
+        (":::", ": ::"),
+        ("a ##[error]b", "a ## [error]b"),
+    ],
+)
+def test_no_command_is_left(text: str, shown: str) -> None:
+    assert plain(text) == shown
+
+
+def commands(text: str) -> list[str]:
+    """The lines of a log that the service takes for commands, or that move a terminal."""
+    return [line for line in text.splitlines() if line.lstrip().startswith("::") or "##[" in line or "\x1b" in line]
+
+
+def test_names_and_reasons_are_one_line_each() -> None:
+    report = CaseReport(f"::error::{EVIL}", "room", "v0", "fail", (EVIL, f"::warning::{EVIL}", "##[error]forged"))
+    lines = list(case_lines(report, 10, kept=False))
+    assert len(lines) == 1 + len(report.reasons)
+    verdict, *reasons = lines
+    assert "\n".join(lines).count("forged") == 4
+    assert commands("\n".join([verdict.replace("\x1b[31m\x1b[1mfail\x1b[0m", "fail"), *reasons])) == []
+
+
+def test_progress_is_told_in_lines_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+    with RegressionDisplay() as display:
+        display(replace(case(f"::error::{EVIL}"), episodes=1), 1, made())
+    told = capsys.readouterr().err
+    assert "forged" in told and len(told.splitlines()) == 1 and commands(told) == []
