@@ -9,20 +9,24 @@ What the paper leaves open is decided so:
 
 - the agent senses what the other one does, the automaton's state included, since the architecture is identical; of the
   automaton's rewards it gets nothing, and a success or failure is all that it is told of the spec;
+- the 5 % are of the limit that comes first, that of steps or that of minutes, so that any training has its share;
 - while the actor is cloned, it plays episodes, sampled, which count; the critic and the discriminator learn from these,
   so that GAIL does not begin with an ignorant critic, and the actor from the demonstrations alone;
 - an update clones as many passes over all demonstrations as PPO makes over a rollout, at PPO's learning rate;
 - the discriminator sees decisions, observations with actions, as in Ho and Ermon's paper; it has the policy's
   convolutions of its own, then two layers of the encoding's width; it makes a pass over each rollout, against as many
   decisions of demonstrations, with a penalty on its gradients as in ML-Agents, by which the paper trains;
-- its reward is -log(1 - D), ML-Agents' form, which is never negative: were it to count in full, to live on would be
-  worth more than the terminal reward, so it counts a hundredth (``strength``), and one critic values both together;
+- its reward is -log(1 - D), ML-Agents' form, which is never negative; it counts a hundredth (``strength``), and one
+  critic values it together with the terminal reward.  At gamma 0.99, to live on for ever is then worth -log(1 - D):
+  0.69 where decisions cannot be told from demonstrated ones, D = 1/2, and less than a success until D is above
+  1 - 1/e = 0.63; beyond, nothing cuts it;
 - an episode that reaches the limit ends in failure: nothing is estimated of what would have come.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import inf
 from typing import Any
 
 import torch
@@ -56,8 +60,11 @@ class Gail(PPO):
         self._penalty = float(gail["gradient_penalty"])
         self.steps = 0
         """Decisions of all processes that it has learned from."""
-        self.cloning_steps = int(gail["cloning_steps"])
-        """Before so many the actor is cloned; of those that a training is begun with, whatever its limit is later."""
+        self.seconds = 0.0
+        """How long it has trained, in seconds; who drives it says so."""
+        self.cloning_steps, self.cloning_s = int(gail["cloning_steps"]), float(gail["cloning_s"])
+        """Before so many steps, and so many seconds, the actor is cloned: shares of the limits that a training is begun
+        with, whatever they are later."""
         example = storage.observations[0].to("cpu")
         self.discriminator = Discriminator(example, gail["branches"], gail["discriminator"]).to(self.device)
         if not self.is_multi_gpu:
@@ -74,7 +81,7 @@ class Gail(PPO):
     @property
     def clones(self) -> bool:
         """Whether the actor is cloned as yet."""
-        return self.steps < self.cloning_steps
+        return self.steps < self.cloning_steps and self.seconds < self.cloning_s
 
     def process_env_step(self, obs: Any, rewards: Tensor, dones: Tensor, extras: dict[str, Tensor]) -> None:
         """Record a step of the environment, of whose ``rewards`` nothing counts; and no end is a mere interruption."""
@@ -105,6 +112,7 @@ class Gail(PPO):
             "discriminator_optimizer_state_dict": self._discriminating.state_dict(),
             "steps": self.steps,
             "cloning_steps": self.cloning_steps,
+            "cloning_s": self.cloning_s,
         }
 
     def load(self, loaded_dict: dict[str, Any], load_cfg: dict[str, Any] | None, strict: bool) -> bool:
@@ -112,6 +120,8 @@ class Gail(PPO):
         self.discriminator.load_state_dict(loaded_dict["discriminator_state_dict"], strict=strict)
         self._discriminating.load_state_dict(loaded_dict["discriminator_optimizer_state_dict"])
         self.steps, self.cloning_steps = loaded_dict["steps"], loaded_dict["cloning_steps"]
+        # Older checkpoints were cloned by their steps alone.
+        self.cloning_s = loaded_dict.get("cloning_s", inf)
         return bool(super().load(loaded_dict, load_cfg, strict))
 
     def train_mode(self) -> None:

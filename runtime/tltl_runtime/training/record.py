@@ -67,7 +67,7 @@ def training_record(run: Run, card: Card, last: Report, measured: Sequence[Mappi
         "steps": last.steps,
         "replayed": last.replayed,
         "search": None if last.searched is None else to_json(last.searched),
-        "imitated": None if last.imitated is None else to_json(last.imitated),
+        "imitated": None if last.imitated is None else {**to_json(last.imitated), "cloned": _cloned(measured)},
         "seconds": round(last.seconds, 3),
         "window": {"episodes": last.window.count, **means(last.window)},
         "versions": versions(),
@@ -128,6 +128,11 @@ def ended_as(run: Run) -> dict[str, Any] | None:
     if steps >= stop.steps:
         return {**made, "end": "steps"}
     return {**made, "end": "minutes"} if 0 < stop.minutes * 60 <= seconds else None
+
+
+def _cloned(measured: Sequence[Mapping[str, Any]]) -> int:
+    """In how many of the first steps an agent that imitates was cloned."""
+    return max((line["steps"] for line in measured if "cloning" in line["losses"]), default=0)
 
 
 def _thinned(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:

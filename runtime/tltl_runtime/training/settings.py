@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Sequence
+from math import inf
 from pathlib import Path
 from typing import Any, Final, Literal
 
@@ -59,11 +60,12 @@ class Rollout:
 
 @record
 class Imitation:
-    """The imitation baseline (paper, section VI): behavioural cloning for a share ``cloning`` of the steps, then GAIL.
+    """The imitation baseline (paper, section VI): behavioural cloning for a share ``cloning``, then GAIL.
 
-    ``demonstrations`` of the expert are recorded where none are named.  The discriminator has two layers of width
-    ``encoding`` and the learning rate ``discriminator_rate``; its reward counts ``strength`` times, and an episode ends
-    with plus or minus ``terminal``.  See :mod:`tltl_runtime.training.gail`.
+    The share is of the limit that comes first, of steps or of minutes.  ``demonstrations`` of the expert are recorded
+    where none are named.  The discriminator has two layers of width ``encoding`` and the learning rate
+    ``discriminator_rate``; its reward counts ``strength`` times, and an episode ends with plus or minus ``terminal``.
+    See :mod:`tltl_runtime.training.gail`.
     """
 
     demonstrations: int
@@ -203,6 +205,7 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
         "strength": imitation.strength,
         "terminal": imitation.terminal,
         "cloning_steps": int(imitation.cloning * settings.stop.steps),
+        "cloning_s": imitation.cloning * settings.stop.minutes * 60 if settings.stop.minutes else inf,
     }
     return {
         "imitation": settings.exploration.imitation,

@@ -154,6 +154,7 @@ class _Training:
         self._standstill = Standstill(self._state.steps)
         self._written: Best | None = None
         """The best policy of which there is a file."""
+        self._tell_time()
 
     def reports(self) -> Generator[Report]:
         """Train to the end."""
@@ -220,6 +221,7 @@ class _Training:
                 met=confirmation is not None and confirmation.passed,
             ),
         )
+        self._tell_time()
         reason = self._reason()
         due = bool(reason) or time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
         report = self._report(iteration, reason, confirmation, checkpointed=due)
@@ -252,6 +254,11 @@ class _Training:
         if ppo.entropy_schedule == "fading":
             met = self._windows.window.successes / (stop.windows * stop.episodes)
             self._runner.alg.entropy_coef = ppo.entropy * (1 - met)
+
+    def _tell_time(self) -> None:
+        """Tell who imitates how long it has trained: it clones for a share of the minutes, where these are limited."""
+        if isinstance(self._runner.alg, Gail):
+            self._runner.alg.seconds = self._state.seconds
 
     def _best(self) -> Best | None:
         """The best policy so far: that which played the end of the last window, where none before did better."""

@@ -50,7 +50,8 @@ def test_from_the_experts_demonstrations_to_the_evaluation(tltlc: TltlcFunction,
     assert said[2] == "recording the expert: 2 of 2 demonstrations, the episode of seed 1 is kept"
     assert said[3] == "imitating 2 demonstrations of 16 decisions, by expert"
     record = json.loads((folder / "record.json").read_text())
-    assert record["imitated"] == {"episodes": 2, "decisions": 16, "players": ["expert"], "left_out": []}
+    told = {"episodes": 2, "decisions": 16, "players": ["expert"], "left_out": [], "cloned": 64}
+    assert record["imitated"] == told
     assert tltlc("evaluate", folder, "--episodes", "2").status == 0
     assert "spec was met" in tltlc("inspect", folder).out
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 from pathlib import Path
 from typing import Any
@@ -82,7 +83,7 @@ def test_cloning_comes_first(imitated: tuple[Run, list[Report]]) -> None:
 def test_its_record_and_its_policy_tell_how_it_was_made(imitated: tuple[Run, list[Report]]) -> None:
     run, reports = imitated
     made = write_record(run, reports[-1])
-    assert made["imitated"] == {"episodes": 2, "decisions": 16, "players": ["me"], "left_out": []}
+    assert made["imitated"] == {"episodes": 2, "decisions": 16, "players": ["me"], "left_out": [], "cloned": 64}
     assert (made["settings"]["method"], made["search"]) == ("imitation", None)
     policy = read_policy(run.folder / POLICY)
     assert policy.card.training == made
@@ -114,6 +115,29 @@ def test_a_higher_limit_does_not_clone_again(folder: Path, mine: Path) -> None:
     assert set(next(reports).iteration.losses) == GAIL
     reports.close()
     assert checkpoint_of(longer).algorithm["cloning_steps"] == 57
+
+
+def test_of_a_limit_of_minutes_it_clones_a_share_too(folder: Path, mine: Path) -> None:
+    limits = {"stop__steps": 10**9, "stop__minutes": 60.0}
+    run = imitating(folder / "minutes", mine, imitation__cloning=1e-6, **limits)
+    reports = train(run)
+    told = [next(reports) for _ in range(3)]
+    reports.close()
+    # 3.6 ms, in which no rollout is played, and 1,000 steps, which are more than the three of them.
+    assert [set(each.iteration.losses) for each in told] == [CLONING, GAIL, GAIL]
+    kept_ = checkpoint_of(run).algorithm
+    assert (kept_["cloning_steps"], kept_["cloning_s"]) == (1000, pytest.approx(0.0036))
+    longer = replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, minutes=10**6)))
+    reports = train(longer, resume=True)
+    assert set(next(reports).iteration.losses) == GAIL
+    reports.close()
+    assert checkpoint_of(longer).algorithm["cloning_s"] == kept_["cloning_s"]
+
+
+def test_without_a_limit_of_minutes_time_does_not_count(tmp_path: Path, mine: Path) -> None:
+    made = algorithm_of(imitating(tmp_path / "endless", mine))
+    made.seconds = 1e12
+    assert made.clones
 
 
 def test_workers_do_not_count(folder: Path, imitated: tuple[Run, list[Report]], mine: Path) -> None:
@@ -178,6 +202,21 @@ def test_the_reward_is_the_discriminators_and_the_end_of_the_episode(tmp_path: P
     ends = torch.zeros(16, 4)
     ends[15, 1], ends[15, 3] = 2.0, -2.0
     assert torch.allclose(made.storage.rewards.squeeze(-1), given + ends, atol=1e-6)
+
+
+@pytest.mark.parametrize(("share", "worth"), [(0.5, 0.693), (1 - 1 / math.e, 1.0), (0.7, 1.204)])
+def test_what_it_is_worth_to_live_on(
+    tmp_path: Path, mine: Path, monkeypatch: pytest.MonkeyPatch, share: float, worth: float
+) -> None:
+    """By the default settings, where all decisions are taken for demonstrated ones with a probability ``share``."""
+    made = algorithm_of(imitating(tmp_path / "alive", mine))
+    logit = math.log(share / (1 - share))
+    monkeypatch.setattr(made.discriminator, "forward", lambda decisions: torch.full((len(decisions[1]),), logit))
+    _rollout(made, successes=(1,))
+    rewards = made.storage.rewards.squeeze(-1)
+    endless = rewards[0, 0].item() / (1 - made.gamma)
+    assert endless == pytest.approx(worth, abs=0.001)
+    assert rewards[15, 1].item() == pytest.approx(1 + 0.01 * worth, abs=0.001)
 
 
 def test_the_experts_demonstrations_are_recorded_first(folder: Path) -> None:
