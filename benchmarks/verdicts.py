@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.util import find_spec
+from math import exp, fsum, lgamma, log, log1p
 from typing import TYPE_CHECKING, Final, Literal
 
 from benchmarks.store import Record, Store, measure_missing
@@ -34,6 +35,12 @@ LATEST: Final = (25, 50, 100)
 
 _RARE: Final = 0.97
 """From this pass rate on false alarms are rare."""
+
+JUST_BELOW: Final = 0.849
+"""A pass rate that no other one below the threshold is as hard to tell from."""
+
+THRESHOLD: Final = 0.05
+"""Of progress and reward, as it is where a suite says nothing else."""
 
 _STAGES: Final = (0.25, 0.5, 0.75)
 """The progress of failures, as likely one as the other."""
@@ -59,6 +66,18 @@ class Scenario:
     pairing: Pairing = "independent"
 
     @property
+    def is_slight(self) -> bool:
+        """Whether something has changed, and by less than its threshold."""
+        now, before = self.now, self.before
+        return now != before and now.rate == before.rate and abs(now.reward - before.reward) < THRESHOLD
+
+    @property
+    def is_rare(self) -> bool:
+        """Whether what a verdict may do wrong is rare, so that many trials are needed to see it."""
+        same = self.now == self.before
+        return self.is_slight or (same and (self.now.rate >= _RARE or self.now.rate == JUST_BELOW))
+
+    @property
     def name(self) -> str:
         """As it stands in the results."""
         now, before = self.now, self.before
@@ -76,11 +95,13 @@ def _unchanged() -> Iterator[Scenario]:
     for rate in (1.0, 0.99, 0.98, 0.97, 0.95):
         for pairing in ("identical", "half", "independent"):
             yield Scenario(Play(rate), Play(rate), pairing)
-    for rate in (0.92, 0.9, 0.85, 0.849, 0.8, 0.7, 0.6, 0.499, 0.4, 0.3, 0.0):
+    for rate in (0.92, 0.9, 0.85, JUST_BELOW, 0.8, 0.7, 0.6, 0.499, 0.4, 0.3, 0.0):
         yield Scenario(Play(rate), Play(rate), "identical")
 
 
 def _changed() -> Iterator[Scenario]:
+    for reward, spread in ((0.75, 0.05), (0.745, 0.15)):
+        yield Scenario(Play(0.98, reward, spread), Play(0.98, 0.79, spread))
     for reward, spread in ((0.65, 0.05), (0.65, 0.15), (0.69, 0.05), (0.69, 0.15)):
         yield Scenario(Play(0.98, reward, spread), Play(0.98, 0.74, spread))
     for before, now in ((1.0, 0.9), (0.98, 0.9), (0.97, 0.88), (0.98, 0.8), (0.98, 0.6), (0.98, 0.3)):
@@ -119,10 +140,9 @@ def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan | Non
 
     def record(name: str) -> Record:
         scenario = scenarios[name]
-        is_rare = scenario.now == scenario.before and scenario.now.rate >= _RARE
-        return measured(scenario, made.trials if is_rare else made.few, made.sizes)
+        return measured(scenario, made.trials if scenario.is_rare else made.few, made.sizes)
 
-    measure_missing(store, SECTION, scenarios, record, say, done="trials")
+    measure_missing(store, SECTION, scenarios, record, say, done="slight")
 
 
 def measured(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
@@ -140,6 +160,7 @@ def measured(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
         "rates": [scenario.before.rate, scenario.now.rate],
         "pairing": scenario.pairing,
         "changed": scenario.now != scenario.before,
+        "slight": scenario.is_slight,
         "suites": {str(size): _shares(judgements) for size, judgements in found.items()},
     }
 
@@ -170,6 +191,30 @@ def in_suite(share: float, size: int) -> float:
     return float(1.0 - (1.0 - share) ** size)
 
 
+def at_most(share: float, trials: int) -> float:
+    """The upper limit of 95 % for what happened in a share of the trials.
+
+    The greatest probability with which it happens that seldom in at least 1 of 20 simulations (C. Clopper, E. Pearson,
+    Biometrika 26 (1934), 404-413).
+    """
+    count = round(share * trials)
+    low, high = share, 1.0
+    for _ in range(50 if count < trials else 0):
+        middle = (low + high) / 2
+        low, high = (middle, high) if _seldom(count, trials, middle) >= 0.05 else (low, middle)
+    return high
+
+
+def _seldom(count: int, trials: int, probability: float) -> float:
+    """How likely at most ``count`` of the trials are."""
+    logs = log(probability), log1p(-probability)
+    each = (
+        lgamma(trials + 1) - lgamma(done + 1) - lgamma(trials - done + 1) + done * logs[0] + (trials - done) * logs[1]
+        for done in range(count + 1)
+    )
+    return fsum(map(exp, each))
+
+
 def _episodes(play: Play, generator: np.random.Generator) -> list[Drawn]:
     import numpy as np
 
@@ -185,12 +230,15 @@ def _episodes(play: Play, generator: np.random.Generator) -> list[Drawn]:
 
 
 def _shares(judgements: Sequence[tuple[Judgement, int]]) -> Mapping[str, float]:
-    """Shares of the verdicts, of those that are not certain, and of changes that were found early; mean episodes."""
+    """Shares of the verdicts, of those that are not certain, of figures that are said to have certainly changed, and of
+    changes that were found early; mean episodes.
+    """
     counts = Counter(judgement.verdict for judgement, _ in judgements)
     early = {f"changed_by_{latest}": _found_by(judgements, latest) for latest in LATEST}
     figures = {
         **{verdict: counts[verdict] for verdict in ("pass", "review", "fail")},
         "uncertain": sum(not judgement.certain for judgement, _ in judgements),
+        "certain_change": sum(bool(judgement.changes) for judgement, _ in judgements),
         **early,
     }
     total = len(judgements)

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks import verdicts, verdicts_report
 from benchmarks.store import Store
-from benchmarks.verdicts import ERROR, Plan, Play, Scenario, drawn, in_suite, judged, measured
+from benchmarks.verdicts import ERROR, Plan, Play, Scenario, at_most, drawn, in_suite, judged, measured
 
 np = pytest.importorskip("numpy")
 
@@ -66,18 +66,45 @@ def test_a_suite_has_what_any_of_its_cases_has() -> None:
     assert in_suite(0.0, 30) == 0.0
 
 
+def test_an_upper_limit_is_what_is_seen_that_seldom_once_in_twenty_times() -> None:
+    # The rule of three, and its exact form.
+    assert at_most(0.0, 4000) == pytest.approx(1 - 0.05 ** (1 / 4000)) == pytest.approx(3 / 4000, rel=0.01)
+    assert at_most(1.0, 10) == 1.0
+    seen = np.random.default_rng(3).binomial(500, at_most(0.02, 500), 4000) <= 10
+    assert np.mean(seen) == pytest.approx(0.05, abs=0.01)
+
+
+def test_a_change_below_its_threshold_is_slight() -> None:
+    assert Scenario(Play(0.98, 0.745), Play(0.98, 0.79)).is_slight
+    assert not Scenario(Play(0.98, 0.73), Play(0.98, 0.79)).is_slight
+    assert not Scenario(Play(0.98), Play(0.98)).is_slight
+    assert not Scenario(Play(0.9), Play(0.98)).is_slight
+    rare = {each.name for each in Plan().scenarios if each.is_rare}
+    assert {"0.849 identical", "reward 0.79 to 0.75, ± 0.05", "0.97 half"} < rare
+    assert not {"0.95 half", "reward 0.74 to 0.65, ± 0.05", "0.8 identical"} & rare
+
+
 def test_false_alarms_and_misses_are_goals() -> None:
-    good = {"pass": 1.0, "review": 0.0, "fail": 0.0}
-    alarm = {"pass": 0.99, "review": 0.01, "fail": 0.0}
+    good = {"pass": 1.0, "review": 0.0, "fail": 0.0, "certain_change": 0.0}
+    alarm = {"pass": 0.99, "review": 0.01, "fail": 0.0, "certain_change": 0.01}
 
-    def record(rate: float, shares: dict[str, float]) -> dict[str, object]:
-        return {"changed": False, "rates": [rate, rate], "suites": {"1": good if rate > 0.85 else alarm, "9": shares}}
+    def record(rate: float, shares: dict[str, float], trials: int = 100_000, slight: bool = False) -> dict[str, object]:
+        suites = {"1": {**shares, "pass": min(1.0, shares["pass"] + 0.001)}, "9": shares}
+        return {"changed": slight, "slight": slight, "rates": [rate, rate], "trials": trials, "suites": suites}
 
-    records = {"0.98 half": record(0.98, alarm), "0.8 identical": record(0.8, {**good, "pass": 0.001})}
-    alarms, misses = verdicts_report.goals(records)
-    assert alarms[1:] == ("most 8.6%, in suites of 9 cases of 0.98 half", "**missed**")
-    assert misses[1:] == ("most 99.0%, in suites of 1 cases of 0.8 identical", "**missed**")
-    fine, missed = verdicts_report.goals({**records, "0.98 half": record(0.97, alarm), "1 half": record(1.0, good)})
-    assert fine[1:] == ("most 0.0%, in suites of 9 cases of 1 half", "met")
-    assert missed[2] == "**missed**"
-    assert list(verdicts_report.goals({})) == []
+    records = {
+        "0.98 half": record(0.98, alarm),
+        "0.849 identical": record(0.849, {**alarm, "pass": 0.001}),
+        "reward": record(0.98, alarm, slight=True),
+    }
+    alarms, misses, slight = verdicts_report.goals(records)
+    assert alarms[1:] == ("most 9.1% (8.6% were seen), in suites of 9 cases of 0.98 half", "**missed**")
+    assert misses[1:] == ("most 1.1% (0.9% were seen), in suites of 9 cases of 0.849 identical", "met")
+    assert slight[1:] == ("most 9.1% (8.6% were seen), in suites of 9 cases of reward", "**missed**")
+    # What was never seen in few trials is no goal that is met.
+    for trials, verdict in ((4000, "met"), (100, "**missed**")):
+        ((_, told, found),) = verdicts_report.goals({"1 half": record(1.0, good, trials)})
+        assert "(0.0% were seen)" in told and found == verdict
+    earlier = {"changed": False, "rates": [1.0, 1.0], "suites": {"1": good}}
+    assert list(verdicts_report.goals({"1 half": earlier})) == [] == list(verdicts_report.goals({}))
+    assert verdicts_report.section({"1 half": earlier}) == ""

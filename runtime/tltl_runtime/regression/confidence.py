@@ -18,11 +18,14 @@ from numpy.typing import NDArray
 _POINTS: Final = 32
 """So many rates are bet on, between the one that is to be refuted and 1."""
 
-_BETS: Final = ((1.0, 0.99), (2.0, 0.99), (4.0, 0.99), (16.0, 0.25), (16.0, 0.5), (16.0, 0.9))
-"""Steepness and share of the stake: the first three win by rare great differences, the others by frequent small ones.
+_SHARES: Final = (0.05, 0.2, 0.5, 0.9)
+"""What bets on a mean risk, of what no value can make them lose: great shares win sooner, small ones by less.
 
-They were chosen by simulation, for figures in [-1, 1] whose changes count from 0.05 on.
+They were chosen by simulation, for figures whose changes count from 0.05 on.
 """
+
+_TINY: Final = 1e-6
+"""Where an end of a mean's interval is that near to what no value exceeds, so near are all values or it is refuted."""
 
 
 def rate_interval(successes: int, failures: int, error: float) -> tuple[float, float]:
@@ -40,19 +43,21 @@ def rate_interval(successes: int, failures: int, error: float) -> tuple[float, f
     return _lower_end(successes, failures, error / 2), 1.0 - _lower_end(failures, successes, error / 2)
 
 
-def change_p_value(before: Sequence[float], now: Sequence[float]) -> float:
-    """How likely it is that the differences look as one-sided at any time, where episodes of equal seeds go alike.
+def mean_p_value(values: Sequence[float], low: float, high: float, least: float = -1.0, most: float = 1.0) -> float:
+    """How likely values in [``least``, ``most``] are as one-sided at any time, if their mean is in [``low``, ``high``].
 
-    If such an episode may as well have gone the other way round, its difference d is as likely as -d, and a stake
-    multiplied by 1 + share * tanh(steepness * d) stays the same on average, as does the mean of several.  The p-value
-    is 1 over its greatest value so far, so it may be looked at after each episode.  Equal sequences have the p-value
-    1.  Raises ValueError where the sequences differ in length.
+    Where the mean of each, given those before, is at least ``low``, a stake multiplied by
+    1 + share * (low - value) / (most - low) does not grow on average, and likewise above ``high``; so neither does the
+    mean of such stakes, of several shares on both sides (I. Waudby-Smith, A. Ramdas, J. R. Stat. Soc. B 86 (2024),
+    1-27).  The p-value is 1 over its greatest value so far, so it may be looked at after each value.
+
+    Raises ValueError where ``low`` is above ``high``, or ``least`` not below ``most``.
     """
-    if len(before) != len(now):
-        raise ValueError(f"{len(before)} values before and {len(now)} now are no pairs")
-    differences = np.asarray(now, dtype=np.float64) - np.asarray(before, dtype=np.float64)
-    bets = [sign * share * np.tanh(steep * differences) for steep, share in _BETS for sign in (1.0, -1.0)]
-    stakes = np.cumsum(np.log1p(np.stack(bets)), axis=1)
+    if not (low <= high and least < most):
+        raise ValueError(f"no mean is in [{low}, {high}] of values in [{least}, {most}]")
+    found = np.asarray(values, dtype=np.float64)
+    below, above = (low - found) / max(most - low, _TINY), (found - high) / max(high - least, _TINY)
+    stakes = np.cumsum(np.log1p(np.stack([share * side for share in _SHARES for side in (below, above)])), axis=1)
     return float(np.exp(-max([0.0, *_log_means(stakes).tolist()])))
 
 

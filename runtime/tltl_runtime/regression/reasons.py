@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Played
 from tltl_runtime.regression.suite import Thresholds
-from tltl_runtime.regression.verdict import Judgement
+from tltl_runtime.regression.verdict import Judgement, beyond
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import changes
 from tltl_runtime.stealth.supply.feasible import reach_warnings
@@ -33,6 +33,9 @@ def reasons(
     for change in judgement.changes:
         how = "lower" if change.now < change.before else "higher"
         yield f"{change.figure} is {how}, {change.now:.2f} on average; before: {change.before:.2f}"
+    if judgement.verdict == "review" and not judgement.certain:
+        for figure in beyond(now, before, thresholds):
+            yield f"{figure} seems to have changed by {getattr(thresholds, figure):g} or more, which is not certain"
 
 
 def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:

@@ -9,30 +9,34 @@ The rule, for a case whose share of the suite's ``error`` is e (the error divide
 4. ``pass`` where it is certainly at least ``thresholds.pass_rate``, and the means of progress and reward differ from
    the baseline's by half of their thresholds at most.
 5. Where all of the case's episodes are played and nothing is certain: ``pass`` where the pass rate is certainly at
-   least ``thresholds.pass_rate``, else ``review``.
+   least ``thresholds.pass_rate``, and the means differ by less than their thresholds, else ``review``.
 
 The pass rate is certainly outside of its interval, which has the error e over all looks at once
-(:func:`~tltl_runtime.regression.confidence.rate_interval`).  A figure has certainly changed where its means over equal
-seeds differ by its threshold at least, and the p-value of that, over all looks at once, is e/4 at most
-(:func:`~tltl_runtime.regression.confidence.change_p_value`).  So e bounds the probability of a wrong verdict that is
-certain, by the rate or by the figures, whatever the pass rate is.
+(:func:`~tltl_runtime.regression.confidence.rate_interval`).  Means are compared over equal seeds.  A figure has
+certainly changed where they differ by its threshold at least, and the p-value of its mean being that near to the
+baseline's, over all looks at once, is e/4 at most (:func:`~tltl_runtime.regression.confidence.mean_p_value`): the mean
+of the policy's episodes is then further from the one that was recorded.  So e bounds the probability of a wrong verdict
+that is certain, by the rate or by the figures, whatever the pass rate is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from operator import attrgetter
 from statistics import fmean
 from typing import Final, Literal, Protocol
 
-from tltl_runtime.regression.confidence import change_p_value, rate_interval
+from tltl_runtime.regression.confidence import mean_p_value, rate_interval
 from tltl_runtime.regression.suite import LEAST_EPISODES, Thresholds
 from tltlc.record import record
 
 Verdict = Literal["pass", "review", "fail"]
 
-FIGURES: Final = ("progress", "reward")
-"""What is compared with the baseline."""
+FIGURES: Final[Mapping[str, tuple[float, float]]] = {"progress": (0.0, 1.0), "reward": (-1.0, 1.0)}
+"""What is compared with the baseline, and between which values it lies.
+
+A reward is progress less the share of the limit that it took, the rest of which a violation costs, too (Algorithm 1).
+"""
 
 _ALIKE: Final = 0.5
 """Means are alike that differ by this share of the threshold at most."""
@@ -56,7 +60,7 @@ class Outcome(Protocol):
 
 @record
 class Change:
-    """A figure's mean that differs from the baseline's over the same seeds, and how likely that is by chance."""
+    """A figure's mean, and the baseline's that it is further from than its threshold; how likely that is by chance."""
 
     figure: str
     before: float
@@ -85,42 +89,46 @@ def judge(
         return None
     passed = sum(each.success for each in now)
     low, high = interval = rate_interval(passed, len(now) - passed, error)
-    means = tuple(_means(now, before))
-    changes = tuple(_changes(means, now, before, thresholds, error))
+    differences = _differences(now, before)
+    apart = _beyond(differences, thresholds)
+    changes = tuple(_changes(apart, now, before, thresholds, error))
     if high < thresholds.fail_rate:
         return Judgement("fail", True, interval, changes)
     if low >= thresholds.fail_rate and (high < thresholds.pass_rate or changes):
         return Judgement("review", True, interval, changes)
-    alike = all(abs(new - old) <= _ALIKE * getattr(thresholds, figure) for figure, old, new in means)
-    if low >= thresholds.pass_rate and alike:
+    is_met = low >= thresholds.pass_rate
+    if is_met and all(by <= _ALIKE * getattr(thresholds, figure) for figure, by in differences.items()):
         return Judgement("pass", True, interval, changes)
     if len(now) < episodes:
         return None
-    return Judgement("pass" if low >= thresholds.pass_rate else "review", False, interval, changes)
+    return Judgement("pass" if is_met and not apart else "review", False, interval, changes)
 
 
-def _means(now: Sequence[Outcome], before: Sequence[Outcome]) -> Iterator[tuple[str, float, float]]:
-    """The means of each figure, before and now; of a baseline of fewer episodes only these are compared."""
+def beyond(now: Sequence[Outcome], before: Sequence[Outcome], thresholds: Thresholds) -> tuple[str, ...]:
+    """The figures whose means differ over equal seeds by their thresholds at least, which may be by chance."""
+    return _beyond(_differences(now, before), thresholds)
+
+
+def _beyond(differences: Mapping[str, float], thresholds: Thresholds) -> tuple[str, ...]:
+    return tuple(figure for figure, by in differences.items() if by >= getattr(thresholds, figure))
+
+
+def _differences(now: Sequence[Outcome], before: Sequence[Outcome]) -> dict[str, float]:
+    """By how much the means of each figure differ over the seeds that both have."""
     count = min(len(now), len(before))
-    for figure in FIGURES:
-        old, new = (fmean(_values(outcomes[:count], figure)) for outcomes in (before, now))
-        yield figure, old, new
+    pairs = {figure: (_values(now[:count], figure), _values(before[:count], figure)) for figure in FIGURES}
+    return {figure: abs(fmean(new) - fmean(old)) for figure, (new, old) in pairs.items()}
 
 
 def _changes(
-    means: Sequence[tuple[str, float, float]],
-    now: Sequence[Outcome],
-    before: Sequence[Outcome],
-    thresholds: Thresholds,
-    error: float,
+    figures: Sequence[str], now: Sequence[Outcome], before: Sequence[Outcome], thresholds: Thresholds, error: float
 ) -> Iterator[Change]:
-    count = min(len(now), len(before))
-    for figure, old, new in means:
-        # Most episodes end alike, so that what the test costs is spared.
-        if abs(new - old) >= getattr(thresholds, figure):
-            p_value = change_p_value(_values(before[:count], figure), _values(now[:count], figure))
-            if p_value <= error / (2 * len(FIGURES)):
-                yield Change(figure, old, new, p_value)
+    """Those of the figures that have certainly changed."""
+    for figure in figures:
+        values, old, most = _values(now, figure), fmean(_values(before, figure)), getattr(thresholds, figure)
+        p_value = mean_p_value(values, old - most, old + most, *FIGURES[figure])
+        if p_value <= error / (2 * len(FIGURES)):
+            yield Change(figure, old, fmean(values), p_value)
 
 
 def _values(outcomes: Sequence[Outcome], figure: str) -> list[float]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import asin, comb, log, pi, sin, sqrt, tanh
+from math import asin, comb, log, pi, sin, sqrt
 
 import numpy as np
 import pytest
 
 from tltl_runtime.evaluation.statistics import wilson
-from tltl_runtime.regression.confidence import change_p_value, rate_interval
+from tltl_runtime.regression.confidence import mean_p_value, rate_interval
 
 SEQUENCES = 400
 EPISODES = 150
@@ -85,55 +85,66 @@ def test_what_has_no_interval(counts: tuple[int, int, float]) -> None:
         rate_interval(*counts)
 
 
-def differences(seed: int, count: int) -> np.ndarray:  # type: ignore[type-arg]
-    """Rewards of episodes of equal seeds: mostly a little otherwise, seldom much."""
+def rewards(seed: int, mean: float, count: int = 120) -> list[float]:
+    """Of episodes that succeed as a rule, with some noise, and fail now and then; their mean is as given."""
     rng = np.random.default_rng(seed)
-    return rng.normal(0.0, 0.05, count) + rng.choice([-0.9, 0.0, 0.9], count, p=[0.04, 0.92, 0.04])
-
-
-def smallest(drift: float, seed: int, count: int = 100) -> float:
-    """The least p-value of a sequence of episodes, looked at after each one: it is the last one."""
-    before = np.random.default_rng(seed).uniform(0.5, 0.9, count)
-    return change_p_value(before.tolist(), (before + differences(seed, count) + drift).tolist())
+    met = rng.random(count) < 0.95
+    drawn = np.where(met, rng.uniform(-0.15, 0.15, count) + 0.05, rng.uniform(-0.15, 0.15, count) - 0.95)
+    found: list[float] = (drawn + mean).tolist()
+    return found
 
 
 @pytest.mark.parametrize("error", [0.3, 0.1, 0.03])
-def test_what_has_not_changed_is_seldom_ever_called_changed(error: float) -> None:
-    found = sum(smallest(0.0, seed) <= error for seed in range(SEQUENCES))
+@pytest.mark.parametrize("mean", [0.65, 0.75])
+def test_what_has_not_changed_by_more_is_seldom_ever_called_changed(error: float, mean: float) -> None:
+    # Both means are ends of what counts as unchanged: nothing is harder to tell from a change.
+    found = sum(mean_p_value(rewards(seed, mean), 0.65, 0.75) <= error for seed in range(SEQUENCES))
     assert found <= most(error)
 
 
-def test_what_has_changed_is_found() -> None:
-    for drift in (-0.1, 0.1):
-        assert sum(smallest(drift, seed) <= 0.01 for seed in range(50)) > 45
+def test_what_has_changed_by_more_is_found() -> None:
+    for mean in (0.5, 0.9):
+        low, high = (0.65, 0.75) if mean < 0.7 else (0.5, 0.6)
+        assert sum(mean_p_value(rewards(seed, mean - 0.1), low, high) <= 0.01 for seed in range(50)) > 45
 
 
 def test_a_p_value_never_rises() -> None:
-    before = [0.7] * 60
-    now = (0.7 + differences(2, 60) - 0.05).tolist()
-    values = [change_p_value(before[:count], now[:count]) for count in range(1, 61)]
-    assert values == sorted(values, reverse=True)
+    found = rewards(2, 0.6)
+    values = [mean_p_value(found[:count], 0.65, 0.75) for count in range(1, 121)]
+    assert values == sorted(values, reverse=True) and values[-1] < 1.0
 
 
 def test_a_p_value_is_what_the_page_says() -> None:
-    before, now = [0.5, 0.7, 0.6], [0.1, 0.2, 0.7]
-    bets = [(1, 0.99), (2, 0.99), (4, 0.99), (16, 0.25), (16, 0.5), (16, 0.9)]
-    stakes = [1.0] * (2 * len(bets))
-    greatest = 1.0
-    for one, other in zip(before, now, strict=True):
-        for place, (steep, share) in enumerate(bets):
-            factor = share * tanh(steep * (other - one))
-            stakes[2 * place] *= 1 + factor
-            stakes[2 * place + 1] *= 1 - factor
+    values, low, high, least, top = [0.1, 0.2, 0.7], 0.4, 0.5, -1.0, 1.0
+    shares = [0.05, 0.2, 0.5, 0.9]
+    stakes, greatest = [1.0] * (2 * len(shares)), 1.0
+    for value in values:
+        for place, share in enumerate(shares):
+            stakes[2 * place] *= 1 + share * (low - value) / (top - low)
+            stakes[2 * place + 1] *= 1 + share * (value - high) / (high - least)
         greatest = max(greatest, sum(stakes) / len(stakes))
-    assert change_p_value(before, now) == pytest.approx(1 / greatest)
+    assert greatest > 1.0
+    assert mean_p_value(values, low, high) == pytest.approx(1 / greatest)
 
 
-def test_equal_sequences_have_not_changed() -> None:
-    assert change_p_value([0.1, 0.9], [0.1, 0.9]) == 1.0
-    assert change_p_value([], []) == 1.0
+def test_no_stake_is_ever_lost_altogether() -> None:
+    """The worst that can come, for long, and then what refutes the interval after all."""
+    for worst, then in ((1.0, -1.0), (-1.0, 1.0)):
+        assert mean_p_value([worst, then] * 200, -0.1 + worst / 2, 0.1 + worst / 2) < 1e-6
 
 
-def test_sequences_of_other_lengths_are_no_pairs() -> None:
-    with pytest.raises(ValueError, match="no pairs"):
-        change_p_value([0.1], [])
+@pytest.mark.parametrize(("value", "low", "high"), [(0.9, 1.0, 1.0), (-0.9, -1.0, -1.0)])
+def test_what_no_value_exceeds_is_refuted_by_the_first_that_is_less(value: float, low: float, high: float) -> None:
+    assert mean_p_value([low], low, high) == 1.0
+    assert mean_p_value([low, value], low, high) < 1e-4
+
+
+def test_values_inside_of_the_interval_refute_nothing() -> None:
+    assert mean_p_value([0.1, 0.2, 0.15] * 100, 0.1, 0.2) == 1.0
+    assert mean_p_value([], 0.1, 0.2) == 1.0
+
+
+@pytest.mark.parametrize("ends", [(0.2, 0.1, -1.0, 1.0), (0.1, 0.2, 1.0, 1.0), (float("nan"), 0.2, -1.0, 1.0)])
+def test_what_is_no_interval_of_means(ends: tuple[float, float, float, float]) -> None:
+    with pytest.raises(ValueError, match="no mean"):
+        mean_p_value([0.1], *ends)

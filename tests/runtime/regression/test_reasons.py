@@ -46,7 +46,14 @@ def test_what_is_not_certain() -> None:
 
 def test_what_has_changed() -> None:
     assert said(60, 0, -0.3)[1:] == ["reward is lower, 0.40 on average; before: 0.70"]
-    assert said(60, 0, 0.2)[1:] == ["reward is higher, 0.90 on average; before: 0.70"]
+    assert said(120, 0, 0.2)[1:] == ["reward is higher, 0.90 on average; before: 0.70"]
+
+
+def test_what_may_have_changed() -> None:
+    (rate, figure) = said(40, 0, -0.06)
+    assert rate == "met in 40 of 40 episodes, before in 40 of 40: certainly in 85% or more"
+    assert figure == "reward seems to have changed by 0.05 or more, which is not certain"
+    assert len(said(40, 0, -0.04)) == 1
 
 
 def test_what_nobody_can_reach_is_told_for_certain() -> None:
