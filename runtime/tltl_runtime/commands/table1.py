@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 from pathlib import Path
@@ -17,9 +16,23 @@ from tltl_runtime.commands.workers import all_cores_option
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.record import record
 
 if TYPE_CHECKING:
     from tltl_runtime.regression.paper_table import Model
+    from tltl_runtime.regression.table_trainings import Trained
+
+_ELSEWHERE = "name another place with --out"
+
+
+@record
+class _Wanted:
+    """What was asked for."""
+
+    folder: Path
+    shipped: bool
+    minutes: float
+    workers: Any
 
 
 @click.command(
@@ -32,7 +45,12 @@ Examples:
 @output_folder("The folder for trainings, episodes and the table.", default=Path("table1"))
 @click.option("--shipped", is_flag=True, help="Take the policies that come with the levels, and train imitation alone.")
 @click.option(
-    "--minutes", metavar="M", type=click.FloatRange(min=0), default=60.0, show_default=True, help="Of each training."
+    "--minutes",
+    metavar="M",
+    type=click.FloatRange(min=0, max=1_000_000),
+    default=60.0,
+    show_default=True,
+    help="Of each training, at the most (0: no limit but that of steps).",
 )
 @all_cores_option
 def command(folder: Path, shipped: bool, minutes: float, workers: Any) -> int:
@@ -40,57 +58,67 @@ def command(folder: Path, shipped: bool, minutes: float, workers: Any) -> int:
 
     On each of the three levels: the scripted expert in place of the human, an agent that learns by imitation of it, and
     one that learns from its spec.  Each plays 100 episodes in each variant.  What is done stays in the folder: called
-    again, the command goes on.
+    again, the command goes on.  What has changed since, be it a level, a spec, a setting or the code that plays, is
+    trained or played anew.
     """
     with Report() as report, learning_for("`tltlc table1`"), requests_heard():
-        from tltl_runtime.regression.paper_table import LEVELS, MODELS, RUNS, VARIANTS, Row, markdown
-        from tltl_runtime.regression.table_cells import EPISODES, figures, measured
+        from tltl_runtime.held_folder import held
         from tltlc.writing import write_files
 
-        rows: dict[int, dict[tuple[str, Model], Row]] = {RUNS: {}, EPISODES: {}}
-        for level in LEVELS:
-            for model in MODELS:
-                policy, hours = _policy(folder, level, model, shipped, minutes)
-                found = {}
-                for variant in VARIANTS:
-                    click.echo(f"{level}:{variant}, {model}", err=True)
-                    found[variant] = measured(folder, model, level, variant, policy, workers)
-                for runs, table in rows.items():
-                    table[level, model] = Row({name: figures(cell, runs) for name, cell in found.items()}, hours)
-        text = "\n".join(f"{runs} episodes each:\n\n{markdown(table)}" for runs, table in rows.items())
-        click.echo(text, nl=False)
-        write_files(folder, {"table1.md": text}, "name another place with --out")
+        title = f"another run of `tltlc table1` is at work in `{folder}`"
+        busy = Diagnostic("TLT0931", title, help="wait for its end, or name another folder with --out")
+        with held(folder, busy, _ELSEWHERE):
+            text = _table(_Wanted(folder, shipped, minutes, workers))
+            click.echo(text, nl=False)
+            write_files(folder, {"table1.md": text}, _ELSEWHERE)
         return exits.CLEAN
     return report.status
 
 
-def _policy(folder: Path, level: str, model: Model, shipped: bool, minutes: float) -> tuple[Path | None, float | None]:
-    """The policy of a model, trained now if it is not there yet, and the hours that this took; none of the expert."""
+def _table(wanted: _Wanted) -> str:
+    """The table over the paper's number of episodes, and over all of them, cell by cell."""
+    from tltl_runtime.regression.paper_table import LEVELS, MODELS, RUNS, VARIANTS, Row, markdown
+    from tltl_runtime.regression.table_cells import EPISODES, figures, measured
+
+    rows: dict[int, dict[tuple[str, Model], Row]] = {RUNS: {}, EPISODES: {}}
+    for level in LEVELS:
+        for model in MODELS:
+            made = _trained(wanted, level, model)
+            policy, hours, cloned = (made.policy, made.hours, made.cloned) if made else (None, None, None)
+            found = {}
+            for variant in VARIANTS:
+                click.echo(f"{level}:{variant}, {model}", err=True)
+                found[variant] = measured(wanted.folder, model, level, variant, policy, wanted.workers)
+            for runs, table in rows.items():
+                shown = {name: figures(cell, runs) for name, cell in found.items()}
+                table[level, model] = Row(shown, hours, cloned)
+    return "\n".join(f"{runs} episodes each:\n\n{markdown(table)}" for runs, table in rows.items())
+
+
+def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
+    """The training of a model, which goes on now if it is not over; None of the expert."""
+    from tltl_runtime.regression.table_trainings import Trained, table_training, train_arguments, trained
+
     if model == "expert":
-        return None, None
-    if shipped and model == "ours":
+        return None
+    if wanted.shipped and model == "ours":
         from tltl_runtime.policies.file import read_policy
         from tltl_runtime.policies.shipped import shipped_policies
 
         path = shipped_policies()[level]
-        return path, float(read_policy(path).card.training["seconds"]) / 3600
-    from tltl_runtime.training.run import POLICY, RECORD, RUN
-
-    place = folder / f"{level}-{model}"
-    if not (place / RECORD).exists():
-        limit = ("--minutes", str(minutes))
-        if (place / RUN).exists():
-            _train("--resume", str(place), *limit)
-        else:
-            method = ("--method", "imitation") if model == "imitation" else ()
-            _train("--level", level, "--out", str(place), *method, *limit)
-    if not (place / RECORD).exists():
-        raise TltlError([Diagnostic("TLT0930", f"the training in `{place}` did not end", help="run the command again")])
-    made = json.loads((place / RECORD).read_text(encoding="utf-8"))
-    return place / POLICY, made["seconds"] / 3600
+        return Trained(path, float(read_policy(path).card.training["seconds"]) / 3600, None)
+    training = table_training(wanted.folder, level, model, wanted.minutes)
+    made = trained(training)
+    if made is None:
+        _train(train_arguments(training))
+        made = trained(training)
+    if made is None:
+        title = f"the training in `{training.folder}` did not end"
+        raise TltlError([Diagnostic("TLT0930", title, help="run the command again")])
+    return made
 
 
-def _train(*arguments: str) -> None:
+def _train(arguments: list[str]) -> None:
     """Train as ``tltlc train`` does, which shows how it goes; Ctrl-C reaches it, too."""
     with subprocess.Popen([sys.executable, "-m", "tltlc", "train", *arguments], stdout=sys.stderr) as training:
         try:

@@ -19,7 +19,7 @@ RUNS: Final = 25
 
 
 @record
-class Figures:
+class CellFigures:
     """Of one model on one variant: the pass rate over ``runs`` episodes, progress and reward as mean and deviation."""
 
     runs: int
@@ -30,16 +30,20 @@ class Figures:
 
 @record
 class Row:
-    """Of one model on one level: the figures of each variant, and the hours that its training took, None of none."""
+    """Of one model on one level: the figures of each variant, and the hours that its training took, None of none.
 
-    figures: Mapping[str, Figures]
+    ``cloned`` is the share of its steps with behavioural cloning alone, None of a model that does not imitate.
+    """
+
+    figures: Mapping[str, CellFigures]
     hours: float | None
+    cloned: float | None = None
 
 
-def _row(hours: float | None, *figures: tuple[float, float, float, float, float]) -> Row:
+def _row(hours: float | None, *figures: tuple[float, float, float, float, float], cloned: float | None = None) -> Row:
     """The paper's figures of v0, v1, v2: pass rate, mean and deviation of progress, of reward."""
-    made = (Figures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
-    return Row(dict(zip(VARIANTS, made, strict=True)), hours)
+    made = (CellFigures(RUNS, rate, Spread(p, dp), Spread(r, dr)) for rate, p, dp, r, dr in figures)
+    return Row(dict(zip(VARIANTS, made, strict=True)), hours, cloned)
 
 
 PAPER: Final[Mapping[tuple[str, Model], Row]] = {
@@ -47,7 +51,11 @@ PAPER: Final[Mapping[tuple[str, Model], Row]] = {
         None, (1.00, 1.00, 0.00, 0.63, 0.01), (1.00, 1.00, 0.00, 0.65, 0.02), (0.00, 0.50, 0.01, -0.50, 0.01)
     ),
     ("navigation", "imitation"): _row(
-        20.0, (0.92, 0.98, 0.05, 0.50, 0.19), (0.32, 0.79, 0.22, -0.09, 0.37), (0.00, 0.47, 0.07, -0.53, 0.08)
+        20.0,
+        (0.92, 0.98, 0.05, 0.50, 0.19),
+        (0.32, 0.79, 0.22, -0.09, 0.37),
+        (0.00, 0.47, 0.07, -0.53, 0.08),
+        cloned=0.05,
     ),
     ("navigation", "ours"): _row(
         3.5, (1.00, 1.00, 0.00, 0.64, 0.01), (0.90, 0.93, 0.21, 0.39, 0.37), (0.00, 0.49, 0.05, -0.51, 0.05)
@@ -56,7 +64,11 @@ PAPER: Final[Mapping[tuple[str, Model], Row]] = {
         None, (1.00, 1.00, 0.00, 0.73, 0.01), (1.00, 1.00, 0.00, 0.74, 0.01), (0.80, 0.93, 0.14, 0.41, 0.40)
     ),
     ("cover_and_hide", "imitation"): _row(
-        20.0, (0.05, 0.74, 0.27, -0.25, 0.27), (0.00, 0.49, 0.26, -0.50, 0.27), (0.00, 0.41, 0.22, -0.58, 0.22)
+        20.0,
+        (0.05, 0.74, 0.27, -0.25, 0.27),
+        (0.00, 0.49, 0.26, -0.50, 0.27),
+        (0.00, 0.41, 0.22, -0.58, 0.22),
+        cloned=0.05,
     ),
     ("cover_and_hide", "ours"): _row(
         2.7, (1.00, 1.00, 0.00, 0.74, 0.03), (0.50, 0.85, 0.20, 0.21, 0.55), (0.20, 0.70, 0.25, -0.14, 0.51)
@@ -65,7 +77,11 @@ PAPER: Final[Mapping[tuple[str, Model], Row]] = {
         None, (1.00, 1.00, 0.00, 0.76, 0.01), (1.00, 1.00, 0.00, 0.73, 0.02), (1.00, 1.00, 0.00, 0.74, 0.08)
     ),
     ("branching", "imitation"): _row(
-        20.0, (0.40, 0.82, 0.37, 0.01, 0.51), (0.24, 0.80, 0.36, -0.11, 0.45), (0.10, 0.71, 0.24, -0.24, 0.33)
+        20.0,
+        (0.40, 0.82, 0.37, 0.01, 0.51),
+        (0.24, 0.80, 0.36, -0.11, 0.45),
+        (0.10, 0.71, 0.24, -0.24, 0.33),
+        cloned=0.05,
     ),
     ("branching", "ours"): _row(
         6.8, (1.00, 1.00, 0.00, 0.66, 0.01), (0.93, 0.96, 0.17, 0.64, 0.36), (0.47, 0.89, 0.23, 0.27, 0.46)
@@ -98,10 +114,10 @@ def _line(level: str, model: str, row: Row) -> str:
         " / ".join(f"{spread.mean:.2f} ± {spread.std:.2f}" for spread in each)
         for each in ([figures.progress for figures in there], [figures.reward for figures in there])
     )
-    return f"| {level} | {model} | {passed} | {' | '.join(spreads)} | {_hours(row.hours)} |"
+    return f"| {level} | {model} | {passed} | {' | '.join(spreads)} | {_time(row)} |"
 
 
-def _rate(figures: Figures) -> str:
+def _rate(figures: CellFigures) -> str:
     """A rate, with its interval where there are more runs than in the paper."""
     if figures.runs <= RUNS:
         return f"{figures.pass_rate:.2f}"
@@ -109,7 +125,8 @@ def _rate(figures: Figures) -> str:
     return f"{figures.pass_rate:.2f} ({low:.2f}–{high:.2f})"
 
 
-def _hours(hours: float | None) -> str:
-    if hours is None:
+def _time(row: Row) -> str:
+    if row.hours is None:
         return "–"
-    return f"{hours:g} h" if hours >= 1 else f"{hours * 60:.0f} min"
+    time = f"{row.hours:.1f} h" if row.hours >= 1 else f"{row.hours * 60:.0f} min"
+    return time if row.cloned is None else f"{time}, {100 * row.cloned:.1f} % cloned"

@@ -12,12 +12,16 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, evaluate
 from tltl_runtime.evaluation.statistics import spread_of
-from tltl_runtime.policies.identity import level_hash
+from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
-from tltl_runtime.regression.paper_table import Figures, Model
+from tltl_runtime.regression.paper_table import CellFigures, Model
+from tltl_runtime.sources import sources_hash
+from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.episodes.outcome import outcome
 from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.supply.offer import params
+from tltl_runtime.task import load_task
 from tltlc.record import record
 from tltlc.writing import write_file
 
@@ -43,10 +47,10 @@ class Cell:
     episodes: tuple[Went, ...]
 
 
-def figures(cell: Cell, runs: int = EPISODES) -> Figures:
+def figures(cell: Cell, runs: int) -> CellFigures:
     """The figures of a cell over its first ``runs`` episodes."""
     first = cell.episodes[:runs]
-    return Figures(
+    return CellFigures(
         runs=len(first),
         pass_rate=sum(each.success for each in first) / len(first),
         progress=spread_of([each.progress for each in first]),
@@ -57,8 +61,10 @@ def figures(cell: Cell, runs: int = EPISODES) -> Figures:
 def measured(folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool) -> Cell:
     """A cell that ``folder`` has, or that is played now and kept there; the expert plays where there is no ``policy``.
 
+    Whoever plays is judged by the spec that the level is made for now.
+
     Raises:
-        TltlError: what playing raises; TLT0005.
+        TltlError: what playing raises, TLT0843 for a policy of another spec; TLT0005.
     """
     path = folder / f"{level}-{variant}-{model}.json"
     identity = _identity(level, variant, policy)
@@ -71,8 +77,11 @@ def measured(folder: Path, model: Model, level: str, variant: str, policy: Path 
 
 
 def _identity(level: str, variant: str, policy: Path | None) -> str:
+    """The hash of all that a cell depends on."""
+    place = load_level(level, variant)
+    spec = load_task(spec_of(place), offered=params(place)).fspa
     played = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
-    parts = [level_hash(load_level(level, variant)), played, EPISODES, SEED, dict(versions())]
+    parts = [level_hash(place), spec_hash(spec), played, EPISODES, SEED, dict(versions()), sources_hash()]
     return sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
@@ -86,7 +95,8 @@ def _kept(path: Path, identity: str) -> Cell | None:
 
 
 def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[Went]:
-    for each in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool):
+    spec = spec_of(load_level(level, variant))
+    for each in evaluate(policy, level, variant, episodes=EPISODES, seed=SEED, workers=pool, spec=spec):
         yield Went(each.success, each.progress, each.reward)
 
 

@@ -7,11 +7,10 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.policies.examples import card_of, policy_of
-from tltl_runtime.commands import table1
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression import table_cells
-from tltl_runtime.regression.paper_table import LEVELS, MODELS, PAPER, VARIANTS, Figures, Row, markdown
+from tltl_runtime.regression.paper_table import LEVELS, MODELS, PAPER, VARIANTS, CellFigures, Row, markdown
 from tltl_runtime.regression.table_cells import Cell, Went, figures, measured
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -28,13 +27,30 @@ def test_the_paper_has_a_row_of_each_model_on_each_level() -> None:
 
 
 def test_a_row_of_ours_stands_above_the_papers() -> None:
-    made = Figures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
+    made = CellFigures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
     text = markdown({("navigation", "ours"): Row({"v0": made}, 0.1)})
     assert text.splitlines()[2:] == [
         "| navigation | ours | 0.95 (0.89–0.98) | 0.97 ± 0.10 | 0.60 ± 0.20 | 6 min |",
         "|  | *the paper: ours* | 1.00 / 0.90 / 0.00 | 1.00 ± 0.00 / 0.93 ± 0.21 / 0.49 ± 0.05 "
         "| 0.64 ± 0.01 / 0.39 ± 0.37 / -0.51 ± 0.05 | 3.5 h |",
     ]
+
+
+@pytest.mark.parametrize(
+    ("hours", "cloned", "shown"),
+    [
+        (None, None, "–"),
+        (0.0999, None, "6 min"),
+        (1.0, None, "1.0 h"),
+        (1.2345678, None, "1.2 h"),
+        (0.5, 0.0512, "30 min, 5.1 % cloned"),
+        (20.0, 0.0, "20.0 h, 0.0 % cloned"),
+    ],
+)
+def test_how_long_a_training_took(hours: float | None, cloned: float | None, shown: str) -> None:
+    made = CellFigures(100, 0.95, Spread(0.97, 0.1), Spread(0.6, 0.2))
+    ours = markdown({("navigation", "imitation"): Row({"v0": made}, hours, cloned)}).splitlines()[2]
+    assert ours.endswith(f"| {shown} |")
 
 
 def test_figures_are_of_the_first_runs() -> None:
@@ -63,10 +79,39 @@ def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) ->
     assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == alone
 
 
-def test_a_training_that_did_not_end_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    began: list[tuple[str, ...]] = []
-    monkeypatch.setattr(table1, "_train", lambda *arguments: began.append(arguments))
-    with pytest.raises(TltlError, match="did not end") as caught:
-        table1._policy(tmp_path, "navigation", "imitation", False, 5.0)
-    assert [each.code for each in caught.value.diagnostics] == ["TLT0930"]
-    assert "imitation" in began[0]
+def test_the_expert_plays_again_where_the_spec_or_the_code_is_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    played: list[str] = []
+
+    def play(level: str, variant: str, pool: object) -> list[Went]:
+        played.append(f"{level}:{variant}")
+        return [Went(True, 1.0, 0.5)]
+
+    monkeypatch.setattr(table_cells, "_by_expert", play)
+
+    def cell() -> str:
+        return measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1).identity
+
+    found = {cell(), cell()}
+    assert (len(found), len(played)) == (1, 1)
+    with monkeypatch.context() as patched:
+        patched.setattr(table_cells, "sources_hash", lambda: "another")
+        found.add(cell())
+    assert (len(found), len(played)) == (2, 2)
+    spec = tmp_path / "bold.tltl"
+    spec.write_text("import stealth\nentity exit\nspec bold { limit 400 steps\n reach near(exit) }\n", encoding="utf-8")
+    with monkeypatch.context() as patched:
+        patched.setattr(table_cells, "spec_of", lambda level: str(spec))
+        found.add(cell())
+    assert (len(found), len(played)) == (3, 3)
+
+
+def test_a_policy_of_another_spec_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "policy.safetensors"
+    write_policy(path, policy_of(card_of()))
+    spec = tmp_path / "bold.tltl"
+    spec.write_text("import stealth\nentity exit\nspec bold { limit 400 steps\n reach near(exit) }\n", encoding="utf-8")
+    monkeypatch.setattr(table_cells, "spec_of", lambda level: str(spec))
+    with pytest.raises(TltlError, match="TLT0843"):
+        measured(tmp_path, "ours", "cover_and_hide", "v0", path, 1)
