@@ -12,6 +12,7 @@ from tltl_runtime.commands.at_keyboard import keyboard_options, play_at_keyboard
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_folder
+from tltl_runtime.commands.plain import plain
 from tltl_runtime.stealth.levels.place import level_place
 from tltlc.cli import exits
 from tltlc.cli.report import Report
@@ -50,7 +51,8 @@ Examples:
     "--seed",
     metavar="N",
     type=click.IntRange(min=0),
-    help="Of the first episode (default: 0, with the keyboard another one each time).",
+    help="Of the first episode (default: 0, with the keyboard another one each time); where the expert fails in one "
+    "after the other, those from another seed on may go better.",
 )
 @output_folder("The folder for the recordings (default: demonstrations/LEVEL-VARIANT-SPEC).")
 @keyboard_options
@@ -69,8 +71,8 @@ def command(
 
     Each is a recording LEVEL-VARIANT-SEED.episode.npz.  An episode that does not meet the spec is not kept, and it is
     said why it failed.  What the folder holds already counts, so that the same command goes on where it was stopped;
-    recordings there that are no demonstrations of this level and spec stay as they are.  LEVEL may be left out where
-    the spec names it.
+    recordings there that are no demonstrations of this level and spec, or cannot be read, stay as they are.  LEVEL may
+    be left out where the spec names it.
 
     The exit status is 0 where there are N demonstrations, and 1 where the player stopped before.
     """
@@ -125,7 +127,8 @@ def _begins(made: Demonstrations, wanted: int) -> list[str]:
     said = [f"{_there(made, wanted)} already"] if made.count else []
     if others := len(made.others):
         kept = f"{others} recording{'s' * (others > 1)} there" + (" is none" if others == 1 else " are none")
-        said.append(f"{kept} of this level and spec: `{made.others[0].name}`{' and others' * (others > 1)}")
+        first, more = made.others[0], " and others" * (others > 1)
+        said.append(plain(f"{kept} of this level and spec: `{first.path.name}` ({first.why}){more}"))
     return said
 
 

@@ -16,7 +16,7 @@ from tltl_runtime.policies.identity import level_hash
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.training.demonstrations import PLAYER, Demonstrations, Tried, by_expert, recordings
+from tltl_runtime.training.demonstrations import PLAYER, Demonstrations, Tried, by_expert, recordings, unreadable
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
@@ -77,10 +77,10 @@ def record_expert(folder: Path, number: int, make: Callable[[], TltlEnv], told: 
 def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrated:
     """The demonstrations in a folder, each played again in the environment that ``make`` makes.
 
-    One is left out whose level is another, or that does not meet the spec when it is played again.
+    One is left out whose level is another, that does not meet the spec when it is played again, or that cannot be read.
 
     Raises:
-        TltlError: TLT0921, none is left; what :func:`~tltl_runtime.stealth.episodes.file.read_episode` finds.
+        TltlError: TLT0921, none is left.
     """
     env = make()
     along: list[_Sensed] = []
@@ -89,7 +89,11 @@ def read_demonstrations(folder: Path, make: Callable[[], TltlEnv]) -> Demonstrat
     left_out: list[str] = []
     try:
         for path in recordings(folder):
-            episode = read_episode(path)
+            try:
+                episode = read_episode(path)
+            except TltlError as error:
+                left_out.append(f"{path.name}: {unreadable(error)}")
+                continue
             found = _sensed(env, episode)
             if isinstance(found, str):
                 left_out.append(f"{path.name}: {found}")

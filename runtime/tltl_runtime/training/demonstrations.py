@@ -38,22 +38,28 @@ class Tried:
     kept: int
 
 
+@record
+class Other:
+    """A recording that is no demonstration of a level and a task, and the reason in words."""
+
+    path: Path
+    why: str
+
+
 class Demonstrations:
     """The demonstrations of a level and a task in ``folder``, which need not be there yet.
 
-    A recording there is one where level, spec, params and success are right; ``others`` are the rest.
-
-    Raises:
-        TltlError: what :func:`~tltl_runtime.stealth.episodes.file.read_episode` finds in a file there.
+    A recording there is one where level, spec, params and success are right; ``others`` are the rest, those among them
+    that cannot be read.
     """
 
     def __init__(self, folder: Path, level: Level, task: Task) -> None:
         self.folder = folder
         self._level, self._spec, self._params = level_hash(level), spec_hash(task.fspa), dict(task.params)
         self._played: list[tuple[str, int]] = []
-        self.others: list[Path] = []
+        self.others: list[Other] = []
         for path in recordings(folder):
-            self._note(path, read_episode(path))
+            self._note(path)
 
     @property
     def count(self) -> int:
@@ -67,27 +73,42 @@ class Demonstrations:
     def add(self, episode: Episode) -> Tried:
         """Write an episode to the folder where it is a demonstration.  Raises TltlError, TLT0005."""
         path = None
-        if self._is_one(episode):
+        if not self._why_none(episode):
             recording = to_bytes(episode)
             path = new_path(self.folder, file_stem(episode), recording)
             write_files(self.folder, {path.name: recording})
             self._played.append((episode.player, episode.seed))
         return Tried(episode, path, self.count)
 
-    def _note(self, path: Path, episode: Episode) -> None:
-        if self._is_one(episode):
-            self._played.append((episode.player, episode.seed))
+    def _note(self, path: Path) -> None:
+        try:
+            episode = read_episode(path)
+        except TltlError as error:
+            self.others.append(Other(path, unreadable(error)))
+            return
+        if why := self._why_none(episode):
+            self.others.append(Other(path, why))
         else:
-            self.others.append(path)
+            self._played.append((episode.player, episode.seed))
 
-    def _is_one(self, episode: Episode) -> bool:
-        wanted = self._level, self._spec, self._params
-        return episode.success and wanted == (level_hash(episode.level), spec_hash(episode.fspa), dict(episode.params))
+    def _why_none(self, episode: Episode) -> str:
+        """Why an episode is no demonstration; empty where it is one."""
+        if level_hash(episode.level) != self._level:
+            return "it is of another level"
+        if (spec_hash(episode.fspa), dict(episode.params)) != (self._spec, self._params):
+            return "it is of another spec"
+        return "" if episode.success else "it does not meet the spec"
 
 
 def recordings(folder: Path) -> list[Path]:
     """The recordings in a folder, by name; none where there is no such folder."""
     return sorted(folder.glob(f"*{SUFFIX}"))
+
+
+def unreadable(error: TltlError) -> str:
+    """Why a recording cannot be read, in words."""
+    (first, *_) = error.diagnostics
+    return f"{first.code}, {first.title}"
 
 
 def by_expert(env: RecordEpisode, made: Demonstrations, number: int, seed: int = 0) -> Iterator[Tried]:
@@ -122,6 +143,7 @@ def _given_up(env: RecordEpisode, last: Episode) -> TltlError:
     title = f"the expert met `{spec}` in none of {MOST_FAILURES} episodes in a row on `{level.name}:{level.variant}`"
     help_ = (
         f"`tltlc demonstrate {level.name}:{level.variant}` shows how it fails; "
+        f"`tltlc record --seed {last.seed + 1}` tries other episodes; "
         "`tltlc record --by keyboard` records a person, whose folder `tltlc train --demonstrations` takes"
     )
     return TltlError([Diagnostic("TLT0920", title, help=help_)])

@@ -84,10 +84,21 @@ def test_what_the_folder_holds_of_others_stays(tltlc: TltlcFunction, here: Path)
     assert found.status == 0
     assert found.err.splitlines() == [
         "1 of 2 demonstrations are in mine already",
-        "1 recording there is none of this level and spec: `cover_and_hide-v1-7.episode.npz`",
+        "1 recording there is none of this level and spec: `cover_and_hide-v1-7.episode.npz` (it is of another level)",
     ]
     assert {path: path.read_bytes() for path in before} == before
     assert names(folder) == ["cover_and_hide-v0-0", "cover_and_hide-v0-5", "cover_and_hide-v1-7"]
+
+
+def test_a_damaged_recording_is_none_and_stays(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    folder = kept(here / "mine", played(5))
+    (folder / "damaged.episode.npz").write_bytes(b"PK, and no more")
+    found = tltlc("record", "cover_and_hide", "--spec", "soon.tltl", "--episodes", "2", "-o", "mine")
+    assert found.status == 0
+    _, other = found.err.splitlines()
+    assert other.startswith("1 recording there is none of this level and spec: `damaged.episode.npz` (TLT0820, ")
+    assert (folder / "damaged.episode.npz").read_bytes() == b"PK, and no more"
+    assert names(folder) == ["cover_and_hide-v0-0", "cover_and_hide-v0-5", "damaged"]
 
 
 @pytest.mark.parametrize(

@@ -45,6 +45,15 @@ def test_what_is_no_demonstration_here_is_left_out_with_the_reason(tmp_path: Pat
     )
 
 
+def test_what_cannot_be_read_is_left_out_with_the_reason(tmp_path: Path) -> None:
+    folder = kept(tmp_path, played(1))
+    (folder / "damaged.episode.npz").write_bytes(b"PK, and no more")
+    found = read(folder)
+    assert found.about.episodes == 1
+    (left_out,) = found.about.left_out
+    assert left_out.startswith("damaged.episode.npz: TLT0820, ")
+
+
 @pytest.mark.parametrize("name", ["TLT0921", "TLT0921_empty", "TLT0921_unfit"])
 def test_nothing_to_imitate(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

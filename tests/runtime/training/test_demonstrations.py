@@ -13,7 +13,14 @@ from tests.runtime.training.test_settings import compare
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.recording import RecordEpisode
-from tltl_runtime.training.demonstrations import MOST_FAILURES, Demonstrations, by_expert, expert_episodes, recordings
+from tltl_runtime.training.demonstrations import (
+    MOST_FAILURES,
+    Demonstrations,
+    Tried,
+    by_expert,
+    expert_episodes,
+    recordings,
+)
 from tltlc.diagnostics.diagnostic import TltlError
 
 IN_VAIN = "import spatial\nentity exit\nspec vain { level cover_and_hide\n limit 2 steps\n reach near(exit) }\n"
@@ -45,9 +52,21 @@ def test_what_is_there_counts_where_level_and_spec_are_right(env: RecordEpisode,
     folder = kept(tmp_path / "old", played(1), played(2, variant="v1"), played(3, LONGER, steps=9), played(4, steps=7))
     made = of(env, folder)
     assert (made.count, made.seeds("me"), made.seeds("expert")) == (1, [1], [])
-    assert [path.name.split("-", 1)[1] for path in made.others] == [
-        f"{name}.episode.npz" for name in ("v0-3", "v0-4", "v1-2")
+    assert [(each.path.name.split("-", 1)[1], each.why) for each in made.others] == [
+        ("v0-3.episode.npz", "it is of another spec"),
+        ("v0-4.episode.npz", "it does not meet the spec"),
+        ("v1-2.episode.npz", "it is of another level"),
     ]
+
+
+def test_what_cannot_be_read_is_another_one(env: RecordEpisode, tmp_path: Path) -> None:
+    folder = kept(tmp_path / "old", played(1), played(2))
+    damaged = recordings(folder)[1]
+    damaged.write_bytes(damaged.read_bytes()[:1000])
+    made = of(env, folder)
+    assert made.seeds("me") == [1]
+    (other,) = made.others
+    assert other.path == damaged and other.why.startswith("TLT0820, ")
 
 
 def test_the_expert_adds_what_is_missing(env: RecordEpisode, tmp_path: Path) -> None:
@@ -69,7 +88,7 @@ def test_seeds_of_a_person_are_not_the_experts(env: RecordEpisode, tmp_path: Pat
 
 def test_the_expert_gives_up(tmp_path: Path) -> None:
     env = RecordEpisode(make_env("cover_and_hide", "v0", IN_VAIN), "expert")
-    tried = []
+    tried: list[Tried] = []
     with pytest.raises(TltlError) as caught:
         tried.extend(by_expert(env, of(env, tmp_path / "none"), 2))
     env.close()
