@@ -31,7 +31,7 @@ class _Wanted:
 
     folder: Path
     shipped: bool
-    minutes: float
+    minutes: float | None
     workers: Any
 
 
@@ -48,12 +48,11 @@ Examples:
     "--minutes",
     metavar="M",
     type=click.FloatRange(min=0, max=1_000_000),
-    default=60.0,
-    show_default=True,
-    help="Of each training, at the most (0: no limit but that of steps).",
+    help="Of each training, at the most; 0: no limit but that of steps (default: 60; with --shipped as many as the "
+    "policies were given that come with the levels).",
 )
 @all_cores_option
-def command(folder: Path, shipped: bool, minutes: float, workers: Any) -> int:
+def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) -> int:
     """Train and play what the paper's Table I is of, and print our table beside it.
 
     On each of the three levels: the scripted expert in place of the human, an agent that learns by imitation of it, and
@@ -97,17 +96,21 @@ def _table(wanted: _Wanted) -> str:
 
 def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
     """The training of a model, which goes on now if it is not over; None of the expert."""
+    from tltl_runtime.policies.file import read_policy
+    from tltl_runtime.policies.shipped import shipped_policies
+    from tltl_runtime.regression import table_trainings
     from tltl_runtime.regression.table_trainings import Trained, table_training, train_arguments, trained
 
     if model == "expert":
         return None
-    if wanted.shipped and model == "ours":
-        from tltl_runtime.policies.file import read_policy
-        from tltl_runtime.policies.shipped import shipped_policies
-
+    limits = table_trainings.limits(wanted.minutes)
+    if wanted.shipped:
         path = shipped_policies()[level]
-        return Trained(path, float(read_policy(path).card.training["seconds"]) / 3600, None)
-    training = table_training(wanted.folder, level, model, wanted.minutes)
+        card = read_policy(path).card
+        if model == "ours":
+            return Trained(path, float(card.training["seconds"]) / 3600, None)
+        limits = table_trainings.limits_as_of(card, wanted.minutes)
+    training = table_training(wanted.folder, level, model, limits)
     made = trained(training)
     if made is None:
         _train(train_arguments(training))

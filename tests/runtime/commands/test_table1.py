@@ -13,6 +13,7 @@ from tltl_runtime.commands import table1
 from tltl_runtime.held_folder import held
 from tltl_runtime.regression import paper_table, table_cells
 from tltl_runtime.regression.paper_table import VARIANTS
+from tltl_runtime.training.settings import read_settings
 from tltlc.diagnostics.diagnostic import Diagnostic
 
 Run = Callable[..., Outcome]
@@ -77,8 +78,9 @@ def test_a_training_that_did_not_end_is_told(tltlc: Run, monkeypatch: pytest.Mon
     began: list[list[str]] = []
     monkeypatch.setattr(table1, "_train", began.append)
     found = tltlc("table1", "--minutes", "5", *ONE)
-    ((*_, place, method, name, minutes, limit),) = began
+    ((*_, place, method, name, _, steps, minutes, limit),) = began
     assert (method, name, minutes, limit) == ("--method", "imitation", "--minutes", "5")
+    assert int(steps) == read_settings().stop.steps
     assert (found.status, found.out) == (1, "")
     assert found.err == f"error[TLT0930]: the training in `{place}` did not end\n  help: run the command again\n"
 

@@ -9,26 +9,37 @@ import pytest
 
 from tests.runtime.policies.examples import card_of, policy_of
 from tests.runtime.training.runs import run_in
-from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.file import read_policy, write_policy
+from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression import table_trainings
 from tltl_runtime.regression.paper_table import Model
-from tltl_runtime.regression.table_trainings import TableTraining, table_training, train_arguments, trained
+from tltl_runtime.regression.table_trainings import (
+    Limits,
+    TableTraining,
+    limits,
+    limits_as_of,
+    table_training,
+    train_arguments,
+    trained,
+)
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.training.run import POLICY, RECORD, write_run
 from tltl_runtime.training.settings import read_settings
 from tltlc.record import replace
 
+STEPS = 10**6
+TO = ("--steps", "1000000")
 BOTH: tuple[Model, ...] = ("ours", "imitation")
 
 
 def training(folder: Path, model: Model = "ours", minutes: float = 60.0) -> TableTraining:
-    return table_training(folder, "cover_and_hide", model, minutes)
+    return table_training(folder, "cover_and_hide", model, Limits(STEPS, minutes))
 
 
 def begun(made: TableTraining, minutes: float, *, seconds: float | None = None, end: str = "minutes") -> None:
     """Have a training in its folder, which has ended after ``seconds`` unless they are None."""
     method = "imitation" if made.imitates else "automaton"
-    write_run(run_in(made.folder, method=method, stop__minutes=minutes, stop__steps=10**6))
+    write_run(run_in(made.folder, method=method, stop__minutes=minutes, stop__steps=STEPS))
     write_policy(made.folder / POLICY, policy_of(card_of()))
     if seconds is not None:
         imitated = {"cloned": 50} if made.imitates else None
@@ -38,7 +49,7 @@ def begun(made: TableTraining, minutes: float, *, seconds: float | None = None, 
 
 def test_each_level_and_model_has_a_folder_of_its_own(tmp_path: Path) -> None:
     names = [
-        table_training(tmp_path, level, model, 60.0).folder.name
+        table_training(tmp_path, level, model, Limits(STEPS, 60.0)).folder.name
         for level in ("navigation", "cover_and_hide")
         for model in BOTH
     ]
@@ -75,13 +86,25 @@ def test_what_an_agent_learns_from_is_another_training(tmp_path: Path, monkeypat
 def test_the_limit_counts_for_who_is_cloned_for_a_share_of_it(tmp_path: Path) -> None:
     assert training(tmp_path, "ours", 1.0).folder == training(tmp_path, "ours", 60.0).folder
     assert training(tmp_path, "imitation", 1.0).folder != training(tmp_path, "imitation", 60.0).folder
+    more = table_training(tmp_path, "cover_and_hide", "imitation", Limits(STEPS + 1, 60.0))
+    assert more.folder != training(tmp_path, "imitation", 60.0).folder
+
+
+def test_limits_are_those_that_the_others_had() -> None:
+    assert limits(None) == Limits(read_settings().stop.steps, 60.0)
+    assert limits(5.0) == Limits(read_settings().stop.steps, 5.0)
+    for path in shipped_policies().values():
+        card = read_policy(path).card
+        stop = card.training["settings"]["stop"]
+        assert limits_as_of(card, None) == Limits(stop["steps"], stop["minutes"])
+        assert limits_as_of(card, 5.0) == Limits(stop["steps"], 5.0)
 
 
 def test_a_new_training_is_begun(tmp_path: Path) -> None:
     made = training(tmp_path, "imitation", 2.5)
     assert trained(made) is None
     assert train_arguments(made) == [
-        *("--level", "cover_and_hide", "--out", str(made.folder), "--method", "imitation", "--minutes", "2.5")
+        *("--level", "cover_and_hide", "--out", str(made.folder), "--method", "imitation", *TO, "--minutes", "2.5")
     ]
     assert "--method" not in train_arguments(training(tmp_path))
 
@@ -108,7 +131,7 @@ def test_a_training_is_over_that_has_met_its_spec_or_passed_the_limit(
         assert seconds is not None
         assert (found.policy, found.hours, found.cloned) == (made.folder / POLICY, seconds / 3600, None)
     else:
-        assert train_arguments(made) == ["--resume", str(made.folder), "--minutes", f"{wanted:g}"]
+        assert train_arguments(made) == ["--resume", str(made.folder), *TO, "--minutes", f"{wanted:g}"]
 
 
 @pytest.mark.parametrize(("limit", "wanted", "goes_on_to"), [(60.0, 10.0, "60"), (0.0, 10.0, "0"), (5.0, 0.0, "0")])
@@ -117,7 +140,7 @@ def test_one_that_was_broken_off_goes_on_to_the_greater_limit(
 ) -> None:
     made = training(tmp_path, minutes=wanted)
     begun(made, limit)
-    assert train_arguments(made) == ["--resume", str(made.folder), "--minutes", goes_on_to]
+    assert train_arguments(made) == ["--resume", str(made.folder), *TO, "--minutes", goes_on_to]
 
 
 def test_of_who_imitates_it_is_told_in_what_share_of_its_steps_it_was_cloned(tmp_path: Path) -> None:
