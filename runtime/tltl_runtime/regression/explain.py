@@ -108,16 +108,16 @@ def _kind(level: Level, fspa: Fspa, account: Account) -> tuple[_End, str]:
 
 
 def _told(level: Level, end: _End, accounts: Sequence[Account]) -> str:
-    """The end of these episodes, in words."""
+    """The end of these episodes, in words; behind asides there is a comma, since how many they are comes next."""
     by = f" by {_names(end.by)}" if end.by else ""
     broke = _mostly("breaking", [each.broke for each in accounts])
     saw = _mostly("seen by", [[name for name in each.seen_by if name not in end.by] for each in accounts])
     if end.cause == "killed":
-        return f"dies {end.where}{by}{broke}{saw}"
+        return f"dies {end.where}{by}{broke}{saw}" + "," * bool(broke or saw)
     if end.cause == "violated":
-        return f"breaks the spec {end.where} ({_names(end.by)}){saw}"
+        return f"breaks the spec {end.where} ({_names(end.by)}){saw}" + "," * bool(saw)
     solid = obstacle(level, [each.place for each in accounts])
-    return f"is {end.where} when time is up" + (f", at `{solid}`" if solid else "")
+    return f"is {end.where} when time is up" + (f", at `{solid}`," if solid else "")
 
 
 def _mostly(what: str, named: Sequence[Sequence[str]]) -> str:

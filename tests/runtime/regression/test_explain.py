@@ -87,7 +87,7 @@ def test_ends_are_told_by_kind_and_place_the_most_frequent_first(level: Level, f
     texts = told(level, fspa, now)
     assert texts[1:] == [
         "is near `exit` when time is up in 7 of 25 episodes; before: in 0 of 25 episodes",
-        "breaks the spec in the middle (`seen`), seen by `guard` in 5 of 25 episodes; before: in 0 of 25 episodes",
+        "breaks the spec in the middle (`seen`), seen by `guard`, in 5 of 25 episodes; before: in 0 of 25 episodes",
     ]
 
 
@@ -101,8 +101,8 @@ def deaths(fspa: Fspa, count: int, **changed: object) -> list[Account]:
 @pytest.mark.parametrize(
     ("saw", "words"),
     [
-        (14, ", seen by `camera`"),
-        (9, ", mostly seen by `camera`"),
+        (14, ", seen by `camera`,"),
+        (9, ", mostly seen by `camera`,"),
         (7, ""),
         (1, ""),
     ],
@@ -116,7 +116,7 @@ def test_who_saw_the_player_is_said_of_most_of_the_episodes(level: Level, fspa: 
 def test_a_death_names_what_broke(level: Level, fspa: Fspa) -> None:
     now = deaths(fspa, 14, broke=("alive",), seen_by=("guard", "camera"))
     end = told(level, fspa, now)[1]
-    assert end.startswith("dies in the north hall by `guard`, breaking `alive`, seen by `camera` in 14 of 25")
+    assert end.startswith("dies in the north hall by `guard`, breaking `alive`, seen by `camera`, in 14 of 25")
 
 
 def test_ends_of_two_stages_are_told_apart(level: Level, fspa: Fspa) -> None:
@@ -153,7 +153,7 @@ def test_where_no_distance_is_the_limit_the_atom_is_named(level: Level, fspa: Fs
 
 def test_what_is_in_the_way_is_named(level: Level, fspa: Fspa) -> None:
     now = [made(index, False, states=to(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
-    assert "is in the east when time is up, at `outer_east`" in told(level, fspa, now)[1]
+    assert "is in the east when time is up, at `outer_east`, in 25 of 25" in told(level, fspa, now)[1]
 
 
 @pytest.mark.parametrize(
