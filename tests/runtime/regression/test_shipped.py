@@ -1,12 +1,16 @@
-"""The suite that comes with the package has its baseline, of the policies and the specs that come with it, too."""
+"""The suite that comes with the package: its baseline is of what comes with it, and its verdicts are as designed."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import pytest
 
 from tltl_runtime.record_json import to_json
 from tltl_runtime.regression.baseline import baseline_path, read_baseline, reference_of
+from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.play import episodes, ready
+from tltl_runtime.regression.run import regress
 from tltl_runtime.regression.suite import SHIPPED, Case, read_suite
 from tltl_runtime.stealth.levels.file import level_names, variants
 from tltlc.record import replace
@@ -38,3 +42,43 @@ def test_an_episode_of_the_baseline_is_played_again() -> None:
     if reference.played.versions != made.played.versions:
         pytest.skip("the baseline was recorded with other versions")
     assert to_json(again.account) == to_json(reference.accounts[0])
+
+
+@pytest.fixture(name="judged", scope="module")
+def _judged(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, CaseReport]:
+    """The reports on all cases, by name: all are played, by as many processes as there are cores."""
+    references = read_baseline(baseline_path(SHIPPED))
+    running = regress(SUITE, SUITE.cases, references, tmp_path_factory.mktemp("judged"), 0, lambda *_: None)
+    return {done.report.name: done.report for done in running}
+
+
+@pytest.mark.slow
+def test_what_plays_as_designed_passes(judged: Mapping[str, CaseReport]) -> None:
+    assert set(judged) == {case.name for case in SUITE.cases}
+    for level in level_names():
+        report = judged[f"{level}:v0"]
+        assert report.verdict == "pass", report.reasons
+
+
+@pytest.mark.slow
+def test_a_corridor_that_was_shut_is_named(judged: Mapping[str, CaseReport]) -> None:
+    report = judged["navigation:v2"]
+    assert report.verdict == "fail"
+    assert any("nobody reaches `s2`" in each and "ends at `corridor_block_2`" in each for each in report.reasons)
+    stuck = "is in the corridor when time is up, at `corridor_block_2`, in "
+    ends = [each for each in report.explanation if each.text.startswith(stuck)]
+    assert [len(each.episodes) for each in ends] == [len(report.accounts)]
+
+
+@pytest.mark.slow
+def test_a_corridor_that_bends_more_is_no_failure(judged: Mapping[str, CaseReport]) -> None:
+    assert judged["navigation:v1"].verdict != "fail"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", ["cover_and_hide", "branching"])
+def test_a_guard_that_looks_into_covers_is_a_finding(judged: Mapping[str, CaseReport], level: str) -> None:
+    report = judged[f"{level}:v2"]
+    assert report.verdict != "pass"
+    (death, *_) = [each.text for each in report.explanation if each.text.startswith("dies ")]
+    assert " by `guard" in death and ", breaking `alive`," in death
