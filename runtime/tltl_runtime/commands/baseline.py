@@ -11,6 +11,7 @@ from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_file
+from tltl_runtime.commands.plain import plain
 from tltl_runtime.commands.workers import all_cores_option
 from tltlc.cli import exits
 from tltlc.cli.report import Report
@@ -49,7 +50,7 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
                     references.append(each)
                     passed, count = sum(account.success for account in each.accounts), len(each.accounts)
                     met = f"{each.played.spec} met in {passed} of {count} episodes"
-                    click.echo(f"{each.played.level}:{each.played.variant}: {met}")
+                    click.echo(plain(f"{each.played.level}:{each.played.variant}: {met}"))
                 write_baseline(temporary, tuple(references))
         except KeyboardInterrupt:
             click.echo(f"stopped: nothing was written, and `{wrote}` is as it was", err=True)
