@@ -15,11 +15,11 @@ from tltl_runtime.training.demonstrated import Demonstrated, read_demonstrations
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import Peers, cores
 from tltl_runtime.training.environment import TrainingEnv
-from tltl_runtime.training.imitation import Lessons
 from tltl_runtime.training.initial import read_initial
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.run import CHECKPOINT, RUN, Run, demonstrations_of, identity, read_run, write_run
 from tltl_runtime.training.search import Search, Searched
+from tltl_runtime.training.self_imitation import Lessons
 from tltl_runtime.training.starts import Replayed
 from tltl_runtime.training.streams import Purpose, stream
 from tltl_runtime.vector import WorkerVectorEnv, make_vec

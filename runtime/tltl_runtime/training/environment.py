@@ -14,9 +14,9 @@ from tensordict import TensorDict
 from torch import Tensor
 
 from tltl_runtime.training.demonstrated import Demonstrated
-from tltl_runtime.training.imitation import Lessons
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.search import end_of
+from tltl_runtime.training.self_imitation import Lessons
 from tltl_runtime.training.starts import Episodes
 from tltl_runtime.vector import WorkerVectorEnv
 from tltlc.record import record

@@ -37,7 +37,7 @@ from torch import Tensor, nn
 
 from tltl_runtime.training.demonstrated import Demonstrated
 from tltl_runtime.training.discriminator import Decisions, Discriminator
-from tltl_runtime.training.imitation import BATCH, imitate
+from tltl_runtime.training.self_imitation import BATCH, imitate
 
 _Losses = dict[str, float]
 

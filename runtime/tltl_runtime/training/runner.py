@@ -16,7 +16,7 @@ from torch import Tensor
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.environment import Finished, TrainingEnv
-from tltl_runtime.training.imitation import imitate
+from tltl_runtime.training.self_imitation import imitate
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
 

@@ -15,9 +15,9 @@ from tests.runtime.training.runs import run_in
 from tests.runtime.training.test_search import restarts_of
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.environment import TrainingEnv
-from tltl_runtime.training.imitation import BATCH, Lessons, imitate
 from tltl_runtime.training.runner import Runner
 from tltl_runtime.training.search import Way
+from tltl_runtime.training.self_imitation import BATCH, Lessons, imitate
 from tltl_runtime.training.settings import rsl_config
 from tltl_runtime.vector import make_vec
 

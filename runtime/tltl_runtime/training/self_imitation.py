@@ -1,4 +1,4 @@
-"""Imitation of known ways, where the agent does not succeed yet.
+"""Self-imitation: of known ways, where the agent does not succeed yet.  The imitation baseline is ``gail.py``.
 
 Whether a way succeeds may hang on a few of its decisions, such as a jump at the right place, which a policy that has
 come to prefer others does not try any more.  Imitated are the ways that the search found and the agent's own
