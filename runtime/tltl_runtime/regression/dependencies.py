@@ -6,6 +6,7 @@ few hides a finding, so that all counts that may matter.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -16,6 +17,7 @@ from tltl_runtime.regression.play import policy_file
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.levels.file import level_path
 from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
+from tltl_runtime.stealth.levels.place import overlays_of
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.grammar.parser import parse
@@ -28,6 +30,8 @@ from tltlc.spec_file import split
 from tltlc.toml_text import parse as parse_toml
 
 _QUOTED: Final = re.compile(r"\"([^\"\n]+)\"|'([^'\n]+)'")
+_ESCAPE: Final = re.compile(rb"\\([0-7]{3}|.)", re.DOTALL)
+_LETTERS: Final = {bytes([key]): bytes([meant]) for key, meant in zip(b"abtnvfr", range(7, 14), strict=True)}
 _SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
 
 
@@ -41,10 +45,10 @@ class Selection:
 
 
 def select(suite: Suite, changed: Sequence[str]) -> Selection:
-    """The cases that depend on something of ``changed``.
+    r"""The cases that depend on something of ``changed``.
 
     A name is a file's path or its end (``assets/guard.toml``, ``guard.toml``), either without the ending, too
-    (``guard``), or the path of a folder.
+    (``guard``), or the path of a folder; or one of these as git quotes it (``"assets/w\303\244chter.toml"``).
     """
     of = {case.name: dependencies(suite, case) for case in suite.cases}
     concerned = {case.name for case in suite.cases if any(_is_meant(name, of[case.name]) for name in changed)}
@@ -69,7 +73,7 @@ def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
 
 
 def _is_meant(name: str, paths: Iterable[Path]) -> bool:
-    given = Path(name)
+    given = Path(_unquoted(name))
     place, parts = given.resolve(), given.parts
     return any(
         place == path
@@ -80,10 +84,20 @@ def _is_meant(name: str, paths: Iterable[Path]) -> bool:
     )
 
 
+def _unquoted(name: str) -> str:
+    """The name that git has quoted, between double quotes with the bytes of other letters in octal; else as it is."""
+    if len(name) < 2 or not (name.startswith('"') and name.endswith('"')):
+        return name
+    parts = _ESCAPE.split(os.fsencode(name[1:-1]))
+    # Every second one is what followed a backslash.
+    parts[1::2] = [bytes([int(each, 8) % 256]) if each.isdigit() else _LETTERS.get(each, each) for each in parts[1::2]]
+    return os.fsdecode(b"".join(parts))
+
+
 def _level_files(level: Path, variant: str) -> Iterator[Path]:
     """The level, the assets and overlays of the variant, and the spec that it is made for."""
     yield level
-    base, *added = variant.split("+")
+    base, added = overlays_of(variant)
     text = _text(level)
     table = _table(text)
     if table is None:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import os
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -124,6 +128,41 @@ def test_paths_from_elsewhere(suite: Suite, monkeypatch: pytest.MonkeyPatch) -> 
     assert concerned(there, str(there.path)) == ALL
     # What `git diff --name-only` says begins at the top of the checkout.
     assert concerned(there, "game/levels/assets/crates.toml") == BOTH
+
+
+@pytest.mark.parametrize(
+    ("name", "quoted"),
+    [
+        ("wächter", '"game/levels/assets/w\\303\\244chter.toml"'),
+        ('a "b"', '"game/levels/assets/a \\"b\\".toml"'),
+        ("a\tb", '"game/levels/assets/a\\tb.toml"'),
+        ("plain", '"game/levels/assets/plain.toml"'),
+    ],
+)
+@pytest.mark.skipif(os.name == "nt", reason="no such names there")
+def test_names_as_git_quotes_them(suite: Suite, name: str, quoted: str) -> None:
+    Path("game/levels/assets/crates.toml").rename(f"game/levels/assets/{name}.toml")
+    text = (VAULT + ROOM).replace('"crates"', json.dumps(name, ensure_ascii=False))
+    Path("game/levels/vault.toml").write_text(text, encoding="utf-8")
+    assert concerned(suite, quoted) == BOTH
+    assert select(suite, [quoted[1:]]).unknown == (quoted[1:],), "quotes come in pairs"
+
+
+def test_what_git_tells_of_a_renamed_asset(suite: Suite) -> None:
+    def git(*words: str) -> list[str]:
+        names = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
+        return subprocess.run(["git", *names, *words], check=True, capture_output=True, text=True).stdout.splitlines()
+
+    if shutil.which("git") is None:
+        pytest.skip("git is not installed")
+    git("init", "--quiet")
+    git("add", ".")
+    git("commit", "--quiet", "--message", "All.")
+    git("mv", "game/levels/assets/crates.toml", "game/levels/assets/kisten_für_alle.toml")
+    told = git("-c", "core.quotePath=off", "diff", "--no-renames", "--name-only", "HEAD")
+    assert told == ["game/levels/assets/crates.toml", "game/levels/assets/kisten_für_alle.toml"]
+    assert concerned(suite, *told) == BOTH
+    assert concerned(suite, *git("diff", "--no-renames", "--name-only", "HEAD")) == BOTH
 
 
 def test_several_names_and_unknown_ones(suite: Suite) -> None:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
 from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
+from tltl_runtime.stealth.levels.place import overlays_of, shown_variant
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.stealth.levels.room import check_room
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
@@ -39,16 +41,20 @@ def variants(name_or_path: str) -> tuple[str, ...]:
 
 def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
     """What the overlays of a variant say that they change, in their order; errors as :func:`load_level` has them."""
+    return level_and_changes(name_or_path, variant)[1]
+
+
+def level_and_changes(name_or_path: str, variant: str) -> tuple[Level, tuple[str, ...]]:
+    """A level as :func:`load_level` reads it, and its :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
-    loading.level(variant)
-    return tuple(loading.changes)
+    return loading.level(variant), tuple(loading.changes)
 
 
 def load_level(name_or_path: str, variant: str = "v0") -> Level:
     """A level that comes with the package, by name, or one in a ``.toml`` file, in one of its variants.
 
     ``VARIANT+OVERLAY`` is a variant with one more overlay, and so on: one of those that variants name, or the path of
-    its ``.toml`` file.
+    its ``.toml`` file (:func:`~tltl_runtime.stealth.levels.place.overlays_of`).
 
     :func:`read_level` also tells what looks like a mistake and is none.
 
@@ -98,7 +104,7 @@ class _Loading:
 
     def level(self, variant: str) -> Level:
         """The level in a variant, with the overlays that are added to it."""
-        base, *added = variant.split("+")
+        base, added = overlays_of(variant)
         if base not in self.variants:
             title = f"the level `{self.path.stem}` has no variant `{base}`"
             label = self.table.place("variants")
@@ -121,7 +127,7 @@ class _Loading:
         movers = [*used_movers, *parts.movers(table, places)]
         level = Level(
             name=self.path.stem,
-            variant="+".join((base, *(Path(name).stem for name in added))),
+            variant=shown_variant(variant),
             doc=doc,
             bounds=bounds,
             start=parts.start(start if start is not None else Table(self.root, "the start", [])),
@@ -155,7 +161,9 @@ class _Loading:
 
     def _read(self, path: Path, name: str) -> Entry:
         source = read_source(path, shown(path))
-        self.files.append((name, hashlib.sha256(source.text.encode()).hexdigest()))
+        # Version control writes the line ends of the machine that it is on.
+        text = source.text.replace("\r\n", "\n")
+        self.files.append((name, hashlib.sha256(text.encode()).hexdigest()))
         return Entry(read_tree(source), Label(source, _first_line(source)))
 
     def _variants(self) -> dict[str, tuple[str, ...]]:
@@ -187,7 +195,7 @@ class _Loading:
             self.log.append(Diagnostic("TLT0803", "the bounds hold no floor", (table.place("at"),), help_))
         return box
 
-    def _assets(self, variant: str, added: list[str]) -> tuple[list[Table], dict[str, Table]]:
+    def _assets(self, variant: str, added: Sequence[str]) -> tuple[list[Table], dict[str, Table]]:
         """The level's uses of parts, and its assets by name, with the overlays of the variant and those added to it."""
         uses = self.table.tables("use")
         wanted = [(use, "asset") for use in uses]

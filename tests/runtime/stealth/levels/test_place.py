@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tltl_runtime.policies.identity import level_hash
-from tltl_runtime.stealth.levels.file import changes, load_level
-from tltl_runtime.stealth.levels.place import level_place
+from tltl_runtime.stealth.levels.file import changes, level_and_changes, load_level
+from tltl_runtime.stealth.levels.place import absolute_variant, level_place, overlays_of, shown_variant, with_overlays
 from tltlc.diagnostics.diagnostic import TltlError
 
 WIDER = 'doc = "The guard sees further."\n[change.guard]\nsight_range = 12.5\n'
@@ -22,6 +22,7 @@ WIDER = 'doc = "The guard sees further."\n[change.guard]\nsight_range = 12.5\n'
         ("levels/vault.toml:v2", ("levels/vault.toml", "v2")),
         ("branching:v0+guard_alert", ("branching", "v0+guard_alert")),
         ("branching:v1+guard_alert+edits/a:b.toml", ("branching", "v1+guard_alert+edits/a:b.toml")),
+        ("branching:v0+/games/c++/wider.toml", ("branching", "v0+/games/c++/wider.toml")),
         ("branching:v0+", ("branching:v0+", None)),
         ("branching:+guard_alert", ("branching:+guard_alert", None)),
         ("branching+guard_alert", ("branching+guard_alert", None)),
@@ -40,6 +41,46 @@ def test_a_path_that_exists_is_not_split(tmp_path: Path, monkeypatch: pytest.Mon
     (tmp_path / "odd:v0").touch()
     assert level_place("odd:v0") == ("odd:v0", None)
     assert level_place("odd:v1") == ("odd", "v1")
+
+
+@pytest.mark.parametrize(
+    ("variant", "overlays"),
+    [
+        ("v0", ()),
+        ("v0+guard_alert", ("guard_alert",)),
+        ("v0+guard_alert+edits/wide.toml+other", ("guard_alert", "edits/wide.toml", "other")),
+        ("v0+/games/c++/wide.toml+guard_alert+./a+b.toml", ("/games/c++/wide.toml", "guard_alert", "./a+b.toml")),
+        ("v0+a-b+D:\\c++\\wide.toml", ("a-b", "D:\\c++\\wide.toml")),
+        ("v0+", ("",)),
+        ("v0++wide", ("", "wide")),
+    ],
+)
+def test_a_variant_is_split(variant: str, overlays: tuple[str, ...]) -> None:
+    assert overlays_of(variant) == ("v0", overlays)
+    if "\\" not in variant:
+        assert with_overlays("v0", overlays) == variant.replace("./a+b.toml", f"{Path.cwd()}/a+b.toml")
+
+
+def test_a_path_with_a_plus_is_still_one_when_it_was_added(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "c++").mkdir()
+    (tmp_path / "c++" / "a+b.toml").write_text(WIDER, encoding="utf-8")
+    variant = with_overlays("v0", ["c++/a+b.toml", "guard_alert"])
+    assert overlays_of(variant) == ("v0", (str(tmp_path / "c++" / "a+b.toml"), "guard_alert"))
+    assert absolute_variant(variant) == variant
+    loaded = load_level("branching", variant)
+    assert loaded.variant == shown_variant(variant) == "v0+a+b+guard_alert"
+    assert level_and_changes("branching", variant) == (loaded, changes("branching", variant))
+    assert changes("branching", variant)[0] == "The guard sees further."
+
+
+def test_line_ends_are_no_difference(tmp_path: Path) -> None:
+    wider = tmp_path / "wider.toml"
+    hashes = []
+    for text in (WIDER, WIDER.replace("\n", "\r\n"), WIDER.replace("12.5", "12.6")):
+        wider.write_bytes(text.encode())
+        hashes.append(dict(load_level("branching", f"v0+{wider}").files)["overlays/wider.toml"])
+    assert hashes[0] == hashes[1] != hashes[2]
 
 
 def test_overlays_are_added_to_a_variant(tmp_path: Path) -> None:
