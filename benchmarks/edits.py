@@ -27,7 +27,7 @@ from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
     from tltl_runtime.regression.baseline import Reference
-    from tltl_runtime.regression.case_report import Figures
+    from tltl_runtime.regression.figures import Figures
     from tltl_runtime.regression.suite import Case, Suite
     from tltl_runtime.stealth.episodes.episode import Episode
 

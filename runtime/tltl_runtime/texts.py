@@ -28,6 +28,15 @@ def number(value: float, places: int) -> str:
     return text.lstrip("-") if float(text) == 0.0 else text
 
 
+def duration(seconds: float) -> str:
+    """A span of time for people: ``45 s``, ``12 min 5 s``, ``3 h 20 min``."""
+    minutes, rest = divmod(round(seconds), 60)
+    if not minutes:
+        return f"{rest} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s"
+
+
 def column(head: str, text: str, *, width: int = WIDTH) -> str:
     """``text`` behind ``head``, broken at words where a line is full, the others below its beginning.
 

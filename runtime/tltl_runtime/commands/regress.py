@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from tltl_runtime.regression.run import Done
     from tltl_runtime.regression.suite import Case, Suite
 
+_MINUTES: Final = 10.0
+"""Of a training with --retrain, where nothing else is said."""
 _MOST_NAMED: Final = 8
 """Of the files on which no case depends, as many are named."""
 
@@ -49,6 +51,8 @@ class _Wanted:
     github: bool
     fresh: bool
     workers: Any
+    minutes: float | None
+    """Of a training for each case that does not pass, at the most; None: none is trained."""
 
     @property
     def is_json(self) -> bool:
@@ -64,6 +68,7 @@ Examples:
   tltlc regress suite.toml --html report.html
   tltlc regress suite.toml --json - > report.json
   tltlc regress suite.toml --changed assets/guard.toml
+  tltlc regress suite.toml --retrain --minutes 20
   tltlc regress suite.toml --junit report.xml --github --changed $(git diff --name-only main)
 """,
 )
@@ -85,6 +90,17 @@ Examples:
 @click.option("--html", "html_file", metavar="FILE", type=_file(), help="Write the page here, too.")
 @click.option("--github", is_flag=True, help="Print findings as annotations of GitHub Actions, too.")
 @click.option("--fresh", is_flag=True, help="Play cases again of which nothing has changed since they were played.")
+@click.option(
+    "--retrain",
+    is_flag=True,
+    help="Train for the cases that do not pass, to see whether their levels are feasible after all.",
+)
+@click.option(
+    "--minutes",
+    metavar="M",
+    type=click.FloatRange(min=0, min_open=True, max=1_000_000),
+    help=f"Of each training, at the most (default: {_MINUTES:g}).",
+)
 @all_cores_option
 @output_folder("The folder for the page and for what was played (default: regression/SUITE).")
 def command(
@@ -95,6 +111,8 @@ def command(
     html_file: Path | None,
     github: bool,
     fresh: bool,
+    retrain: bool,
+    minutes: float | None,
     workers: Any,
     folder: Path | None,
 ) -> int:
@@ -102,13 +120,26 @@ def command(
 
     SUITE is a TOML file; without one, the levels that come with tltlc are played in all of their variants.  A case of
     which nothing has changed since it was played is not played again.  The exit status is 0 where all cases pass, and
-    1 where one is to be reviewed or fails.
+    1 where one is to be reviewed or fails; what --retrain finds changes neither.
     """
     if github and str(json_file) == "-":
         raise click.UsageError("--github and `--json -` both need standard output: write the JSON to a file")
+    if minutes is not None and not retrain:
+        raise click.UsageError("--minutes are those of --retrain")
     named = tuple(filter(None, changed)) if changed else None
     place = folder or Path("regression") / (suite.stem if suite else "shipped")
-    wanted = _Wanted(suite, named, place, json_file, junit_file, html_file, github, fresh, workers)
+    wanted = _Wanted(
+        suite,
+        named,
+        place,
+        json_file,
+        junit_file,
+        html_file,
+        github,
+        fresh,
+        workers,
+        (minutes or _MINUTES) if retrain else None,
+    )
     with Report() as report, learning_for("`tltlc regress`"), requests_heard():
         from tltl_runtime.regression.baseline import baseline_of
         from tltl_runtime.regression.run import forget
@@ -123,12 +154,13 @@ def command(
         found: list[Done] = []
         try:
             _play(read, cases, references, wanted, found)
+            _retrain(read, wanted, found)
         except KeyboardInterrupt:
-            _stopped(wanted, len(found), len(cases))
+            _stopped(wanted, found, len(cases))
             raise
         finally:
             if found or not cases:
-                _tell(_outcome(read, found, len(cases), left_out), wanted)
+                _tell(_outcome(read, found, len(cases), left_out, wanted), wanted)
         return exits.CLEAN if all(done.report.verdict == "pass" for done in found) else exits.FINDINGS
     return report.status
 
@@ -169,19 +201,48 @@ def _play(
                 click.echo(line, err=wanted.is_json)
 
 
-def _stopped(wanted: _Wanted, count: int, cases: int) -> None:
+def _retrain(suite: Suite, wanted: _Wanted, found: list[Done]) -> None:
+    """Train for the cases in ``found`` that do not pass, where this is asked for."""
+    if wanted.minutes is None:
+        return
+    from tltl_runtime.commands.retrain import Retraining, retrain_cases
+
+    again = join([*_again(wanted), "--retrain"])
+    asked = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, wanted.fresh, again)
+    retrain_cases(asked, found, to_stderr=wanted.is_json)
+
+
+def _again(wanted: _Wanted) -> list[str]:
+    """The words of the command that goes on with a run."""
+    words = ["tltlc", "regress", *([str(wanted.suite)] if wanted.suite else []), "--out", str(wanted.folder)]
+    return words if wanted.changed is None else [*words, "--changed", *wanted.changed]
+
+
+def _stopped(wanted: _Wanted, found: list[Done], cases: int) -> None:
     """Say what is left of a run that was ended, and what goes on with it."""
-    words = ["tltlc", "regress", *([str(wanted.suite)] if wanted.suite else [])]
-    words += ["--out", str(wanted.folder)]
-    if wanted.changed is not None:
-        words += ["--changed", *wanted.changed]
-    click.echo(f"stopped: {count} of {cases} cases are judged, and kept; to go on: {join(words)}", err=True)
+    words = _again(wanted)
+    if wanted.minutes is not None:
+        words += ["--retrain", "--minutes", f"{wanted.minutes:g}"]
+    done = f"{len(found)} of {cases} cases are judged, and kept"
+    if len(found) == cases and (left := _wanting(wanted, found)):
+        done = f"all cases are judged, and {left} {'are' if left > 1 else 'is'} still to be trained for"
+    click.echo(f"stopped: {done}; to go on: {join(words)}", err=True)
 
 
-def _outcome(suite: Suite, found: Sequence[Done], cases: int, left_out: tuple[str, ...]) -> Outcome:
+def _wanting(wanted: _Wanted, found: list[Done]) -> int:
+    """For how many cases a training is asked for that is not over."""
+    if wanted.minutes is None:
+        return 0
+    from tltl_runtime.commands.retrain import wanting
+
+    return wanting(found)
+
+
+def _outcome(suite: Suite, found: list[Done], cases: int, left_out: tuple[str, ...], wanted: _Wanted) -> Outcome:
     from tltl_runtime.commands.regression_files import Outcome
 
-    return Outcome(suite, tuple(found), len(found) == cases, left_out)
+    complete = len(found) == cases and not _wanting(wanted, found)
+    return Outcome(suite, tuple(found), complete, left_out)
 
 
 def _tell(outcome: Outcome, wanted: _Wanted) -> None:

@@ -28,7 +28,7 @@ PAGE: Final = "report.html"
 class Outcome:
     """What a run of a suite came to; ``left_out`` are the names of cases that no change concerns.
 
-    ``complete`` says whether all cases were judged that were asked for.
+    ``complete`` says whether all cases were judged, and trained for, that this was asked for.
     """
 
     suite: Suite
@@ -76,7 +76,16 @@ def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:
     setup = done.ready.setup
     level = load_level(setup.level, setup.variant)
     episodes = _episodes(done, case_folder(suite, done.report.name, folder))
-    return ReportedCase(done.report, level, setup.fspa, episodes, done.reference.accounts)
+    return ReportedCase(done.report, level, setup.fspa, episodes, done.reference.accounts, _curve(done, folder))
+
+
+def _curve(done: Done, folder: Path) -> bytes:
+    """The picture of the case's training, empty where there is none, or it was removed since."""
+    if done.report.retrained is None:
+        return b""
+    with suppress(OSError):
+        return (folder / done.report.retrained.policy).with_name("curve.png").read_bytes()
+    return b""
 
 
 def _episodes(done: Done, folder: Path) -> dict[int, Episode]:

@@ -38,6 +38,7 @@ from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.run import CHECKPOINT, MAY_CHANGE, RUN, Run, leaves, read_level_hash, read_run
 from tltl_runtime.training.settings import Settings, read_settings
 from tltl_runtime.training.settings_file import Method, read_values
+from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source, reading_error
 from tltlc.record import record, replace
@@ -77,11 +78,9 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     _check_demonstrations(asked.demonstrations, settings)
     level = load_level(path, variant)
     offered = params(level)
-    if asked.spec is None and begun is not None:
-        spec, task = begun.card.fspa, load_task(begun.card.fspa, own_parameters(begun, offered), offered=offered)
-    else:
-        spec = asked.spec or spec_of(level)
-        task = load_task(spec, offered=offered)
+    spec: str | Fspa = asked.spec or (begun.card.fspa if begun else spec_of(level))
+    own = own_parameters(begun, offered) if begun and asked.spec is None else {}
+    task = load_task(spec, own, offered=offered)
     check_fit(level, task.fspa, spec)
     check_limit(task.fspa)
     seed = asked.seed or 0

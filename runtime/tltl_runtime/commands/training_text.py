@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltl_runtime.texts import number, share
+from tltl_runtime.texts import duration, number, share
 from tltl_runtime.training.demonstrated import Imitated
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.report import Confirmation, Report
@@ -84,15 +84,6 @@ def seconds_left(report: Report, stop: Stop) -> float:
     trained_s = max(0.0, report.seconds - (report.searched.seconds if report.searched else 0.0))
     left = max(0.0, (stop.steps - report.steps) * trained_s / max(report.steps, 1))
     return min(left, max(0.0, stop.minutes * 60 - report.seconds)) if stop.minutes else left
-
-
-def duration(seconds: float) -> str:
-    """A span of time for people: ``45 s``, ``12 min 5 s``, ``3 h 20 min``."""
-    minutes, rest = divmod(round(seconds), 60)
-    if not minutes:
-        return f"{rest} s"
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s"
 
 
 def minutes(number: float) -> str:

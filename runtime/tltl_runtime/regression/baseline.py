@@ -32,7 +32,8 @@ class Played:
     """What was played: a policy on a level in a variant, judged by a spec, with the seed of the episodes.
 
     ``level`` and ``spec`` are names; the hashes are those of :mod:`tltl_runtime.policies.identity`, and ``policy`` is
-    the SHA-256 of its file.  ``files`` are those that the level was made of, with their SHA-256.
+    the SHA-256 of its file.  ``files`` are those that the level was made of, with their SHA-256; ``place`` is the
+    case's, empty also in baselines that tell no levels of one name apart.
     """
 
     level: str
@@ -44,6 +45,7 @@ class Played:
     spec_hash: str
     files: tuple[tuple[str, str], ...]
     versions: Mapping[str, str]
+    place: str = ""
 
 
 @record
@@ -103,11 +105,14 @@ def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Path)
     Raises:
         TltlError: TLT0903, there is none.
     """
-    there = [each for each in references if _same(each.played, wanted, ("level", "variant"))]
+    named = [each for each in references if _same(each.played, wanted, ("level", "variant"))]
+    there = [each for each in named if each.played.place in (wanted.place, "")]
     known = [each for each in there if _same(each.played, wanted, ("policy", "spec_hash", "seed"))]
     if known:
         return known[0]
-    title = f"the baseline has no figures of `{wanted.level}:{wanted.variant}`"
+    # Where there is another level of that name its place tells which one is meant.
+    level = wanted.place if named and not there and wanted.place else wanted.level
+    title = f"the baseline has no figures of `{level}:{wanted.variant}`"
     if there:
         names = {"policy": "policy", "spec_hash": "spec", "seed": "seed"}
         other = [what for name, what in names.items() if not _same(there[0].played, wanted, (name,))]

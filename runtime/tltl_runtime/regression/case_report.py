@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
-from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Played
 from tltl_runtime.regression.explain import Finding, findings
+from tltl_runtime.regression.figures import Figures, figures
 from tltl_runtime.regression.play import Result
 from tltl_runtime.regression.reasons import edits, obstacles, reasons
+from tltl_runtime.regression.retrained import Retrained
 from tltl_runtime.regression.suite import Case
 from tltl_runtime.regression.verdict import Change, Verdict
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
-
-
-@record
-class Figures:
-    """Over ``episodes``: the pass rate with its Wilson interval of 95 %, progress and reward."""
-
-    episodes: int
-    pass_rate: float
-    pass_interval: tuple[float, float]
-    progress: Spread
-    reward: Spread
-    steps: Spread
 
 
 @record
@@ -54,6 +42,8 @@ class CaseReport:
     accounts: tuple[Account, ...] = ()
     recordings: tuple[tuple[int, str], ...] = ()
     """Of which episodes there are recordings, and the names of their files."""
+    retrained: Retrained | None = None
+    """What a training from its policy came to, None where none was asked for or needed."""
 
 
 def report_on(result: Result) -> CaseReport:
@@ -89,7 +79,9 @@ def report_on(result: Result) -> CaseReport:
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     """The report on a case that cannot be played any more, which is a failure of the level and not of the suite."""
     said = ("it cannot be played any more", *map(_said, error.diagnostics))
-    return CaseReport(case.name, Path(case.level).stem, case.variant, "fail", said)
+    # As a level that loads calls it: the place of an overlay's file is no part of a report.
+    variant = "+".join(Path(each).stem if each.endswith(".toml") else each for each in case.variant.split("+"))
+    return CaseReport(case.name, Path(case.level).stem, variant, "fail", said)
 
 
 def _said(found: Diagnostic) -> str:
@@ -99,16 +91,3 @@ def _said(found: Diagnostic) -> str:
         label = found.labels[0]
         where = f"{label.source.name}:{label.source.position(label.span.start)[0]}: "
     return f"{where}{found.code}, {found.title}" + (f" ({found.help})" if found.help else "")
-
-
-def figures(accounts: Sequence[Account]) -> Figures:
-    """The figures over some episodes; raises ValueError where there are none."""
-    passed = sum(each.success for each in accounts)
-    return Figures(
-        episodes=len(accounts),
-        pass_rate=passed / len(accounts),
-        pass_interval=wilson(passed, len(accounts)),
-        progress=spread_of([each.progress for each in accounts]),
-        reward=spread_of([each.reward for each in accounts]),
-        steps=spread_of([float(each.steps) for each in accounts]),
-    )

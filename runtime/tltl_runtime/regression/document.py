@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltl_runtime.record_json import to_json
-from tltl_runtime.regression.case_report import CaseReport, Figures
+from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.figures import Figures
 from tltl_runtime.regression.suite import Suite
 
 FORMAT: Final = "tltl-regression"
@@ -20,8 +21,8 @@ def document(
 ) -> dict[str, Any]:
     """The report on a suite.
 
-    ``complete`` says whether all of its cases were judged that were asked for; ``left_out`` are the names of those that
-    were not, since nothing has changed that they depend on.
+    ``complete`` says whether all of its cases were judged, and trained for, that were asked for; ``left_out`` are the
+    names of those that were not, since nothing has changed that they depend on.
     """
     verdicts = [report.verdict for report in reports]
     return {
@@ -53,6 +54,7 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "reasons": list(report.reasons),
         "explanation": to_json(report.explanation),
         "played": to_json(played),
+        "retrained": to_json(report.retrained),
         "accounts": [{name: to_json(getattr(each, name)) for name in _OF_EPISODES} for each in report.accounts],
     }
 

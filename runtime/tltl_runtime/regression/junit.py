@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 from xml.etree import ElementTree as ET
 
-from tltl_runtime.regression.case_report import CaseReport, Figures
+from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.figures import Figures
 from tltl_runtime.regression.suite import Suite
 
 _NO_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -48,6 +49,8 @@ def _testcase(suite: Suite, report: CaseReport) -> ET.Element:
         ET.SubElement(test, _ELEMENTS[report.verdict], {"type": report.verdict, "message": message}).text = text
     elif text:
         ET.SubElement(test, "system-out").text = text
+    if report.retrained:
+        ET.SubElement(test, "system-out").text = _legal(report.retrained.text)
     return test
 
 
@@ -59,6 +62,9 @@ def _properties(suite: Suite, reports: Sequence[CaseReport]) -> Iterator[tuple[s
         for prefix, figures in (("", report.figures), ("baseline_", report.baseline)):
             if figures:
                 yield from ((f"{report.name}.{prefix}{name}", value) for name, value in _figures(figures))
+        if retrained := report.retrained:
+            yield f"{report.name}.retrained", retrained.outcome
+            yield f"{report.name}.retrained_pass_rate", f"{retrained.figures.pass_rate:.4f}"
 
 
 def _figures(figures: Figures) -> Iterator[tuple[str, str]]:

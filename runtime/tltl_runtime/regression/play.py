@@ -70,6 +70,7 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
         spec_hash=spec_hash(setup.fspa),
         files=level.files,
         versions=versions(),
+        place=case.place,
     )
     return Ready(case, setup, played)
 

@@ -12,7 +12,7 @@ from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.held_folder import held
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import Played, Reference, reference_of
+from tltl_runtime.regression.baseline import Reference, reference_of
 from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken
 from tltl_runtime.regression.page.slugs import slugs
 from tltl_runtime.regression.play import Ready, Result, episodes, judged, ready
@@ -93,18 +93,24 @@ def case_folder(suite: Suite, name: str, folder: Path) -> Path:
 def record_baseline(suite: Suite, pool: Pool, told: Told) -> Iterator[Reference]:
     """Play all episodes of each level, variant, spec and policy that the suite's cases are compared with.
 
+    Of cases that are compared with the same, that counts which asks for most episodes.
+
     Raises:
         TltlError: something does not fit, before anything is played; what playing raises.
     """
-    played: list[Played] = []
-    for case, one in [(case, ready(case, suite.seed, case.reference)) for case in suite.cases]:
-        if one.played in played:
-            continue
-        played.append(one.played)
+    wanted: list[Ready] = []
+    for case in suite.cases:
+        one = ready(case, suite.seed, case.reference)
+        rows = [row for row, other in enumerate(wanted) if other.played == one.played]
+        if not rows:
+            wanted.append(one)
+        elif wanted[rows[0]].case.episodes < case.episodes:
+            wanted[rows[0]] = one
+    for one in wanted:
         accounts: list[Account] = []
         for each in episodes(one, pool):
             accounts.append(each.account)
-            told(case, len(accounts), each.account)
+            told(one.case, len(accounts), each.account)
         yield Reference(one.played, tuple(accounts))
 
 

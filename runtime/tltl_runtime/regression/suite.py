@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from os.path import normpath
 from pathlib import Path
 from typing import Final
 
@@ -49,7 +50,8 @@ class Case:
 
     ``level`` and ``variant`` are what :func:`~tltl_runtime.stealth.levels.file.load_level` takes, ``reference`` is the
     variant whose figures it is compared with, ``spec`` ``FILE:NAME`` or None for the policy's.  ``episodes`` are
-    played at the most.
+    played at the most.  ``place`` tells levels of one name apart: the level's file as seen from the suite, empty for a
+    level that comes with the package.
     """
 
     name: str
@@ -60,6 +62,7 @@ class Case:
     policy: Path
     episodes: int
     thresholds: Thresholds
+    place: str = ""
 
 
 @record
@@ -107,7 +110,7 @@ def read_suite(path: Path) -> Suite:
 
 def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> tuple[Case, Label] | None:
     before = len(table.log)
-    level = _level(table, folder)
+    level, place = _level(table, folder)
     variant = table.text("variant", "")
     overlays = _overlays(table, folder)
     reference = table.text("reference", "")
@@ -126,7 +129,7 @@ def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> 
     base = variant or there[0]
     name = name or f"{Path(level).stem}:{'+'.join((base, *(Path(each).stem for each in overlays)))}"
     played = "+".join((base, *overlays))
-    return Case(name, level, played, reference or there[0], spec, policy, episodes, thresholds), table.label
+    return Case(name, level, played, reference or there[0], spec, policy, episodes, thresholds, place), table.label
 
 
 def _variants(table: Table, level: str) -> tuple[str, ...]:
@@ -138,20 +141,21 @@ def _variants(table: Table, level: str) -> tuple[str, ...]:
         return (*asked, "v0")
 
 
-def _level(table: Table, folder: Path) -> str:
+def _level(table: Table, folder: Path) -> tuple[str, str]:
+    """A level, and its place as seen from the suite where it is a file."""
     level = table.text("level")
     if not level:
-        return ""
+        return "", ""
     if level.endswith(".toml"):
         if not (folder / level).is_file():
             table.log.append(_missing("level", level, table.place("level")))
-        return str(folder / level)
+        return str(folder / level), Path(normpath(level)).as_posix()
     try:
         level_path(level)
     except TltlError as error:
         (found,) = error.diagnostics
         table.log.append(Diagnostic(found.code, found.title, (table.place("level"),), found.help))
-    return level
+    return level, ""
 
 
 def _overlays(table: Table, folder: Path) -> tuple[str, ...]:

@@ -30,7 +30,7 @@ class Ppo:
     """rsl-rl's PPO; learning rate, entropy, clip, lambda and gamma are by default the paper's (section VI).
 
     A training that begins with a policy has a critic that knows nothing: in its first ``warm_up`` updates the critic
-    learns alone, so that the policy is not spoilt by what it says.
+    learns alone, lest the policy follow what it says then.
     """
 
     learning_rate: float

@@ -41,7 +41,7 @@ def test_spec_level_senses_and_network_are_the_policys(tltlc: TltlcFunction, her
     folder = Path("training/cover_and_hide-v1-soon-0-tuned")
     assert found.err.splitlines()[:2] == [
         f"training soon on cover_and_hide v1, seed 0, in {folder}",
-        "it begins with the weights of old.safetensors; its critic is new, and learns alone in the first 10 iterations",
+        "it begins with the weights of old.safetensors; its critic is new, and learns alone in the first 5 iterations",
     ]
     old, new = read_policy("old.safetensors"), read_policy(folder / "policy.safetensors")
     assert (new.card.sensors, new.card.network, new.card.fspa) == (old.card.sensors, old.card.network, old.card.fspa)

@@ -17,6 +17,9 @@ spec easy { limit 20 steps  reach alive }
 """
 """A plan that is met at the first step."""
 
+NEVER = SOON.replace("limit 20 steps", "limit 4 steps")
+"""A plan that nobody meets: the exit is further away."""
+
 SUITE = """\
 seed = 3
 episodes = 50

@@ -80,6 +80,22 @@ def test_figures_are_found_whatever_the_level_has_become() -> None:
     assert reference_of(known, wanted, Path("game.toml")) == known[1]
 
 
+def test_levels_of_one_name_are_told_apart() -> None:
+    known = tuple(reference(several(count), place=f"{place}/room.toml") for count, place in ((1, "old"), (2, "new")))
+    for each in known:
+        assert reference_of(known, replace(PLAYED, place=each.played.place), Path("game.toml")) == each
+    with pytest.raises(TltlError, match="no figures of `other/room"):
+        reference_of(known, replace(PLAYED, place="other/room.toml"), Path("game.toml"))
+
+
+def test_a_baseline_that_tells_them_not_apart_will_do(tmp_path: Path) -> None:
+    path = tmp_path / "game.baseline.json"
+    write_baseline(path, (reference(several(2)),))
+    path.write_text(path.read_text(encoding="utf-8").replace(',"place":""', ""), encoding="utf-8")
+    (found,) = read_baseline(path)
+    assert reference_of((found,), replace(PLAYED, place="new/room.toml"), Path("game.toml")) == found
+
+
 @pytest.mark.parametrize(
     ("changed", "title"),
     [

@@ -9,8 +9,10 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from tests.runtime.regression.made import case, several, suite
-from tltl_runtime.regression.case_report import CaseReport, figures
+from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.figures import figures
 from tltl_runtime.regression.junit import junit
+from tltl_runtime.regression.retrained import Retrained, Trained
 from tltl_runtime.regression.suite import Suite
 from tltlc.record import replace
 
@@ -100,6 +102,19 @@ def test_figures_are_properties() -> None:
         "room:v0.baseline_reward": "0.4250",
         "room:v2.verdict": "fail",
     }
+
+
+def test_what_a_training_came_to() -> None:
+    trained = Trained("met", 4096, 60.0, 200_000, True, 97)
+    retrained = Retrained(
+        "learned", "feasible: <after> …", trained, figures(several(3, 1)), (0.2, 0.9), None, "p", None
+    )
+    root = read((replace(BAD, retrained=retrained), GOOD))
+    bad, _ = root.iter("testcase")
+    assert [(child.tag, child.text) for child in bad][1:] == [("system-out", "feasible: <after> …")]
+    found = {each.get("name"): each.get("value") for each in root.iter("property")}
+    assert (found["room:v2.retrained"], found["room:v2.retrained_pass_rate"]) == ("learned", "0.7500")
+    assert "room:v0.retrained" not in found
 
 
 def test_no_cases() -> None:

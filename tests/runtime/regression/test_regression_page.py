@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
@@ -12,10 +13,12 @@ from tests.docs.blocks import DOCS, blocks
 from tests.runtime.regression.made import ROOM, case, several, suite
 from tltl_runtime.regression import confidence
 from tltl_runtime.regression import suite as suite_module
-from tltl_runtime.regression.case_report import CaseReport, Figures, figures
+from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.confidence import rate_interval
 from tltl_runtime.regression.document import FORMAT, VERSION, document
+from tltl_runtime.regression.figures import Figures, figures
 from tltl_runtime.regression.junit import junit
+from tltl_runtime.regression.retrained import Best, Outcome, Retrained, Trained
 from tltl_runtime.regression.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
 
 PAGE = (DOCS / "regression.md").read_text(encoding="utf-8")
@@ -70,13 +73,17 @@ def test_every_field_of_the_report_is_told_and_no_other() -> None:
     assert set(rows("field of a case")) == set(found)
     assert (FORMAT, VERSION) == ("tltl-regression", 1)
     assert f"| `{FORMAT}`, {VERSION} |" in PAGE
-    for name in (*Figures.__match_args__, *found["accounts"][0]):
+    of_retrained = (*Retrained.__match_args__, *Trained.__match_args__, *Best.__match_args__)
+    for name in (*Figures.__match_args__, *found["accounts"][0], *of_retrained, *get_args(Outcome)):
         assert f"`{name}`" in PAGE
     json.dumps(said, allow_nan=False)
 
 
 def test_the_properties_are_those() -> None:
-    report = CaseReport("CASE", "a", "v0", "pass", (), figures=figures(several(2)), baseline=figures(several(2)))
+    trained = Trained("met", 1, 1.0, 0, True, None)
+    new = Retrained("learned", "", trained, figures(several(2)), (0.0, 1.0), None, "retrained/a/policy", None)
+    both = figures(several(2))
+    report = CaseReport("CASE", "a", "v0", "pass", (), figures=both, baseline=both, retrained=new)
     names = set(re.findall(r'name="(CASE\.\w+)"', junit(suite(case("CASE")), [report])))
     told = set(re.findall(r"`(CASE\.\w+)`", PAGE))
     assert told <= names

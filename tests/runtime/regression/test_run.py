@@ -273,6 +273,37 @@ def test_a_baseline_plays_each_place_once_and_all_of_its_episodes(game: Path) ->
     assert tuple(found) == baseline_of(suite.path)
 
 
+def test_a_baseline_has_the_episodes_of_the_case_that_asks_for_most(game: Path) -> None:
+    _edit("game.toml", 'level = "room.toml"\nvariant = "v1"', 'level = "room.toml"\nepisodes = 30\nvariant = "v1"')
+    _edit("game.toml", "episodes = 50", "episodes = 25")
+    found = list(record_baseline(read_suite(Path("game.toml")), 1, Played()))
+    assert [(each.played.spec, len(each.accounts)) for each in found] == [("easy", 30), ("soon", 25)]
+
+
+def test_levels_of_one_name_have_a_baseline_each(game: Path) -> None:
+    Path("other").mkdir()
+    shutil.copy("room.toml", "other/room.toml")
+    again = '[[case]]\nname = "other"\nlevel = "./other//room.toml"\npolicy = "easy.safetensors"\n'
+    _edit("game.toml", SUITE, SUITE.replace("episodes = 50", "episodes = 25") + again)
+    suite = read_suite(Path("game.toml"))
+    found = list(record_baseline(suite, 1, Played()))
+    assert [(each.played.spec, each.played.place) for each in found] == [
+        ("easy", "room.toml"),
+        ("soon", "room.toml"),
+        ("easy", "other/room.toml"),
+    ]
+
+
+def test_a_report_does_not_say_where_an_overlay_lies(game: Path) -> None:
+    Path("edits").mkdir()
+    Path("edits/wide.toml").write_text("[start]\nat = [2.5, 2.0, 0.0]\n", encoding="utf-8")
+    _edit("game.toml", 'variant = "v1"', 'overlay = "edits/wide.toml"')
+    Path("room.toml").write_text(ROOM.replace("size = [10.0", "siez = [10.0"), encoding="utf-8")
+    suite = read_suite((game / "game.toml").absolute())
+    found = list(regress(suite, suite.cases, baseline_of(suite.path), Path("new"), 1, Played()))
+    assert [done.report.variant for done in found] == ["v0", "v0+wide", "v0"]
+
+
 def test_a_baseline_of_what_cannot_be_played_is_refused_before_anything_is_played(game: Path) -> None:
     Path("soon.safetensors").write_bytes(b"no policy")
     played = Played()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
@@ -43,6 +44,7 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
         element("h2", report.name, " ", badge(report.verdict), id=f"title:{slug}"),
         _facts(report, fspa),
         *_why(report, case.episodes, slug),
+        *_retrained(case),
     ]
     if level is not None and fspa is not None and drawn is not None:
         now, before = traffic(report.accounts), traffic(case.before)
@@ -93,6 +95,20 @@ def _why(report: CaseReport, episodes: Mapping[int, Episode], slug: str) -> Iter
     if lines:
         yield element("h3", "Why")
         yield element("ul", *lines, class_="reasons")
+
+
+def _retrained(case: ReportedCase) -> Iterator[Markup]:
+    """What came of training its policy on the level as it is now."""
+    retrained = case.report.retrained
+    if retrained is None:
+        return
+    yield element("h3", "Trained anew from its policy")
+    yield element("p", prose(retrained.text), class_="retrained")
+    yield element("p", f"policy: {retrained.policy}", class_="facts")
+    if case.curve:
+        source = f"data:image/png;base64,{base64.b64encode(case.curve).decode()}"
+        picture_ = element("img", src=source, alt="Pass rate and progress over the steps of the training")
+        yield element("details", element("summary", "How the training went"), picture_)
 
 
 def _links(finding: Finding, episodes: Mapping[int, Episode], slug: str) -> Markup | None:

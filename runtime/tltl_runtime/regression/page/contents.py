@@ -17,7 +17,8 @@ class ReportedCase:
     """A case with what the page draws of it.
 
     ``level`` and ``fspa`` are what was played, None of a case that cannot be played any more.  ``episodes`` are the
-    recorded ones by their index, ``before`` the accounts of the baseline.
+    recorded ones by their index, ``before`` the accounts of the baseline, ``curve`` the picture of a training that
+    began with its policy, a PNG, empty where there is none.
     """
 
     report: CaseReport
@@ -25,13 +26,15 @@ class ReportedCase:
     fspa: Fspa | None = None
     episodes: Mapping[int, Episode] = EMPTY
     before: tuple[Account, ...] = ()
+    curve: bytes = b""
 
 
 @record
 class SuiteReport:
     """What a suite came to: its name, the seed and the error bound of its verdicts, and its cases in their order.
 
-    ``versions`` are those of what played, by name; ``complete`` says whether all cases were judged that were asked for.
+    ``versions`` are those of what played, by name; ``complete`` says whether all cases were judged, and trained anew,
+    that were asked for.
     """
 
     suite: str

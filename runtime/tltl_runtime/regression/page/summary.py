@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from tltl_runtime.regression.case_report import CaseReport, Figures
+from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.figures import Figures
 from tltl_runtime.regression.page.contents import SuiteReport
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose, short
 from tltl_runtime.regression.verdict import Verdict
@@ -20,7 +21,7 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     counts = [
         element("li", badge(verdict), f" {verdicts.count(verdict)}") for verdict in _VERDICTS if verdict in verdicts
     ]
-    least = element("p", "Not all of its cases were judged: the run was stopped.", class_="warning")
+    least = element("p", "The run was stopped before all was judged and trained that was asked for.", class_="warning")
     facts = [
         f"seed {suite.seed}",
         f"a wrong verdict is less likely than {suite.error:.3g}",

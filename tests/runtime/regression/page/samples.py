@@ -7,8 +7,9 @@ from functools import cache
 
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.regression.account import Account, account
-from tltl_runtime.regression.case_report import CaseReport, figures
+from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.explain import findings
+from tltl_runtime.regression.figures import figures
 from tltl_runtime.regression.page.page import ReportedCase, SuiteReport
 from tltl_runtime.regression.verdict import Verdict
 from tltl_runtime.stealth.env import make_env

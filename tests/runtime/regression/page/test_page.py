@@ -12,10 +12,13 @@ from typing import Any
 
 import pytest
 
+from tests.runtime.regression.made import several
 from tests.runtime.regression.page import samples
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.explain import Finding
+from tltl_runtime.regression.figures import figures
 from tltl_runtime.regression.page.page import ReportedCase, SuiteReport, html_report
+from tltl_runtime.regression.retrained import Retrained, Trained
 from tltlc.record import replace
 
 EVIL = "</script><b onclick='x'>`$title`&amp;<!--"
@@ -162,6 +165,20 @@ def test_names_bring_no_markup_into_the_page() -> None:
     assert found.data["cases"][0]["map"]["enemies"][0]["name"] == EVIL
     assert EVIL in found.texts
     assert not any(name.startswith("on") for _, attributes in found.elements for name in attributes)
+
+
+def test_a_training_is_told_with_its_curve() -> None:
+    trained = Trained("minutes", 4096, 60.0, 200_000, True, None)
+    told = Retrained("no_way", f"no way found: {EVIL}", trained, figures(several(0, 2)), (0.0, 0.5), None, "a/p", None)
+    suite = samples.suite()
+    case = replace(suite.cases[0], report=replace(suite.cases[0].report, retrained=told), curve=b"a curve")
+    shown = Page(html_report(replace(suite, cases=(case, *suite.cases[1:]))))
+    assert "".join(shown.texts).count("no way found: </script><b onclick='x'>") == 1
+    assert "policy: a/p" in shown.texts
+    (picture,) = shown.all("img")
+    assert picture["src"] == "data:image/png;base64," + base64.b64encode(b"a curve").decode()
+    assert picture["alt"]
+    assert not Page(html_report(suite)).all("img")
 
 
 def test_a_case_that_cannot_be_played_has_its_reasons_alone() -> None:

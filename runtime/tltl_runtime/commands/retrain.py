@@ -1,0 +1,102 @@
+"""``tltlc regress --retrain``: policies are trained on the levels that they do not play as designed any more."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from shlex import quote
+
+import click
+
+from tltl_runtime.commands.plain import plain
+from tltl_runtime.commands.regression_display import RegressionDisplay
+from tltl_runtime.commands.shown_training import train_shown
+from tltl_runtime.commands.training_text import minutes as said_minutes
+from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.regression.baseline import baseline_command
+from tltl_runtime.regression.retrain import forget_training, is_kept, needs_it, retrained, retraining
+from tltl_runtime.regression.retrained import Retrained
+from tltl_runtime.regression.run import Done
+from tltl_runtime.regression.suite import SHIPPED, Suite
+from tltl_runtime.training.record import ended_as, write_record
+from tltl_runtime.training.run import RUN, Run
+from tltlc.record import record, replace
+
+
+@record
+class Retraining:
+    """How cases are trained anew: for so many ``minutes`` each at the most, below the ``folder`` of the run.
+
+    ``fresh``: whatever is kept there is left out; ``again`` is the command that goes on after a stop.
+    """
+
+    suite: Suite
+    folder: Path
+    minutes: float
+    pool: Pool
+    fresh: bool
+    again: str
+
+
+def wanting(found: list[Done]) -> int:
+    """Of how many cases a training is still to be told."""
+    return sum(needs_it(done) and done.report.retrained is None for done in found)
+
+
+def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> None:
+    """Train for each case that needs it, one after the other; what it came to is told at once, and put into ``found``.
+
+    Raises:
+        TltlError: what training and playing raise.
+    """
+    runs = {
+        row: retraining(asked.suite, done.ready, asked.folder, asked.minutes, asked.pool)
+        for row, done in enumerate(found)
+        if done.ready is not None and needs_it(done)
+    }
+    for row, run in runs.items():
+        done = found[row]
+        _train(asked, done.report.name, run)
+        outcome = _played(asked, done, run)
+        found[row] = replace(done, report=replace(done.report, retrained=outcome))
+        for line in _lines(asked, done.report.name, outcome):
+            click.echo(plain(line), err=to_stderr)
+
+
+def _train(asked: Retraining, name: str, run: Run) -> None:
+    """Train to the end, or go on, unless the training is over already."""
+    there = (run.folder / RUN).exists()
+    kept = there and not asked.fresh and is_kept(run)
+    if kept and ended_as(run):
+        return
+    how = "goes on" if kept else "begins with its policy"
+    why = "" if kept or not there or asked.fresh else ", anew, since the level, the policy or tltlc has changed"
+    limit = said_minutes(asked.minutes)
+    click.echo(f"{plain(name)}: a training {how}{why}, for {limit} at the most, in {run.folder}", err=True)
+    if there and not kept:
+        forget_training(run.folder)
+    write_record(run, train_shown(run, resume=kept, again=asked.again))
+
+
+def _played(asked: Retraining, done: Done, run: Run) -> Retrained:
+    """What the training came to, with how far its episodes are on standard error."""
+    assert done.ready is not None
+    case = replace(done.ready.case, name=f"{done.report.name}, trained anew")
+    with RegressionDisplay("at most") as display:
+        return retrained(asked.suite, done, run, asked.pool, lambda count, last: display(case, count, last))
+
+
+def _lines(asked: Retraining, name: str, outcome: Retrained) -> Iterator[str]:
+    """What a training came to, and what to do now."""
+    yield f"{name}, trained anew: {outcome.text}"
+    policy = quote(str(asked.folder / outcome.policy))
+    if outcome.outcome != "learned":
+        if outcome.trained.end == "minutes":
+            yield f"    to train longer: {asked.again} --minutes {2 * asked.minutes:g}"
+    elif asked.suite.path == SHIPPED:
+        yield f"    the new policy: {policy}"
+    else:
+        then = baseline_command(asked.suite.path)
+        yield f"    where the change was meant: copy {policy} beside the suite, name it there as `policy`, {then}"
+    if outcome.episode:
+        yield f"    an episode that met the spec: tltlc replay {quote(str(asked.folder / outcome.episode))}"

@@ -1,0 +1,212 @@
+"""Policies are trained on levels that changed, each from where it was, to see whether these are feasible after all."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Final
+
+from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.confidence import rate_interval
+from tltl_runtime.regression.figures import figures
+from tltl_runtime.regression.play import Ready, episodes, policy_file
+from tltl_runtime.regression.retrained import Best, Retrained, Trained, outcome_of, sentence
+from tltl_runtime.regression.run import Done, case_folder
+from tltl_runtime.regression.suite import LEAST_EPISODES, Suite
+from tltl_runtime.training.checkpoint import read_checkpoint
+from tltl_runtime.training.folder import held
+from tltl_runtime.training.initial import initial_of, weights_hash
+from tltl_runtime.training.metrics import METRICS
+from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, RUN, Run, identity, read_level_hash, read_run
+from tltl_runtime.training.settings import read_settings
+from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reason
+from tltlc.record import record, replace
+from tltlc.writing import write_files
+
+FOLDER: Final = "retrained"
+"""Below the folder of a run, with a training for each case."""
+EPISODE: Final = "met.episode.npz"
+"""In the folder of a training: an episode of the retrained policy that met the spec."""
+
+_RESULT: Final = "retrained.json"
+_VERSION: Final = 1
+_WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
+
+
+def needs_it(done: Done) -> bool:
+    """Whether a case asks for a training: it was played, and did not pass."""
+    return done.ready is not None and done.report.verdict != "pass"
+
+
+def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: Pool) -> Run:
+    """The training of a case's policy on its level, for so many minutes at the most, below the ``folder`` of a run.
+
+    Raises:
+        TltlError: TLT0942, the policy lies where the training goes.
+    """
+    place = case_folder(suite, ready.case.name, folder / FOLDER)
+    path = policy_file(ready.case.policy)
+    if path.resolve().parent == place.resolve():
+        title = f"the policy of the case `{ready.case.name}` lies in `{place}`, where its training goes"
+        help_ = "move it beside the suite, and name that place there as `policy`"
+        raise TltlError([Diagnostic("TLT0942", title, help=help_)])
+    setup, card, settings = ready.setup, ready.setup.policy.card, read_settings()
+    rollout = replace(
+        settings.rollout, pool="ray" if pool == "ray" else "processes", workers=0 if pool == "ray" else pool
+    )
+    return Run(
+        folder=place,
+        fspa=setup.fspa,
+        params=setup.params,
+        level=setup.level,
+        variant=setup.variant,
+        sensors=card.sensors,
+        settings=replace(settings, network=card.network, rollout=rollout, stop=replace(settings.stop, minutes=minutes)),
+        seed=suite.seed,
+        initial=initial_of(path, setup.policy),
+    )
+
+
+def is_kept(run: Run) -> bool:
+    """Whether the folder has this very training, be it over or not: the same level, spec, policy, seed and settings."""
+    try:
+        # Its level may be named otherwise there; what was in it then counts.
+        there = replace(read_run(run.folder), level=run.level, variant=run.variant)
+        if {**identity(there), "level": read_level_hash(run.folder)} != identity(run):
+            return False
+        read_checkpoint(run.folder / CHECKPOINT, identity(run))
+    except TltlError:
+        # It is damaged, or of another version.
+        return False
+    return True
+
+
+def forget_training(folder: Path) -> None:
+    """Remove what a training has left in a folder, and nothing else.
+
+    Raises:
+        TltlError: TLT0005, a file cannot be removed; TLT0865, another process trains there.
+    """
+    names = (RUN, CHECKPOINT, POLICY, RECORD, CURVE, METRICS, EPISODE, _RESULT)
+    with held(folder):
+        for path in (*(folder / name for name in names), *folder.glob("events.out.tfevents.*")):
+            try:
+                path.unlink(missing_ok=True)
+            except OSError as error:
+                title = f"cannot remove `{path}`: {reason(error)}"
+                raise TltlError([Diagnostic("TLT0005", title, help=_WRITABLE)]) from None
+
+
+def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[int, Account], None]) -> Retrained:
+    """What the training in ``run.folder`` came to, which is over: its policy plays fresh episodes, or has done so.
+
+    They end as soon as it is certain whether the pass rate is that of the case's thresholds; ``told`` gets the number
+    of episodes so far and the last one.
+
+    Raises:
+        TltlError: what is wrong with the policy's file; what playing raises; TLT0005.
+    """
+    assert done.ready is not None
+    policy, trained = read_policy(run.folder / POLICY), trained_of(run)
+    error = suite.error / len(suite.cases)
+    # Episodes of another seed: those of the suite's were played by the policy that this one comes of.
+    setup = replace(done.ready.setup, policy=policy, seed=(suite.seed + 1) % 2**31)
+    ready = replace(done.ready, setup=setup)
+    inputs = _identity(ready, weights_hash(policy), trained, error, done.report.accounts)
+    if kept := _kept(run.folder, inputs):
+        return kept
+    accounts, recording, interval = _played(ready, error, pool, told)
+    thresholds = ready.case.thresholds
+    met = sum(each.success for each in (*accounts, *done.report.accounts))
+    outcome = outcome_of(trained, interval[0], thresholds, met)
+    of_all, best = figures(accounts), _best(accounts, setup.fspa)
+    place = f"{FOLDER}/{run.folder.name}"
+    found = Retrained(
+        outcome=outcome,
+        text=sentence(outcome, trained, of_all, thresholds, best),
+        trained=trained,
+        figures=of_all,
+        rate_interval=interval,
+        best=best,
+        policy=f"{place}/{POLICY}",
+        episode=f"{place}/{EPISODE}" if recording else None,
+    )
+    text = json.dumps(to_json(_Document(inputs, found)), ensure_ascii=False) + "\n"
+    write_files(run.folder, {**({EPISODE: recording} if recording else {}), _RESULT: text}, _WRITABLE)
+    return found
+
+
+def trained_of(run: Run) -> Trained:
+    """How the training in ``run.folder`` went, which is over; raises TltlError for its checkpoint."""
+    state = read_checkpoint(run.folder / CHECKPOINT, identity(run))
+    assert state is not None
+    record_ = json.loads((run.folder / RECORD).read_text(encoding="utf-8"))
+    # The agent's own successes are ways, too, be they shorter or the first.
+    lengths = [int(each) for process in state.processes for each in process.get("way_lengths", ())]
+    return Trained(
+        end=record_["end"],
+        steps=state.steps,
+        seconds=round(state.seconds, 1),
+        searched=state.searched.steps if state.searched else 0,
+        complete=state.searched is None or state.searched.complete,
+        shortest=min(lengths, default=None),
+    )
+
+
+def _played(
+    ready: Ready, error: float, pool: Pool, told: Callable[[int, Account], None]
+) -> tuple[list[Account], bytes, tuple[float, float]]:
+    """Episodes until it is certain whether the pass rate is the one asked for, a recording of one that met the spec,
+    and the interval of the rate.
+    """
+    wanted, accounts, recording, interval = ready.case.thresholds.pass_rate, list[Account](), b"", (0.0, 1.0)
+    with closing(episodes(ready, pool)) as playing:
+        for each in playing:
+            accounts.append(each.account)
+            told(len(accounts), each.account)
+            recording = recording or (each.recording if each.account.success else b"")
+            passed = sum(account.success for account in accounts)
+            interval = rate_interval(passed, len(accounts) - passed, error)
+            if len(accounts) >= LEAST_EPISODES and (interval[0] >= wanted or interval[1] < wanted):
+                break
+    return accounts, recording, interval
+
+
+def _best(accounts: Sequence[Account], fspa: Fspa) -> Best | None:
+    failed = [each for each in accounts if not each.success]
+    if not failed:
+        return None
+    farthest = max(failed, key=lambda each: each.progress)
+    return Best(farthest.progress, fspa.states[farthest.unmet].label.english)
+
+
+def _identity(ready: Ready, weights: str, trained: Trained, error: float, own: Sequence[Account]) -> str:
+    """The hash of all that the outcome depends on; ``own`` are the episodes by which the case was judged."""
+    case = ready.case
+    parts = [_VERSION, case.episodes, to_json(case.thresholds), error, to_json(ready.played), weights, to_json(trained)]
+    parts.append(sum(each.success for each in own))
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+
+
+@record
+class _Document:
+    identity: str
+    retrained: Retrained
+
+
+def _kept(folder: Path, inputs: str) -> Retrained | None:
+    try:
+        found = from_json(_Document, json.loads((folder / _RESULT).read_text(encoding="utf-8")), "retrained")
+    except (OSError, ValueError, RecordJsonError, RecursionError):
+        # It is played again.
+        return None
+    there = found.retrained.episode is None or (folder / EPISODE).is_file()
+    return found.retrained if found.identity == inputs and there else None

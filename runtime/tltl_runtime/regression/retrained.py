@@ -1,0 +1,96 @@
+"""What came of training a case's policy on the level as it is now: whether that is feasible after all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Literal
+
+from tltl_runtime.regression.figures import Figures
+from tltl_runtime.regression.suite import Thresholds
+from tltl_runtime.texts import duration, number, percent
+from tltlc.record import record
+
+Outcome = Literal["learned", "feasible", "no_way"]
+
+
+@record
+class Trained:
+    """A training that began with a case's policy, and its end.
+
+    It took ``steps`` of the agent and ``seconds``, the search included, which took ``searched`` decisions and was
+    ``complete`` unless a limit broke it off.  ``shortest`` is the length in steps of the shortest way to meet the spec
+    that is known, of the search or of the agent; None where there is none.
+    """
+
+    end: Literal["met", "steps", "minutes"]
+    steps: int
+    seconds: float
+    searched: int
+    complete: bool
+    shortest: int | None
+
+
+@record
+class Best:
+    """The fresh episode that came farthest: its progress, in [0, 1], and in English what remained to be done then."""
+
+    progress: float
+    remained: str
+
+
+@record
+class Retrained:
+    """Whether a changed level is feasible, as far as a training tells.
+
+    ``outcome`` is ``learned`` where the retrained policy certainly meets the spec in at least the case's ``pass_rate``
+    of episodes, ``feasible`` where the spec was met, by whomever, and ``no_way`` where it never was.  ``figures`` are
+    those of the retrained policy in fresh episodes, ``rate_interval`` is what can be said of its pass rate for certain,
+    and ``best`` is of the episodes that failed, None where all met the spec.  ``policy`` and ``episode``, a recording
+    of one that met it, are files in the folder of the run.
+    """
+
+    outcome: Outcome
+    text: str
+    trained: Trained
+    figures: Figures
+    rate_interval: tuple[float, float]
+    best: Best | None
+    policy: str
+    episode: str | None
+
+
+def outcome_of(trained: Trained, low: float, thresholds: Thresholds, met: int) -> Outcome:
+    """What a training shows; ``low`` is the lower end of the pass rate, ``met`` the episodes that met the spec, the
+    case's own among them.
+    """
+    if low >= thresholds.pass_rate:
+        return "learned"
+    return "feasible" if met or trained.shortest is not None else "no_way"
+
+
+def sentence(outcome: Outcome, trained: Trained, figures: Figures, thresholds: Thresholds, best: Best | None) -> str:
+    """What is told of the outcome."""
+    return "; ".join(_clauses(outcome, trained, figures, thresholds, best))
+
+
+def _clauses(
+    outcome: Outcome, trained: Trained, figures: Figures, thresholds: Thresholds, best: Best | None
+) -> Iterator[str]:
+    took = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
+    count, passed = figures.episodes, round(figures.pass_rate * figures.episodes)
+    low, high = (percent(end) for end in figures.pass_interval)
+    now = f"the policy meets the spec in {passed} of {count} fresh episodes ({low} to {high})"
+    if outcome == "learned":
+        yield f"feasible: after {took} {now}"
+    elif outcome == "feasible":
+        yield "feasible, but not learned"
+        if trained.shortest is not None:
+            yield f"there are ways, the shortest that is known takes {trained.shortest:,} steps"
+        yield f"after {took} {now}, and {thresholds.pass_rate:.0%} are asked for"
+    else:
+        broken = "" if trained.complete else ", which the limit broke off,"
+        yield f"no way found: neither a search of {trained.searched:,} steps{broken} nor {took} met the spec once"
+        yield "the changed level is likely infeasible"
+    if best is not None and outcome != "learned":
+        which = "the best of the failed ones" if passed else "the best of its episodes"
+        yield f"{which} came to progress {number(best.progress, 2)}, where this remained: {best.remained}"

@@ -1,0 +1,172 @@
+"""Trainings that begin with the policies of cases; they take seconds, and teach little."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.evaluation.untrained import untrained
+from tests.runtime.regression.game import NEVER, with_baseline, write_game
+from tltl_runtime.policies.file import read_policy, write_policy
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.baseline import baseline_of
+from tltl_runtime.regression.play import ready
+from tltl_runtime.regression.retrain import EPISODE, forget_training, is_kept, needs_it, retrained, retraining
+from tltl_runtime.regression.run import Done, regress
+from tltl_runtime.regression.suite import Suite, read_suite
+from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.training.record import write_record
+from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run
+from tltl_runtime.training.train import train
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
+
+SHORT = 0.02
+"""The limit of a training in minutes: less than its search and first iteration take."""
+
+
+def judged(suite: Suite) -> list[Done]:
+    return list(regress(suite, suite.cases, baseline_of(suite.path), Path("run"), 1, lambda *_: None))
+
+
+def training_of(suite: Suite, done: Done, minutes: float = SHORT) -> Run:
+    assert done.ready is not None
+    return retraining(suite, done.ready, Path("run"), minutes, 1)
+
+
+def trained(run: Run, resume: bool = False) -> None:
+    *_, last = train(run, resume=resume)
+    write_record(run, last)
+
+
+@pytest.fixture(name="made", scope="module")
+def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A game whose cases are judged, with a training for the hopeless one and one for what needs none."""
+    folder = tmp_path_factory.mktemp("made") / "game"
+    with pytest.MonkeyPatch.context() as patch:
+        write_game(folder)
+        patch.chdir(folder)
+        write_policy("soon.safetensors", untrained(NEVER, "room.toml"))
+        suite = with_baseline(Path("game.toml"))
+        easy, _, hopeless = judged(suite)
+        trained(training_of(suite, hopeless))
+        trained(training_of(suite, easy, minutes=10.0))
+        yield folder
+
+
+@pytest.fixture(name="game")
+def _game(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
+    shutil.copytree(made, tmp_path / "game")
+    monkeypatch.chdir(tmp_path / "game")
+    return read_suite(Path("game.toml"))
+
+
+def test_what_needs_it(game: Suite) -> None:
+    easy, other, hopeless = judged(game)
+    assert list(map(needs_it, (easy, other, hopeless))) == [False, False, True]
+    assert needs_it(replace(easy, report=replace(easy.report, verdict="review")))
+    # Of a level that cannot be played nothing can be learned.
+    assert not needs_it(replace(hopeless, ready=None))
+
+
+def test_the_training_is_the_cases(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    run = training_of(game, hopeless)
+    policy = read_policy("soon.safetensors")
+    assert run.folder == Path("run/retrained/hopeless")
+    assert (run.fspa, run.sensors, run.settings.network) == (policy.card.fspa, policy.card.sensors, policy.card.network)
+    assert run.initial and run.initial.path == "soon.safetensors"
+    assert (run.settings.stop.minutes, run.settings.rollout.workers) == (SHORT, 1)
+
+
+def test_a_level_without_a_way(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    counts: list[int] = []
+
+    def told(count: int, last: Account) -> None:
+        counts.append(count)
+        assert not last.success
+
+    found = retrained(game, hopeless, training_of(game, hopeless), 1, told)
+    assert (found.outcome, counts) == ("no_way", list(range(1, 26)))
+    assert found.trained.shortest is None and found.trained.end == "minutes" and not found.trained.complete
+    assert found.best and 0.0 <= found.best.progress < 1.0 and "exit" in found.best.remained
+    assert (found.policy, found.episode) == ("run/retrained/hopeless/policy.safetensors".partition("/")[2], None)
+    # Seeds are fresh: none of them is one by which the case was judged.
+    assert retrained(game, hopeless, training_of(game, hopeless), 1, told) == found
+    assert len(counts) == 25, "it is kept"
+
+
+def test_a_level_that_is_learned(game: Suite) -> None:
+    easy, *_ = judged(game)
+    run = training_of(game, easy, minutes=10.0)
+    found = retrained(game, easy, run, 1, lambda *_: None)
+    assert (found.outcome, found.trained.end) == ("learned", "met")
+    assert found.trained.shortest == 1 and found.best is None
+    assert found.figures.pass_rate == 1.0 and found.rate_interval[0] >= 0.85
+    episode = read_episode(run.folder / EPISODE)
+    assert episode.seed not in {account.seed for account in easy.report.accounts}
+    (run.folder / EPISODE).unlink()
+    assert retrained(game, easy, run, 1, lambda *_: None) == found
+    assert (run.folder / EPISODE).is_file(), "what was removed is played again"
+
+
+def test_episodes_of_the_case_itself_show_that_there_is_a_way(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    accounts = (replace(hopeless.report.accounts[0], success=True), *hopeless.report.accounts[1:])
+    lucky = replace(hopeless, report=replace(hopeless.report, accounts=accounts))
+    assert retrained(game, lucky, training_of(game, hopeless), 1, lambda *_: None).outcome == "feasible"
+
+
+def test_what_is_kept_and_what_is_not(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    run = training_of(game, hopeless)
+    assert is_kept(run)
+    assert is_kept(replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, minutes=9.0))))
+    assert not is_kept(replace(run, seed=run.seed + 1))
+    write_policy("soon.safetensors", untrained(NEVER, "room.toml", seed=7))
+    assert not is_kept(retraining(game, ready(game.cases[2], game.seed), Path("run"), SHORT, 1))
+    text = Path("room.toml").read_text(encoding="utf-8")
+    Path("room.toml").write_text(text.replace("[8.0, 8.0, 0.0]", "[8.5, 8.0, 0.0]"), encoding="utf-8")
+    assert not is_kept(run)
+    Path("room.toml").write_text(text, encoding="utf-8")
+    assert is_kept(run)
+    (run.folder / CHECKPOINT).write_bytes(b"torn")
+    assert not is_kept(run)
+
+
+def test_with_more_minutes_it_goes_on(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    run = training_of(game, hopeless)
+    before = retrained(game, hopeless, run, 1, lambda *_: None)
+    longer = training_of(game, hopeless, minutes=before.trained.seconds / 60 + SHORT)
+    trained(longer, resume=True)
+    after = retrained(game, hopeless, longer, 1, lambda *_: None)
+    # Its search, which the first limit broke off, is made anew.
+    assert after.trained.searched > before.trained.searched and after.trained.seconds > before.trained.seconds
+
+
+def test_what_is_forgotten_leaves_other_files(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    folder = training_of(game, hopeless).folder
+    (folder / "notes.txt").touch()
+    retrained(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
+    assert (folder / RUN).exists() and (folder / POLICY).exists()
+    forget_training(folder)
+    assert [path.name for path in folder.iterdir() if not path.name.startswith(".")] == ["notes.txt"]
+
+
+def test_a_policy_that_lies_where_its_training_goes(game: Suite) -> None:
+    text = Path("game.toml").read_text(encoding="utf-8")
+    Path("game.toml").write_text(text.replace('"soon.safetensors"', '"run/retrained/hopeless"'), encoding="utf-8")
+    suite = with_baseline(Path("game.toml"))
+    with pytest.raises(TltlError) as caught:
+        training_of(suite, judged(suite)[2])
+    (found,) = caught.value.diagnostics
+    assert (found.code, found.title) == (
+        "TLT0942",
+        "the policy of the case `hopeless` lies in `run/retrained/hopeless`, where its training goes",
+    )

@@ -1,0 +1,67 @@
+"""What is told of a training that began with a case's policy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tests.runtime.regression.made import several
+from tltl_runtime.record_json import from_json, to_json
+from tltl_runtime.regression.figures import figures
+from tltl_runtime.regression.retrained import Best, Outcome, Retrained, Trained, outcome_of, sentence
+from tltl_runtime.regression.suite import Thresholds
+from tltlc.record import replace
+
+TRAINED = Trained(end="minutes", steps=212_992, seconds=303.0, searched=200_000, complete=True, shortest=None)
+BEST = Best(0.5, "reach near(exit)")
+
+
+def told(outcome: Outcome, passed: int, failed: int, **changed: Any) -> str:
+    best = BEST if failed else None
+    return sentence(outcome, replace(TRAINED, **changed), figures(several(passed, failed)), Thresholds(), best)
+
+
+@pytest.mark.parametrize(
+    ("low", "met", "shortest", "outcome"),
+    [
+        (0.85, 40, 100, "learned"),
+        (0.84, 40, 100, "feasible"),
+        (0.0, 1, None, "feasible"),
+        (0.0, 0, 100, "feasible"),
+        (0.0, 0, None, "no_way"),
+    ],
+)
+def test_outcomes(low: float, met: int, shortest: int | None, outcome: str) -> None:
+    assert outcome_of(replace(TRAINED, shortest=shortest), low, Thresholds(), met) == outcome
+
+
+def test_a_level_that_is_feasible() -> None:
+    assert told("learned", 43, 0, shortest=97) == (
+        "feasible: after 5 min 3 s of training (212,992 steps) the policy meets the spec in 43 of 43 fresh episodes "
+        "(92% to 100%)"
+    )
+    assert "came to progress" not in told("learned", 43, 1)
+
+
+def test_a_level_that_was_not_learned() -> None:
+    assert told("feasible", 5, 20, shortest=1_213) == (
+        "feasible, but not learned; there are ways, the shortest that is known takes 1,213 steps; after 5 min 3 s of "
+        "training (212,992 steps) the policy meets the spec in 5 of 25 fresh episodes (9% to 39%), and 85% are asked "
+        "for; the best of the failed ones came to progress 0.50, where this remained: reach near(exit)"
+    )
+    assert "there are ways" not in told("feasible", 0, 25)
+
+
+def test_a_level_that_is_likely_infeasible() -> None:
+    assert told("no_way", 0, 25) == (
+        "no way found: neither a search of 200,000 steps nor 5 min 3 s of training (212,992 steps) met the spec once; "
+        "the changed level is likely infeasible; the best of its episodes came to progress 0.50, where this remained: "
+        "reach near(exit)"
+    )
+    assert "a search of 9 steps, which the limit broke off, nor" in told("no_way", 0, 25, searched=9, complete=False)
+
+
+def test_it_is_read_as_it_was_written() -> None:
+    found = Retrained("no_way", "no", TRAINED, figures(several(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None)
+    assert from_json(Retrained, to_json(found), "retrained") == found
