@@ -35,7 +35,7 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
     with Report() as report, learning_for("`tltlc baseline`"), requests_heard():
         from tltl_runtime.commands.regression_display import RegressionDisplay
         from tltl_runtime.regression.baseline import baseline_path, write_baseline
-        from tltl_runtime.regression.run import record_baseline
+        from tltl_runtime.regression.baseline_run import record_baseline
         from tltl_runtime.regression.suite import SHIPPED, read_suite
         from tltlc.writing import replaced
 

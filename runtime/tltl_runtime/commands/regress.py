@@ -15,6 +15,7 @@ from tltl_runtime.commands.changed_option import ChangedCommand
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import output_folder
+from tltl_runtime.commands.plain import plain
 from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import check_writable
 from tltlc.cli import exits
@@ -69,7 +70,7 @@ Examples:
   tltlc regress suite.toml --json - > report.json
   tltlc regress suite.toml --changed assets/guard.toml
   tltlc regress suite.toml --retrain --minutes 20
-  tltlc regress suite.toml --junit report.xml --github --changed $(git diff --name-only main)
+  tltlc regress suite.toml --junit report.xml --github --changed $(git diff --no-renames --name-only main)
 """,
 )
 @click.argument("suite", metavar="[SUITE]", required=False, type=click.Path(path_type=Path))
@@ -174,10 +175,10 @@ def _chosen(suite: Suite, changed: Sequence[str] | None) -> tuple[tuple[Case, ..
     found: Selection = select(suite, changed)
     if found.unknown:
         more = f" and {count} more" if (count := len(found.unknown) - _MOST_NAMED) > 0 else ""
-        click.echo(f"no case depends on {', '.join(found.unknown[:_MOST_NAMED])}{more}", err=True)
+        click.echo(f"no case depends on {plain(', '.join(found.unknown[:_MOST_NAMED]))}{more}", err=True)
     left_out = tuple(case.name for case in found.left_out)
     if left_out:
-        click.echo(f"left out, since nothing has changed that they depend on: {', '.join(left_out)}", err=True)
+        click.echo(f"left out, since nothing has changed that they depend on: {plain(', '.join(left_out))}", err=True)
     return found.cases, left_out
 
 
@@ -189,7 +190,7 @@ def _play(
     from tltl_runtime.commands.regression_text import case_lines
     from tltl_runtime.regression.run import regress
 
-    width = max((len(case.name) for case in cases), default=0)
+    width = max((len(plain(case.name)) for case in cases), default=0)
     with (
         RegressionDisplay("at most") as display,
         closing(regress(suite, cases, references, wanted.folder, wanted.workers, display)) as running,

@@ -10,12 +10,11 @@ from typing import Final
 from tltl_runtime.regression.document import document
 from tltl_runtime.regression.junit import junit
 from tltl_runtime.regression.page.page import ReportedCase, SuiteReport, html_report
-from tltl_runtime.regression.run import Done, case_folder
+from tltl_runtime.regression.run import CASES, Done, case_folder
 from tltl_runtime.regression.suite import Suite
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.episodes.versions import versions
-from tltl_runtime.stealth.levels.file import load_level
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import record
 from tltlc.writing import write_file, write_files
@@ -73,10 +72,9 @@ def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:
     """A case with what the page draws of it."""
     if done.ready is None or done.reference is None:
         return ReportedCase(done.report)
-    setup = done.ready.setup
-    level = load_level(setup.level, setup.variant)
-    episodes = _episodes(done, case_folder(suite, done.report.name, folder))
-    return ReportedCase(done.report, level, setup.fspa, episodes, done.reference.accounts, _curve(done, folder))
+    episodes = _episodes(done, case_folder(suite, done.report.name, folder / CASES))
+    level, before = done.ready.level, done.reference.accounts
+    return ReportedCase(done.report, level, done.ready.setup.fspa, episodes, before, _curve(done, folder))
 
 
 def _curve(done: Done, folder: Path) -> bytes:

@@ -13,7 +13,7 @@ from tltl_runtime.regression.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.retrained import Retrained
 from tltl_runtime.regression.suite import Case
 from tltl_runtime.regression.verdict import Change, Verdict
-from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.place import shown_variant
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
 
@@ -51,23 +51,25 @@ def report_on(result: Result) -> CaseReport:
     case, setup = result.ready.case, result.ready.setup
     now = [each.account for each in result.episodes]
     before = result.reference.accounts
-    level = load_level(setup.level, setup.variant)
+    level, outdated = result.ready.level, result.ready.outdated
     told = findings(level, setup.fspa, now, before)
     return CaseReport(
         name=case.name,
         level=level.name,
         variant=level.variant,
-        verdict=result.judgement.verdict,
+        # By a spec that nobody asks for any more nothing passes.
+        verdict="review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict,
         certain=result.judgement.certain,
         rate_interval=result.judgement.rate_interval,
         figures=figures(now),
         baseline=figures(before),
         changes=result.judgement.changes,
         reasons=(
+            *([outdated] if outdated else []),
             *reasons(result.judgement, case.thresholds, now, before),
             *obstacles(level, setup.fspa),
             *(finding.text for finding in told),
-            *edits(result.ready.played, result.reference.played, setup.level, setup.variant),
+            *edits(result.ready.played, result.reference.played, result.ready.changes),
         ),
         explanation=told,
         played=result.ready.played,
@@ -80,8 +82,15 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     """The report on a case that cannot be played any more, which is a failure of the level and not of the suite."""
     said = ("it cannot be played any more", *map(_said, error.diagnostics))
     # As a level that loads calls it: the place of an overlay's file is no part of a report.
-    variant = "+".join(Path(each).stem if each.endswith(".toml") else each for each in case.variant.split("+"))
+    variant = shown_variant(case.variant)
     return CaseReport(case.name, Path(case.level).stem, variant, "fail", said)
+
+
+def report_on_edited(case: Case, error: TltlError) -> CaseReport:
+    """The report on a case whose level was edited while it was played, so that nothing can be said of it."""
+    variant = shown_variant(case.variant)
+    said = tuple(map(_said, error.diagnostics))
+    return CaseReport(case.name, Path(case.level).stem, variant, "review", said, certain=False)
 
 
 def _said(found: Diagnostic) -> str:

@@ -47,9 +47,9 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "spec": played.spec if played else None,
         "verdict": report.verdict,
         "certain": report.certain,
-        **(_figures(figures) if figures else dict.fromkeys(Figures.__match_args__)),
+        **(to_json(figures) if figures else dict.fromkeys(Figures.__match_args__)),
         "rate_interval": list(report.rate_interval),
-        "baseline": None if report.baseline is None else _figures(report.baseline),
+        "baseline": to_json(report.baseline),
         "changes": to_json(report.changes),
         "reasons": list(report.reasons),
         "explanation": to_json(report.explanation),
@@ -57,8 +57,3 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "retrained": to_json(report.retrained),
         "accounts": [{name: to_json(getattr(each, name)) for name in _OF_EPISODES} for each in report.accounts],
     }
-
-
-def _figures(figures: Figures) -> dict[str, Any]:
-    found: dict[str, Any] = to_json(figures)
-    return found

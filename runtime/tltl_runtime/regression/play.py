@@ -18,20 +18,34 @@ from tltl_runtime.regression.suite import Case
 from tltl_runtime.regression.verdict import Judgement, judge
 from tltl_runtime.stealth.episodes.file import from_bytes as episode_from_bytes
 from tltl_runtime.stealth.episodes.versions import versions
-from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.levels.file import level_and_changes
+from tltl_runtime.task import read_spec
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
 from tltlc.record import record
+from tltlc.spec_file import split
+
+Told = Callable[[Case, int, Account], None]
+"""Is told of a case the number of episodes so far, and the last one."""
 
 _PLAYER: Final = "policy"
 
 
 @record
 class Ready:
-    """A case that can be played: the evaluation, and what is recorded of what it depends on."""
+    """A case that can be played: the evaluation, and what is recorded of what it depends on.
+
+    ``changes`` are what the overlays of its variant say that they change in the ``level``.  ``outdated`` says that the
+    spec that the level is made for has changed since the policy was trained, which is judged by the old one.
+    """
 
     case: Case
     setup: Setup
     played: Played
+    level: Level
+    changes: tuple[str, ...] = ()
+    outdated: str | None = None
 
 
 @record
@@ -58,7 +72,7 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
     data = read_bytes(path, str(path), MAX_BYTES)
     policy = from_bytes(data, str(path))
     setup = set_up(policy, case.level, variant or case.variant, case.spec, seed, "all")
-    level = load_level(setup.level, setup.variant)
+    level, changes = level_and_changes(setup.level, setup.variant)
     sha256 = hashlib.sha256(data).hexdigest()
     played = Played(
         level=level.name,
@@ -72,15 +86,23 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
         versions=versions(),
         place=case.place,
     )
-    return Ready(case, setup, played)
+    return Ready(case, setup, played, level, changes, _outdated(case, setup, level))
 
 
 def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
-    """The case's episodes as they are played; closing the iterator ends the workers."""
+    """The case's episodes as they are played; closing the iterator ends the workers.
+
+    Raises:
+        TltlError: TLT0905, the level is not the one that was made ready; what playing raises.
+    """
     tasks = [Task(index) for index in range(made.case.episodes)]
     with closing(results(made.setup, tasks, pool)) as playing:
         for each in playing:
-            yield Recorded(account(each.played, episode_from_bytes(each.recording, _PLAYER)), each.recording)
+            episode = episode_from_bytes(each.recording, _PLAYER)
+            # Each worker has loaded the level for itself.
+            if episode.level.files != made.level.files:
+                raise _edited(made, episode.level)
+            yield Recorded(account(each.played, episode), each.recording)
 
 
 def judged(made: Ready, reference: Reference, error: float, pool: Pool, told: Callable[[int, Account], None]) -> Result:
@@ -104,3 +126,24 @@ def policy_file(path: Path) -> Path:
     from tltl_runtime.training.run import POLICY
 
     return path / POLICY
+
+
+def _edited(made: Ready, level: Level) -> TltlError:
+    before, now = dict(made.level.files), dict(level.files)
+    names = [f"`{name}`" for name in {**before, **now} if before.get(name) != now.get(name)]
+    title = f"{', '.join(names)} changed while `{made.case.name}` was played"
+    return TltlError([Diagnostic("TLT0905", title, help="give the same command again")])
+
+
+def _outdated(case: Case, setup: Setup, level: Level) -> str | None:
+    """That the level's spec has changed, where the policy's own of that name judges.
+
+    Raises TltlError for what is wrong with the level's spec.
+    """
+    name = split(level.spec)[1]
+    if case.spec is not None or name != setup.fspa.name:
+        return None
+    if spec_hash(read_spec(level.spec)[0]) == spec_hash(setup.fspa):
+        return None
+    help_ = "train it again, or name the new one as the case's `spec`"
+    return f"the spec `{name}` has changed since the policy was trained, and its old one judges: {help_}"

@@ -9,7 +9,6 @@ from tltl_runtime.regression.baseline import Played
 from tltl_runtime.regression.suite import Thresholds
 from tltl_runtime.regression.verdict import Judgement, beyond
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.levels.file import changes
 from tltl_runtime.stealth.supply.feasible import reach_warnings
 from tltlc.automaton.fspa import Fspa
 
@@ -45,11 +44,18 @@ def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
             yield f"{warning.title}: {warning.help}"
 
 
-def edits(now: Played, before: Played, level: str, variant: str) -> Iterator[str]:
-    """Which files are others than in the baseline, and what overlays say that they change."""
-    old = dict(before.files)
-    files = [name for name, sha256 in now.files if old.get(name) != sha256]
-    files += [name for name in old if name not in dict(now.files)]
-    if files:
-        yield f"changed since the baseline: {', '.join(files)}"
-    yield from changes(level, variant)
+def edits(now: Played, before: Played, changes: Sequence[str]) -> Iterator[str]:
+    """What is otherwise than in the baseline: files, what overlays say that they change (``changes``), and versions."""
+    old, new = dict(before.files), dict(now.files)
+    differ = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]
+    # The baseline of another variant says nothing of overlays that are not this one's.
+    aside = {name for name in differ if now.variant != before.variant and name.startswith("overlays/")}
+    aside -= old.keys() & new.keys()
+    if changed := [name for name in differ if name not in aside]:
+        yield f"changed since the baseline: {', '.join(changed)}"
+    if aside:
+        yield f"differs from `{before.variant}` by {', '.join(name for name in differ if name in aside)}"
+    yield from changes
+    for name, version in before.versions.items():
+        if (here := now.versions.get(name)) != version:
+            yield f"the baseline was recorded with {name} {version}, and this is {here or 'without it'}"

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.held_folder import held
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
-from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Reference, reference_of
-from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken
-from tltl_runtime.regression.page.slugs import slugs
-from tltl_runtime.regression.play import Ready, Result, episodes, judged, ready
+from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken, report_on_edited
+from tltl_runtime.regression.play import Ready, Result, Told, judged, ready
+from tltl_runtime.regression.slugs import slugs
 from tltl_runtime.regression.suite import Case, Suite
+from tltl_runtime.sources import sources_hash
 from tltl_runtime.stealth.episodes.file import SUFFIX
 from tltl_runtime.stealth.world.faults import player_fault
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -24,15 +24,19 @@ from tltlc.files import reason
 from tltlc.record import record, replace
 from tltlc.writing import write_files
 
+CASES: Final = "cases"
+"""In the folder of a run, with a folder for each case."""
+
 _REPORT: Final = "case.json"
-_VERSION: Final = 1
+_VERSION: Final = 2
 _RECORDINGS: Final = 3
 """Of how many episodes of each finding there are recordings."""
 
-_WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
+_EDITED: Final = "TLT0905"
+_NOT_THE_CASE: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
+"""Codes of what is wrong with the workers."""
 
-Told = Callable[[Case, int, Account], None]
-"""Is told of a case the number of episodes so far, and the last one."""
+_WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
 
 
 @record
@@ -54,20 +58,24 @@ def regress(
     """Judge some cases of a suite, in their order, each as soon as it is over.
 
     What was played is kept below ``folder``, which is this run's until it ends; a case of which nothing has changed
-    since is not played again.  A case that cannot be played fails, and the others go on.
+    since is not played again.  A case that cannot be played fails, one whose level is edited while it is played is to
+    be reviewed, and the others go on.
 
     Raises:
         TltlError: before anything is played, TLT0903 where the baseline lacks a case, and TLT0005 and TLT0904 for the
-            folder; then what playing raises.
+            folder; then TLT0730, TLT0850 and TLT0852 of the workers, TLT0005, and TLT0903 where a policy or its spec
+            has become another one meanwhile.
     """
-    made = [(case, *_prepared(suite, case, references)) for case in cases]
+    for case in cases:
+        _prepared(suite, case, references)
     title = f"another run of `tltlc regress` plays in `{folder}`"
     busy = Diagnostic("TLT0904", title, help="wait for its end, or name another folder with --out")
     with held(folder, busy, _WRITABLE):
-        for case, prepared, fault in made:
-            if prepared is None:
-                assert fault is not None
-                yield Done(report_on_broken(case, fault), kept=False)
+        for case in cases:
+            # Its files may have changed while others were played.
+            prepared = _prepared(suite, case, references)
+            if isinstance(prepared, TltlError):
+                yield Done(report_on_broken(case, prepared), kept=False)
             else:
                 yield _done(suite, *prepared, folder, pool, told)
 
@@ -75,7 +83,7 @@ def regress(
 def forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
     """Have the next :func:`regress` play some cases anew, whatever is kept of them in ``folder``; raises TLT0005."""
     for case in cases:
-        path = case_folder(suite, case.name, folder) / _REPORT
+        path = case_folder(suite, case.name, folder / CASES) / _REPORT
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
@@ -84,57 +92,39 @@ def forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
 
 
 def case_folder(suite: Suite, name: str, folder: Path) -> Path:
-    """Where a run in ``folder`` keeps what it played of the case of that name."""
+    """The folder of the case of that name, below the one that has a folder for each of them."""
     names = [case.name for case in suite.cases]
-    # A folder that is called `..` is another one.
-    return folder / slugs([each.strip(".") for each in names])[names.index(name)]
+    return folder / slugs(names)[names.index(name)]
 
 
-def record_baseline(suite: Suite, pool: Pool, told: Told) -> Iterator[Reference]:
-    """Play all episodes of each level, variant, spec and policy that the suite's cases are compared with.
-
-    Of cases that are compared with the same, that counts which asks for most episodes.
-
-    Raises:
-        TltlError: something does not fit, before anything is played; what playing raises.
-    """
-    wanted: list[Ready] = []
-    for case in suite.cases:
-        one = ready(case, suite.seed, case.reference)
-        rows = [row for row, other in enumerate(wanted) if other.played == one.played]
-        if not rows:
-            wanted.append(one)
-        elif wanted[rows[0]].case.episodes < case.episodes:
-            wanted[rows[0]] = one
-    for one in wanted:
-        accounts: list[Account] = []
-        for each in episodes(one, pool):
-            accounts.append(each.account)
-            told(one.case, len(accounts), each.account)
-        yield Reference(one.played, tuple(accounts))
-
-
-def _prepared(
-    suite: Suite, case: Case, references: tuple[Reference, ...]
-) -> tuple[tuple[Ready, Reference] | None, TltlError | None]:
+def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tuple[Ready, Reference] | TltlError:
     """A case that can be played and its reference, or why it cannot be played."""
     try:
         one = ready(case, suite.seed)
     except TltlError as error:
-        return None, error
+        return error
     wanted = replace(one.played, variant=case.reference)
-    return (one, reference_of(references, wanted, suite.path)), None
+    return one, reference_of(references, wanted, suite.path)
 
 
 def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Pool, told: Told) -> Done:
-    """A case as an earlier run has left it, or played now."""
+    """A case as an earlier run has left it, or played now.
+
+    Raises TltlError for what is no fault of the case.
+    """
     case, error = one.case, suite.error / len(suite.cases)
-    place, identity = case_folder(suite, case.name, folder), _identity(one, reference, error)
+    place, identity = case_folder(suite, case.name, folder / CASES), _identity(one, reference, error)
     kept = _kept(place, identity)
     if kept:
         return Done(kept, kept=True, ready=one, reference=reference)
     try:
         result = judged(one, reference, error, pool, lambda count, last: told(case, count, last))
+    except TltlError as fault:
+        codes = {found.code for found in fault.diagnostics}
+        if codes & _NOT_THE_CASE:
+            raise
+        report = report_on_edited if _EDITED in codes else report_on_broken
+        return Done(report(case, fault), kept=False)
     except RuntimeError as problem:
         fault = player_fault(problem)
         if fault is None:
@@ -145,7 +135,7 @@ def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Po
 
 def _identity(one: Ready, reference: Reference, error: float) -> str:
     """The hash of all that the report on a case depends on."""
-    case = one.case
+    case, fspa = one.case, one.setup.fspa
     parts = [
         _VERSION,
         case.name,
@@ -154,6 +144,11 @@ def _identity(one: Ready, reference: Reference, error: float) -> str:
         error,
         to_json(one.played),
         to_json(reference),
+        # What reasons are worded with, and the code that plays, judges and words.
+        [each.name for each in (*fspa.signals, *fspa.atoms)],
+        [each.label.english for each in fspa.states],
+        one.outdated,
+        sources_hash(),
     ]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 

@@ -9,6 +9,7 @@ from typing import Final
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.stealth.levels.file import level_path, variants
 from tltl_runtime.stealth.levels.made_for import shown
+from tltl_runtime.stealth.levels.place import with_overlays
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
@@ -128,7 +129,7 @@ def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> 
             table.log.append(Diagnostic("TLT0800", title, (table.place(key),), suggestion(given, there)))
     base = variant or there[0]
     name = name or f"{Path(level).stem}:{'+'.join((base, *(Path(each).stem for each in overlays)))}"
-    played = "+".join((base, *overlays))
+    played = with_overlays(base, overlays)
     return Case(name, level, played, reference or there[0], spec, policy, episodes, thresholds, place), table.label
 
 

@@ -17,7 +17,7 @@ import pytest
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, write_game
 from tltl_runtime.regression.baseline import read_baseline
-from tltl_runtime.regression.run import case_folder
+from tltl_runtime.regression.run import CASES, case_folder
 from tltl_runtime.regression.suite import read_suite
 
 Run = Callable[..., Outcome]
@@ -82,7 +82,7 @@ def test_several_workers_come_to_the_same(tltlc: Run, game: Path) -> None:  # no
     assert found.out == tltlc("regress", "game.toml", *ONE).out.replace("  (as before)", "")
     suite = read_suite(Path("game.toml"))
     for name in NAMES:
-        ours, theirs = (case_folder(suite, name, Path(run)) / "case.json" for run in ("new", "regression/game"))
+        ours, theirs = (case_folder(suite, name, Path(run) / CASES) / "case.json" for run in ("new", "regression/game"))
         assert ours.read_bytes() == theirs.read_bytes()
 
 

@@ -8,7 +8,7 @@ from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.baseline import baseline_path, write_baseline
-from tltl_runtime.regression.run import record_baseline
+from tltl_runtime.regression.baseline_run import record_baseline
 from tltl_runtime.regression.suite import Suite, read_suite
 
 EASY = """\

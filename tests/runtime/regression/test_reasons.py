@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from tests.runtime.regression.made import PLAYED, several
@@ -69,17 +67,35 @@ def test_what_nobody_can_reach_is_told_for_certain() -> None:
     assert list(obstacles(open_, task.fspa)) == []
 
 
-def test_which_files_have_changed(tmp_path: Path) -> None:
+def test_which_files_have_changed() -> None:
     now = replace(PLAYED, files=(("room.toml", "d" * 64), ("assets/guard.toml", "0" * 64), ("overlays/x.toml", "1")))
-    assert list(edits(now, PLAYED, "branching", "v0")) == [
-        "changed since the baseline: assets/guard.toml, overlays/x.toml"
-    ]
+    assert list(edits(now, PLAYED, [])) == ["changed since the baseline: assets/guard.toml, overlays/x.toml"]
     gone = replace(PLAYED, files=PLAYED.files[:1])
-    assert list(edits(gone, PLAYED, "branching", "v0")) == ["changed since the baseline: assets/guard.toml"]
-    assert list(edits(PLAYED, PLAYED, "branching", "v0")) == []
+    assert list(edits(gone, PLAYED, [])) == ["changed since the baseline: assets/guard.toml"]
+    assert list(edits(PLAYED, PLAYED, [])) == []
 
 
-def test_what_overlays_say_that_they_change(tmp_path: Path) -> None:
-    wide = tmp_path / "wide.toml"
-    wide.write_text('doc = "The guard sees further."\n', encoding="utf-8")
-    assert list(edits(PLAYED, PLAYED, "branching", f"v0+{wide}")) == ["The guard sees further."]
+def test_another_variant_differs_by_its_overlays_which_have_not_changed() -> None:
+    now = replace(PLAYED, variant="v1", files=(*PLAYED.files, ("overlays/x.toml", "1")))
+    assert list(edits(now, PLAYED, ["The way is shut."])) == [
+        "differs from `v0` by overlays/x.toml",
+        "The way is shut.",
+    ]
+    assert list(edits(PLAYED, now, [])) == ["differs from `v1` by overlays/x.toml"]
+    both = replace(now, files=(("room.toml", "2"), *now.files[1:]))
+    assert list(edits(both, PLAYED, [])) == [
+        "changed since the baseline: room.toml",
+        "differs from `v0` by overlays/x.toml",
+    ]
+    # An overlay that both have was read twice, and differs.
+    other = replace(now, variant="v2", files=(*PLAYED.files, ("overlays/x.toml", "2")))
+    assert list(edits(other, now, [])) == ["changed since the baseline: overlays/x.toml"]
+
+
+def test_a_baseline_of_other_versions() -> None:
+    before = replace(PLAYED, versions={"tltlc": "0.1", "numpy": "1.26.4", "pybullet": "3.2"})
+    now = replace(PLAYED, versions={"tltlc": "0.1", "numpy": "2.0.1"})
+    assert list(edits(now, before, [])) == [
+        "the baseline was recorded with numpy 1.26.4, and this is 2.0.1",
+        "the baseline was recorded with pybullet 3.2, and this is without it",
+    ]

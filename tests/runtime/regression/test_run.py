@@ -10,15 +10,26 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.regression.game import SUITE, with_baseline, write_game
+from tests.runtime.evaluation.untrained import SOON, untrained
+from tests.runtime.regression.game import EASY, SUITE, with_baseline, write_game
 from tests.runtime.regression.made import ROOM
+from tltl_runtime.policies.file import write_policy
+from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import baseline_of, baseline_path
-from tltl_runtime.regression.run import Done, case_folder, forget, record_baseline, regress
+from tltl_runtime.regression.baseline_run import record_baseline
+from tltl_runtime.regression.dependencies import dependencies
+from tltl_runtime.regression.play import Ready, episodes, ready
+from tltl_runtime.regression.run import CASES, Done, _identity, case_folder, forget, regress
 from tltl_runtime.regression.suite import Case, Suite, read_suite
 from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.stealth.episodes.versions import versions
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
+
+GUARD = (LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8")
 
 
 class Played:
@@ -73,7 +84,7 @@ def test_cases_are_judged_in_their_order(game: Path) -> None:
         assert report.figures and report.figures.episodes == len(report.accounts) == played[report.name]
         assert [account.index for account in report.accounts] == list(range(played[report.name]))
         assert report.recordings
-        folder = case_folder(read_suite(Path("game.toml")), report.name, Path("new"))
+        folder = case_folder(read_suite(Path("game.toml")), report.name, Path("new") / CASES)
         assert {path.name for path in folder.iterdir()} == {"case.json", *dict(report.recordings).values()}
         for index, name in report.recordings:
             assert read_episode(folder / name).seed == report.accounts[index].seed
@@ -100,6 +111,10 @@ def _edit(name: str, old: str, new: str) -> None:
     Path(name).write_text(text.replace(old, new, 1), encoding="utf-8")
 
 
+def _train(name: str, spec: str, seed: int) -> None:
+    write_policy(Path(f"{name}.safetensors"), untrained(spec, "room.toml", seed=seed))
+
+
 def _last(line: str) -> Callable[[], None]:
     """Add a line to the suite's last case."""
     return lambda: _edit("game.toml", 'name = "hopeless"', f'name = "hopeless"\n{line}')
@@ -114,6 +129,15 @@ CHANGES: dict[str, tuple[Callable[[], object], list[str]]] = {
         lambda: [Path("overlays").mkdir(), Path("overlays/guard_alert.toml").write_text('doc = "None."\n')],
         ["room:v1"],
     ),
+    "asset": (
+        lambda: [Path("assets").mkdir(), Path("assets/guard.toml").write_text(GUARD + "# As before.\n")],
+        ["room:v0", "room:v1", "hopeless"],
+    ),
+    "policy": (lambda: [_train("soon", SOON, seed=1), with_baseline(Path("game.toml"))], ["hopeless"]),
+    "seed": (
+        lambda: [_edit("game.toml", "seed = 3", "seed = 4"), with_baseline(Path("game.toml"))],
+        ["room:v0", "room:v1", "hopeless"],
+    ),
 }
 
 
@@ -125,6 +149,140 @@ def test_what_has_changed_is_played_again_and_nothing_else(game: Path, change: s
     assert list(played) == names
     assert [done.report.name for done in found if not done.kept] == names
     assert run()[1] == {}, "and is kept again"
+
+
+@pytest.mark.parametrize("what", ["versions", "sources"])
+def test_another_version_plays_again(game: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
+    if what == "versions":
+        other = {**versions(), "numpy": "0.1"}
+        monkeypatch.setattr("tltl_runtime.regression.play.versions", lambda: other)
+    else:
+        monkeypatch.setattr("tltl_runtime.regression.run.sources_hash", lambda: "0" * 64)
+    found, played = run()
+    assert list(played) == ["room:v0", "room:v1", "hopeless"]
+    told = "the baseline was recorded with numpy " in " ".join(found[2].report.reasons)
+    assert told == (what == "versions")
+
+
+def test_names_that_reasons_speak_of_are_part_of_what_is_kept(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    made, reference = ready(suite.cases[0], suite.seed), baseline_of(suite.path)[0]
+    fspa = made.setup.fspa
+    for other in (
+        replace(fspa, atoms=tuple(replace(each, name=f"{each.name}_2") for each in fspa.atoms)),
+        replace(fspa, states=tuple(replace(each, label=replace(each.label, english="go")) for each in fspa.states)),
+    ):
+        assert spec_hash(other) == spec_hash(fspa)
+        renamed = replace(made, setup=replace(made.setup, fspa=other))
+        assert _identity(renamed, reference, 0.01) != _identity(made, reference, 0.01)
+    assert _identity(made, reference, 0.01) == _identity(ready(suite.cases[0], suite.seed), reference, 0.01)
+
+
+def test_a_level_that_is_edited_between_cases_is_played_as_it_is_then(game: Path) -> None:
+    suite, before = read_suite(Path("game.toml")), Path("room.toml").read_text(encoding="utf-8")
+
+    class Edits(Played):
+        def __call__(self, case: Case, count: int, last: Account) -> None:
+            super().__call__(case, count, last)
+            if (case.name, count) == ("room:v0", 25):
+                _edit("room.toml", "8.0, 8.0", "8.0, 7.5")
+
+    found = list(running(suite, "new", Edits()))
+    assert [done.kept for done in found] == [False] * 3
+    hashes = [done.report.played.level_hash for done in found if done.report.played]
+    assert hashes[0] != hashes[1] and hashes[1:] == [level_hash(load_level("room.toml", each)) for each in ("v1", "v0")]
+    Path("room.toml").write_text(before, encoding="utf-8")
+    # What was played on the edited level says nothing of this one.
+    assert list(run("new")[1]) == ["room:v1", "hopeless"]
+
+
+def _edited_after(name: str, edit: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have something done once a case has been made ready for the second time, right before it is played."""
+    counts: list[str] = []
+
+    def then(case: Case, seed: int) -> Ready:
+        made = ready(case, seed)
+        counts.append(case.name)
+        if case.name == name and counts.count(name) == 2:
+            edit()
+        return made
+
+    monkeypatch.setattr("tltl_runtime.regression.run.ready", then)
+
+
+def test_a_level_that_is_edited_while_it_is_played_is_reviewed_and_not_kept(
+    game: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = Path("room.toml").read_text(encoding="utf-8")
+    _edited_after("room:v1", lambda: _edit("room.toml", "8.0, 8.0", "8.0, 7.5"), monkeypatch)
+    found, played = run("new")
+    report = found[1].report
+    assert (report.verdict, report.certain, report.figures) == ("review", False, None)
+    assert report.reasons == ("TLT0905, `room.toml` changed while `room:v1` was played (give the same command again)",)
+    assert list(played) == ["room:v0", "hopeless"] and not (Path("new") / CASES / "room-v1").exists()
+    monkeypatch.undo()
+    monkeypatch.chdir(game)
+    Path("room.toml").write_text(text, encoding="utf-8")
+    assert list(run("new")[1]) == ["room:v1", "hopeless"]
+
+
+def test_a_level_that_breaks_while_it_is_played_fails_and_the_others_go_on(
+    game: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Path("hall.toml").write_text(ROOM, encoding="utf-8")
+    _edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
+    suite = with_baseline(Path("game.toml"))
+    _edited_after("room:v1", lambda: _edit("room.toml", "size = [10.0", "siez = [10.0"), monkeypatch)
+    found, played = run("new", suite)
+    assert [done.report.verdict for done in found] == ["pass", "fail", "fail", "pass"]
+    assert "TLT0802" in found[1].report.reasons[1] and list(played) == ["room:v0", "hall:v0"]
+
+
+def test_what_is_wrong_with_the_workers_ends_the_run(game: Path) -> None:
+    """There is no cluster, or no Ray at all."""
+    suite = read_suite(Path("game.toml"))
+    with pytest.raises(TltlError) as error:
+        list(regress(suite, suite.cases, baseline_of(suite.path), Path("new"), "ray", Played()))
+    assert {found.code for found in error.value.diagnostics} <= {"TLT0730", "TLT0852"}
+
+
+def test_a_level_that_is_edited_while_its_baseline_is_recorded(game: Path) -> None:
+    made = ready(read_suite(Path("game.toml")).cases[0], 3)
+    _edit("room.toml", "8.0, 8.0", "8.0, 7.5")
+    with pytest.raises(TltlError, match="TLT0905") as error:
+        next(episodes(made, 1))
+    (found,) = error.value.diagnostics
+    assert found.title == "`room.toml` changed while `room:v0` was played"
+
+
+def test_a_spec_that_has_changed_since_the_training_is_told_and_nothing_passes_by_the_old_one(game: Path) -> None:
+    text = Path("room.toml").read_text(encoding="utf-8")
+    Path("plan.tltl").write_text(EASY, encoding="utf-8")
+    Path("room.toml").write_text(f'spec = "plan.tltl:easy"\n{text}', encoding="utf-8")
+    found, _ = run()
+    assert [done.report.verdict for done in found] == ["pass", "pass", "fail"], "it is the policy's"
+    _edit("plan.tltl", "limit 20 steps", "limit 30 steps")
+    found, played = run()
+    assert list(played) == ["room:v0", "room:v1"], "the third has a spec of its own"
+    for done in found[:2]:
+        assert done.report.verdict == "review"
+        assert done.report.reasons[0].startswith("the spec `easy` has changed since the policy was trained")
+    _edit("plan.tltl", "reach alive", "reach alve")
+    found, _ = run()
+    assert [done.report.verdict for done in found] == ["fail", "fail", "fail"]
+    assert found[0].report.reasons[1].startswith("plan.tltl:2: TLT0")
+
+
+def test_a_folder_may_have_a_plus_in_its_name(game: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(game, tmp_path / "c++")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "c++" / "edit.toml").write_text("[change.guard]\nsight_range = 9.0\n", encoding="utf-8")
+    _edit("c++/game.toml", 'variant = "v1"', 'overlay = ["edit.toml", "guard_alert"]')
+    suite = read_suite(Path("c++/game.toml"))
+    found, played = run("new", suite)
+    assert list(played) == ["room:v0", "room:v0+edit+guard_alert", "hopeless"]
+    assert [done.report.variant for done in found] == ["v0", "v0+edit+guard_alert", "v0"]
+    assert (tmp_path / "c++" / "edit.toml").resolve() in dependencies(suite, suite.cases[1])
 
 
 def test_another_baseline_is_another_comparison(game: Path) -> None:
@@ -165,7 +323,7 @@ def test_a_case_that_was_stopped_in_the_middle_is_played_from_its_start(game: Pa
 
 @pytest.mark.parametrize("damage", ["", "{", "[" * 9999, '{"identity": 3}', None])
 def test_what_was_damaged_is_played_again(game: Path, damage: str | None) -> None:
-    folder = case_folder(read_suite(Path("game.toml")), "room:v0", Path("run"))
+    folder = case_folder(read_suite(Path("game.toml")), "room:v0", Path("run") / CASES)
     if damage is None:
         next(folder.glob("*.episode.npz")).unlink()
     else:

@@ -15,9 +15,9 @@ from tltl_runtime.regression.page.curves import progress_curves, progress_distri
 from tltl_runtime.regression.page.level_map import level_map, map_key
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose
 from tltl_runtime.regression.page.player_panel import player_panel
-from tltl_runtime.regression.page.slugs import episode_link
 from tltl_runtime.regression.page.summary import badge
 from tltl_runtime.regression.page.traffic import Traffic, traffic
+from tltl_runtime.regression.slugs import episode_link
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.world.player import DECISION

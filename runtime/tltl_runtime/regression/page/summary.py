@@ -24,7 +24,7 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     least = element("p", "The run was stopped before all was judged and trained that was asked for.", class_="warning")
     facts = [
         f"seed {suite.seed}",
-        f"a wrong verdict is less likely than {suite.error:.3g}",
+        f"a certain verdict is wrong with a probability of {suite.error:.3g} at most",
         *(f"{name} {version}" for name, version in suite.versions.items()),
     ]
     rows = [_row(report, slug) for report, slug in zip(reports, slugs, strict=True)]

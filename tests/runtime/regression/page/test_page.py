@@ -70,7 +70,7 @@ def test_there_is_a_row_and_a_section_for_each_case() -> None:
         assert case.report.name in page().texts
         assert set(case.report.reasons[0].split("`")[:1]) <= set(page().texts)
     assert [text for text in page().texts if text.startswith("seed 7")] == [
-        "seed 7 · a wrong verdict is less likely than 0.05 · tltlc 0.1 · python 3.11"
+        "seed 7 · a certain verdict is wrong with a probability of 0.05 at most · tltlc 0.1 · python 3.11"
     ]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.regression.page.slugs import episode_link, slugs
+from tltl_runtime.regression.slugs import episode_link, slugs
 
 
 def test_names_that_can_be_read() -> None:
@@ -21,6 +21,11 @@ def test_names_that_can_be_read() -> None:
 
 def test_long_names_are_cut() -> None:
     assert [len(name) for name in slugs(["a" * 500, "a" * 501])] == [80, 82]
+
+
+def test_no_folder_has_the_name_of_a_device_or_ends_in_a_dot() -> None:
+    names = ["CON", "nul", "Com1.v0", "console", "aux:v0", "..", "room.", ".room"]
+    assert slugs(names) == ("case-CON", "case-nul", "case-Com1.v0", "console", "aux-v0", "case", "room", "room-2")
 
 
 @given(st.lists(st.text(max_size=4), max_size=6))
