@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
 
 SECTION = "regression"
+SOURCES: Final = ("tltlc", "runtime")
 NEEDED = ("torch", "safetensors", "pybullet")
 
 FOLDER = Path(__file__).with_name(".edits")
@@ -66,6 +67,8 @@ def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan = FUL
         return
     from tltl_runtime.regression.suite import read_suite
 
+    # What was played by other code is not taken again.
+    folder /= source_digest(*SOURCES)
     edits = random_edits(plan.seed, _assets({each.asset for each in plan.wanted}), _loads, plan.wanted)
     suite = read_suite(_written(edits, plan, folder))
     levels = {f"{EXPERT}{edit.level}": edit.level for edit in edits}
@@ -146,7 +149,7 @@ def judged(suite: Suite, case: Case) -> Record:
 
     began = time.process_time()
     reference = _reference(suite, case)
-    (done,) = regress(suite, [case], (reference,), suite.path.parent / "cases", 1, lambda *_: None)
+    (done,) = regress(suite, [case], (reference,), suite.path.parent / "run", 1, lambda *_: None)
     now, before = done.report.figures, done.report.baseline
     if now is None or before is None:
         return {"failed": "; ".join(done.report.reasons)}
@@ -160,7 +163,7 @@ def judged(suite: Suite, case: Case) -> Record:
         "before": _rates(before),
         "reasons": list(done.report.reasons),
         "cpu_s": round(time.process_time() - began, 1),
-        "source": source_digest("tltlc", "runtime"),
+        "source": source_digest(*SOURCES),
     }
 
 
@@ -171,8 +174,8 @@ def _rates(figures: Figures) -> dict[str, float]:
 def _reference(suite: Suite, case: Case) -> Reference:
     """What the level's policy did before the edit, played once."""
     from tltl_runtime.regression.baseline import read_baseline, write_baseline
+    from tltl_runtime.regression.baseline_run import record_baseline
     from tltl_runtime.regression.play import ready
-    from tltl_runtime.regression.run import record_baseline
     from tltlc.record import replace
 
     path = suite.path.with_name(f"{case.level}.baseline.json")

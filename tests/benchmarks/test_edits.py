@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks import edits, edits_report
 from benchmarks.random_edits import HARMLESS, WANTED, Edit, Wanted, random_edits
-from benchmarks.store import Record, Store
+from benchmarks.store import Record, Store, source_digest
 
 
 @pytest.fixture(scope="module")
@@ -126,6 +126,7 @@ def test_a_quick_run_knows_what_is_true_and_is_resumed(tmp_path: Path) -> None:
         edits.measure(store, 0.0, said.append, edits.QUICK, tmp_path / "edits")
     words, shut = "01 navigation corridor words", "02 navigation corridor shut"
     assert [line.partition(":")[0] for line in said] == ["expert navigation", words, shut]
+    assert [path.name for path in (tmp_path / "edits").iterdir()] == [source_digest(*edits.SOURCES)]
     records = store.section(edits.SECTION)
     assert records[words]["truth"] == "unchanged"
     assert records[words]["same"] == records[words]["episodes"] == 25
