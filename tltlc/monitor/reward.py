@@ -94,7 +94,7 @@ def reward_step(
     if limit is not None:
         reward -= 1 / limit
         if done and (tables.fspa.states[target].verdict == "violated" or (last and not success)):
-            reward -= _terminal_penalty(limit, step, options)
+            reward -= terminal_penalty(limit, step, options)
     return RewardStep(reward, progress, done, success)
 
 
@@ -147,8 +147,10 @@ def _succeeds_early(tables: Tables, target: int, options: RewardOptions) -> bool
     return tables.fspa.states[target].accepting and (at_goal or tables.fspa.limit_steps is None)
 
 
-def _terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
-    """The step penalties that the early end saved: ``(T - t) / T``, or what they are worth discounted to this step."""
+def terminal_penalty(limit: int, step: int, options: RewardOptions) -> float:
+    """The step penalties that an end after ``step`` of ``limit`` steps saves: ``(T - t) / T``, or what they are worth
+    discounted to this step.
+    """
     left, gamma = limit - step, options.gamma
     if options.terminal_penalty == "undiscounted" or gamma == 1.0:
         return left / limit

@@ -26,6 +26,8 @@ from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.monitor.reward import terminal_penalty
+from tltlc.record import replace
 
 
 def begun(run: Run, resume: bool) -> Checkpoint | None:
@@ -59,7 +61,7 @@ def environments(run: Run) -> WorkerVectorEnv:
         "ray" if rollout.pool == "ray" else rollout.workers or cores(),
         spec=run.fspa,
         sensors=run.sensors,
-        reward=settings.reward,
+        reward=settings.reward.options,
         params=run.params,
         wrapper=Replayed if settings.searches else None,
         info={**TLTL_INFO, "cell": np.int64},
@@ -116,7 +118,17 @@ def prepared(
         if exploration.imitation:
             lessons = Lessons(_env_of(run), restarts)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
-    return TrainingEnv(played, [int(each) for each in seeds], device, restarts, lessons, demonstrated), searched
+    first = [int(each) for each in seeds]
+    return TrainingEnv(played, first, device, restarts, lessons, demonstrated, dearer(run)), searched
+
+
+def dearer(run: Run) -> Callable[[int], float] | None:
+    """How much more the undiscounted terminal penalty is after so many steps; None where it is not to rise to that."""
+    limit, options = run.fspa.limit_steps, run.settings.reward.options
+    if limit is None or run.settings.imitates or not run.settings.reward.rises:
+        return None
+    whole = replace(options, terminal_penalty="undiscounted")
+    return lambda steps: terminal_penalty(limit, steps, whole) - terminal_penalty(limit, steps, options)
 
 
 def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:
@@ -189,6 +201,6 @@ def _env_of(run: Run) -> Callable[[], TltlEnv]:
         run.variant,
         run.fspa,
         sensors=run.sensors,
-        reward=run.settings.reward,
+        reward=run.settings.reward.options,
         params=run.params,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,8 @@ class TrainingEnv(VecEnv):
     With ``restarts`` they say where episodes begin, whose seeds ``seed`` then does not tell; those that do not begin at
     the level's start are not among the ``finished``.  ``replayed`` counts the decisions that led to their starts.
     ``lessons`` are decisions that the runner is to imitate; ``demonstrated`` are those that the algorithm is to.
+    ``dearer`` says how much more an episode may cost that fails after so many steps; ``severity``, in [0, 1], 0 at
+    first, is the share of that by which it does.
 
     Raises:
         TypeError: the spaces are not a Dict of Boxes and a MultiDiscrete.
@@ -59,6 +61,7 @@ class TrainingEnv(VecEnv):
         restarts: Restarts | None = None,
         lessons: Lessons | None = None,
         demonstrated: Demonstrated | None = None,
+        dearer: Callable[[int], float] | None = None,
     ) -> None:
         if not isinstance(env.single_action_space, spaces.MultiDiscrete):
             raise TypeError(f"actions of several branches are needed, a MultiDiscrete, not {env.single_action_space}")
@@ -73,6 +76,8 @@ class TrainingEnv(VecEnv):
         self.restarts = restarts
         self.lessons = lessons
         self.demonstrated = demonstrated
+        self._dearer = dearer
+        self.severity = 0.0
         self.cfg: dict[str, Any] = {}
         # Nothing is cut by rsl-rl: the spec's limit ends an episode.
         self.max_episode_length = 2**31
@@ -101,6 +106,8 @@ class TrainingEnv(VecEnv):
         successes = torch.zeros(self.num_envs, dtype=torch.bool)
         for row, each in ended.items():
             successes[row] = each.success
+            if self._dearer and not each.success:
+                reward[row] -= self.severity * self._dearer(self._taken(row, each))
         if self._episodes and self.restarts:
             ends = {row: end_of(infos["final_info"], row) for row, each in ended.items() if each.success}
             states = {row: each.state for row, each in ended.items()}
@@ -136,6 +143,10 @@ class TrainingEnv(VecEnv):
         """The episodes that ended since this was last asked, in the order of their ends."""
         ended, self._finished = tuple(self._finished), []
         return ended
+
+    def _taken(self, row: int, episode: Finished) -> int:
+        """How many steps the monitor of the episode that ended in this row has seen, those played again too."""
+        return len(self._episodes.actions[row]) if self._episodes else episode.steps
 
     def _tensors(self, observation: Mapping[str, NDArray[Any]]) -> TensorDict:
         tensors = {key: torch.from_numpy(each).to(self.device, torch.float32) for key, each in observation.items()}

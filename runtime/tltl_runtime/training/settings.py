@@ -11,10 +11,11 @@ from typing import Any, Final, Literal
 
 from tltl_runtime.policies.network import Network, Shapes, model_config
 from tltl_runtime.training.search import Exploration
-from tltl_runtime.training.settings_file import Method, read_values
+from tltl_runtime.training.settings_file import Method, PenaltySchedule, read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source
 from tltlc.monitor import RewardOptions
+from tltlc.monitor.reward import Mode, TerminalPenalty, Termination
 from tltlc.record import record, replace
 
 DEFAULTS: Final = Path(__file__).with_name("settings.toml")
@@ -78,6 +79,31 @@ class Imitation:
 
 
 @record
+class Reward:
+    """How steps are rewarded: the fields of :class:`~tltlc.monitor.reward.RewardOptions`, and what changes meanwhile.
+
+    With the ``penalty_schedule`` ``rising`` a ``discounted`` terminal penalty of mode ``progress`` becomes the
+    undiscounted one as the pass rate rises from a half to 1.
+    """
+
+    mode: Mode
+    termination: Termination
+    terminal_penalty: TerminalPenalty
+    penalty_schedule: PenaltySchedule
+    gamma: float
+
+    @property
+    def options(self) -> RewardOptions:
+        """How the environments reward."""
+        return RewardOptions(self.mode, self.termination, self.terminal_penalty, self.gamma)
+
+    @property
+    def rises(self) -> bool:
+        """Whether what a violation costs changes in the training."""
+        return self.penalty_schedule == "rising" and (self.mode, self.terminal_penalty) == ("progress", "discounted")
+
+
+@record
 class Stop:
     """Training ends when the spec was met throughout ``windows`` successive windows of ``episodes`` each, and then by
     the policy in as many fresh episodes as these are; or after ``steps`` decisions of all environments, or after
@@ -112,7 +138,7 @@ class Settings:
     network: Network
     exploration: Exploration
     imitation: Imitation
-    reward: RewardOptions
+    reward: Reward
     stop: Stop
     classes: Classes
     method: Method
@@ -152,7 +178,7 @@ def read_settings(path: Path | None = None) -> Settings:
         network=Network(**values["network"]),
         exploration=Exploration(**values["exploration"]),
         imitation=Imitation(**values["imitation"]),
-        reward=RewardOptions(**values["reward"], gamma=ppo.gamma),
+        reward=Reward(**values["reward"], gamma=ppo.gamma),
         stop=Stop(**values["stop"]),
         classes=Classes(**values["classes"]),
         **values[""],

@@ -95,6 +95,9 @@ class Text:
         return self.what
 
 
+PenaltySchedule = Literal["rising", "fixed"]
+"""Whether what a violation costs rises as the spec is met."""
+
 Method = Literal["automaton", "imitation"]
 """What an agent learns from: the rewards of the spec's automaton, or demonstrations."""
 
@@ -154,6 +157,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "mode": OneOf(get_args(Mode)),
         "termination": OneOf(get_args(Termination)),
         "terminal_penalty": OneOf(get_args(TerminalPenalty)),
+        "penalty_schedule": OneOf(get_args(PenaltySchedule)),
     },
     "stop": {
         "windows": Whole(1, 1_000),

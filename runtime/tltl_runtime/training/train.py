@@ -122,7 +122,7 @@ class _Training:
             runner.take_up(begun.algorithm)
             runner.current_learning_iteration = begun.iteration
             self._windows.load(begun.window, begun.unbroken)
-            self._fade_entropy()
+            self._weigh()
             if own.rank < len(begun.processes):
                 _set_own(begun.processes[own.rank], runner)
         self._state = begun or Checkpoint(
@@ -198,7 +198,7 @@ class _Training:
         finished = tuple(each for each in by_turns if each)
         iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
         self._windows.add(finished)
-        self._fade_entropy()
+        self._weigh()
         best = self._best() if finished else self._state.best
         confirmation = self._confirmation(best, iteration.number) if best and self._windows.met else None
         if confirmation and not confirmation.passed:
@@ -248,12 +248,15 @@ class _Training:
             searched = replace(together(state.searched, searched), complete=state.searched.complete)
             self._state = replace(state, searched=searched, processes=processes)
 
-    def _fade_entropy(self) -> None:
-        """Weigh the entropy bonus the less, the more often the spec is met: then there is less to try."""
+    def _weigh(self) -> None:
+        """Weigh the entropy bonus the less, the more often the spec is met, and failures the more: then there is less
+        to try, and the discounted penalty is less than what a longer way costs that is safe.
+        """
         ppo, stop = self._run.settings.ppo, self._stop
+        met = self._windows.window.successes / (stop.windows * stop.episodes)
         if ppo.entropy_schedule == "fading":
-            met = self._windows.window.successes / (stop.windows * stop.episodes)
             self._runner.alg.entropy_coef = ppo.entropy * (1 - met)
+        self._runner.env.severity = max(0.0, 2 * met - 1)
 
     def _tell_time(self) -> None:
         """Tell who imitates how long it has trained: it clones for a share of the minutes, where these are limited."""

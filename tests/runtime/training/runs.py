@@ -96,11 +96,11 @@ class Failing(Runner):
 
 
 class Weighing(Runner):
-    """A runner that tells the weight of the bonus for undecided actions among the losses."""
+    """A runner that tells the weights of the entropy bonus and of the terminal penalty's rise among the losses."""
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
-            yield replace(iteration, losses={"weight": self.alg.entropy_coef})
+            yield replace(iteration, losses={"weight": self.alg.entropy_coef, "severity": self.env.severity})
 
 
 def _say(**values: Any) -> None:

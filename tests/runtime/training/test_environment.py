@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from itertools import cycle
 
 import numpy as np
@@ -45,12 +46,22 @@ class Fixed(Restarts):
         return next(self._starts)
 
 
+@pytest.fixture(name="make")
+def _make() -> Iterator[Callable[[], TrainingEnv]]:
+    with ExitStack() as stack:
+
+        def make() -> TrainingEnv:
+            info = {**TLTL_INFO, "cell": np.int64}
+            played = make_vec("navigation", "v0", len(STARTS), 1, spec=SPEC, wrapper=Replayed, info=info)
+            stack.callback(played.close)
+            return TrainingEnv(played, 0, restarts=Fixed(), dearer=lambda steps: 10.0 * steps)
+
+        yield make
+
+
 @pytest.fixture(name="env")
-def _env() -> Iterator[TrainingEnv]:
-    info = {**TLTL_INFO, "cell": np.int64}
-    played = make_vec("navigation", "v0", len(STARTS), 1, spec=SPEC, wrapper=Replayed, info=info)
-    yield TrainingEnv(played, 0, restarts=Fixed())
-    played.close()
+def _env(make: Callable[[], TrainingEnv]) -> TrainingEnv:
+    return make()
 
 
 def test_episodes_that_are_cut_or_out_of_time_are_time_outs_and_those_on_ways_are_not_counted(env: TrainingEnv) -> None:
@@ -72,3 +83,16 @@ def test_episodes_that_are_cut_or_out_of_time_are_time_outs_and_those_on_ways_ar
         ([6], [6], ()),
         ([0, 3, 4, 5], [0, 3, 4, 5], (Finished(False, 0.0, 4, 0, violated=False),)),
     ]
+
+
+def test_failures_cost_more_the_greater_the_severity(make: Callable[[], TrainingEnv]) -> None:
+    mild, severe = make(), make()
+    severe.severity = 0.5
+    steps = [[WALK, JUMP, CROUCH, JUMP, CROUCH, WALK, WALK], *[[WALK] * len(STARTS)] * 3]
+    further = torch.stack([mild.step(actions)[1] - severe.step(actions)[1] for actions in map(torch.tensor, steps)])
+    expected = torch.zeros(4, len(STARTS))
+    # Violated at once, and on a way after what was played again.
+    expected[0, 1], expected[0, 3] = 5.0, 10.0
+    # The limit is a failure, too; an episode that is cut off is none.
+    expected[2, 6] = expected[3, 0] = expected[3, 3] = expected[3, 4] = 20.0
+    torch.testing.assert_close(further, expected)

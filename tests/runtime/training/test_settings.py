@@ -73,6 +73,7 @@ terminal = 0.5
 mode = "potential"
 termination = "paper"
 terminal_penalty = "undiscounted"
+penalty_schedule = "fixed"
 [stop]
 windows = 1
 episodes = 2
@@ -96,7 +97,8 @@ def test_the_defaults_are_those_of_the_paper() -> None:
     ppo = settings.ppo
     assert (ppo.learning_rate, ppo.entropy, ppo.clip, ppo.lam, ppo.gamma) == (3e-4, 0.01, 0.2, 0.95, 0.99)
     assert settings.network.hidden == (512, 512)
-    assert settings.reward == RewardOptions(terminal_penalty="discounted", gamma=0.99)
+    assert settings.reward.options == RewardOptions(terminal_penalty="discounted", gamma=0.99)
+    assert settings.reward.rises
     assert (settings.stop.windows, settings.stop.episodes) == (2, 50)
 
 
@@ -131,7 +133,7 @@ def test_a_file_has_what_differs(tmp_path: Path) -> None:
         threads=2,
         ppo=replace(default.ppo, gamma=0.9),
         network=replace(default.network, hidden=(64,)),
-        reward=RewardOptions(mode="sparse", terminal_penalty="discounted", gamma=0.9),
+        reward=replace(default.reward, mode="sparse", gamma=0.9),
     )
     assert isinstance(_read(tmp_path, "checkpoint_s = 5\n").checkpoint_s, float)
 

@@ -19,6 +19,7 @@ from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
+from tltl_runtime.training.beginning import dearer
 from tltl_runtime.training.checkpoint import Checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.record import write_record
@@ -337,3 +338,37 @@ def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str,
     # A success in each of a few episodes says little: the windows have a hundred.
     assert first.iteration.losses["weight"] == 0.01
     assert report.iteration.losses["weight"] == pytest.approx(last)
+
+
+def test_failures_cost_more_as_the_spec_is_met(folder: Path) -> None:
+    run = run_in(
+        folder / "rising", stop__windows=1, stop__episodes=10, classes__runner="tests.runtime.training.runs:Weighing"
+    )
+    first, second = train(_judged_by(run, SOON))
+    assert (first.window.successes, second.stop) == (8, "met")
+    assert (first.iteration.losses["severity"], second.iteration.losses["severity"]) == (0.0, pytest.approx(0.6))
+
+
+def test_the_discounted_penalty_rises_to_the_undiscounted_one(folder: Path) -> None:
+    run = run_in(folder / "rising")
+    limit = run.fspa.limit_steps
+    rise = dearer(run)
+    assert limit is not None
+    assert rise is not None
+    assert rise(0) == pytest.approx(1 - (1 - 0.99**limit) / (0.01 * limit))
+    assert rise(limit - 1) == pytest.approx(0.0)
+    assert rise(limit) == 0.0
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"reward__penalty_schedule": "fixed"},
+        {"reward__terminal_penalty": "undiscounted"},
+        {"reward__mode": "sparse"},
+        {"method": "imitation"},
+        {"spec": "import stealth\nspec unlimited { level cover_and_hide\n reach sneaking }\n"},
+    ],
+)
+def test_no_other_penalty_rises(folder: Path, changes: dict[str, str]) -> None:
+    assert dearer(run_in(folder / "other", **changes)) is None
