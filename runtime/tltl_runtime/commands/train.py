@@ -14,7 +14,7 @@ from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.senses import senses_options
 from tltl_runtime.commands.workers import WorkersType
-from tltl_runtime.texts import share
+from tltl_runtime.texts import duration, share
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 
@@ -167,8 +167,8 @@ def command(
         try:
             last = train_shown(run, resume=resume is not None, again=_resume(run.folder))
         except KeyboardInterrupt:
-            if line := stopped_line(run, _resume(run.folder)):
-                click.echo(line, err=True)
+            if stopped := stopped_line(run, _resume(run.folder)):
+                click.echo(stopped, err=True)
             raise
         if peers().rank > 0:
             # torchrun ends all processes as soon as one fails, and the first has a record to write.
@@ -206,8 +206,6 @@ def _begins(run: Run, *, resume: bool) -> Iterator[str]:
 
 def _ended(run: Run, last: Trained) -> Iterator[str]:
     """How a training ended, what there is now, and what comes next."""
-    from tltl_runtime.commands.training_text import duration
-
     window, folder = last.window, quote(str(run.folder))
     ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
     met = f"met in {window.successes} of the last {window.count} episodes, progress {share(window.progress)}"
@@ -221,7 +219,7 @@ def _ended(run: Run, last: Trained) -> Iterator[str]:
 
 def _over(run: Run, record: Mapping[str, Any]) -> str:
     """What there is to say of a training that is resumed and has ended."""
-    from tltl_runtime.commands.training_text import duration, minutes
+    from tltl_runtime.commands.training_text import minutes
 
     over, stop = f"the training in `{run.folder}` is over", run.settings.stop
     if record["end"] == "met":

@@ -15,7 +15,6 @@ from rich.text import Text
 from tltl_runtime.commands.training_text import (
     SEARCH_IS_LOST,
     confirmation_line,
-    duration,
     found_line,
     imitated_line,
     rate,
@@ -24,7 +23,7 @@ from tltl_runtime.commands.training_text import (
     search_line,
     seconds_left,
 )
-from tltl_runtime.texts import number, percent, share
+from tltl_runtime.texts import duration, number, percent, share
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.report import Report, Window
 from tltl_runtime.training.run import CHECKPOINT, Run

@@ -20,7 +20,7 @@ from tltl_runtime.commands.initial_policy import (
 )
 from tltl_runtime.commands.level_argument import check_there, names_level, own_level
 from tltl_runtime.commands.senses import option_of
-from tltl_runtime.commands.training_text import duration, minutes
+from tltl_runtime.commands.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
 from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import level_hash, spec_hash
@@ -31,6 +31,7 @@ from tltl_runtime.stealth.levels.place import absolute_variant, level_place
 from tltl_runtime.stealth.senses.sensors import chosen
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
+from tltl_runtime.texts import duration
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.demonstrated import nothing_to_imitate
 from tltl_runtime.training.demonstrations import recordings

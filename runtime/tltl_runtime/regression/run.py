@@ -120,16 +120,16 @@ def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Po
     try:
         result = judged(one, reference, error, pool, lambda count, last: told(case, count, last))
     except TltlError as fault:
-        codes = {found.code for found in fault.diagnostics}
+        codes = {each.code for each in fault.diagnostics}
         if codes & _NOT_THE_CASE:
             raise
         report = report_on_edited if _EDITED in codes else report_on_broken
         return Done(report(case, fault), kept=False)
     except RuntimeError as problem:
-        fault = player_fault(problem)
-        if fault is None:
+        found = player_fault(problem)
+        if found is None:
             raise
-        return Done(report_on_broken(case, fault), kept=False)
+        return Done(report_on_broken(case, found), kept=False)
     return Done(_write(place, identity, result), kept=False, ready=one, reference=reference)
 
 
@@ -145,7 +145,8 @@ def _identity(one: Ready, reference: Reference, error: float) -> str:
         to_json(one.played),
         to_json(reference),
         # What reasons are worded with, and the code that plays, judges and words.
-        [each.name for each in (*fspa.signals, *fspa.atoms)],
+        [each.name for each in fspa.signals],
+        [each.name for each in fspa.atoms],
         [each.label.english for each in fspa.states],
         one.outdated,
         sources_hash(),
