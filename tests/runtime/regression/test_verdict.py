@@ -78,7 +78,7 @@ def test_review_where_a_figure_has_certainly_changed() -> None:
         assert (found.verdict, found.certain) == ("review", True)
         assert count < 60
         (change,) = found.changes
-        assert (change.figure, change.now) == (figure, pytest.approx(value))
+        assert change.figure == figure and change.now == pytest.approx(value)
         assert change.before == pytest.approx(getattr(before[0], figure))
         assert change.p_value <= ERROR / 4
 
