@@ -24,7 +24,7 @@ ABLATION_STEPS: Final = 700_000
 GPU: Final = "cuda"
 PICTURE_NAME: Final = "training.png"
 
-_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#999999", "#b8a200")
+_COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#999999", "#b8a200", "#7a4a1e")
 """Told apart by the colour-blind, too: those of M. Okabe and K. Ito, behind our own."""
 
 

@@ -106,9 +106,10 @@ def _record(kind: Any, data: object, where: str, known: Mapping[str, object]) ->
         return made
     except ValueError as error:
         raise RecordJsonError(f"`{where}`: {error}") from None
-    except TypeError:
-        missing = [name for name in kinds if name not in values]
-        raise RecordJsonError(f"`{where}` lacks one of the keys {', '.join(missing)}") from None
+    except TypeError as error:
+        # Records name in their message those of the fields that have no default.
+        missing = str(error).partition(" lacks ")[2]
+        raise RecordJsonError(f"`{where}` lacks one of the keys {missing}") from None
 
 
 def _object(data: object, where: str) -> dict[str, object]:
