@@ -19,6 +19,7 @@ from tltl_runtime.regression.play import Ready, episodes, policy_file
 from tltl_runtime.regression.retrained import Best, Retrained, Trained, outcome_of, sentence
 from tltl_runtime.regression.run import Done, case_folder
 from tltl_runtime.regression.suite import LEAST_EPISODES, Suite
+from tltl_runtime.sources import sources_hash
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.initial import initial_of, weights_hash
@@ -192,7 +193,7 @@ def _identity(ready: Ready, weights: str, trained: Trained, error: float, own: S
     """The hash of all that the outcome depends on; ``own`` are the episodes by which the case was judged."""
     case = ready.case
     parts = [_VERSION, case.episodes, to_json(case.thresholds), error, to_json(ready.played), weights, to_json(trained)]
-    parts.append(sum(each.success for each in own))
+    parts += [sum(each.success for each in own), sources_hash()]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
