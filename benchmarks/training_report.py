@@ -20,7 +20,7 @@ PAPER_HOURS = {"navigation": 3.5, "cover_and_hide": 2.7, "branching": 6.8}
 LEVELS: Final = tuple(PAPER_HOURS)
 SEEDS: Final = (1, 2, 3)
 ABLATION: Final = "ablation: "
-ABLATION_STEPS: Final = 700_000
+ABLATION_STEPS: Final = 500_000
 GPU: Final = "cuda"
 PICTURE_NAME: Final = "training.png"
 
