@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from shlex import join
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -16,11 +17,17 @@ from tltl_runtime.commands.workers import all_cores_option
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 
+if TYPE_CHECKING:
+    from tltl_runtime.regression.baseline import Reference
+    from tltl_runtime.regression.suite import Case
+
 
 @click.command(
     epilog="""\b
 Examples:
   tltlc baseline suite.toml
+  tltlc baseline suite.toml --output tonight.json
+  tltlc regress suite.toml --baseline tonight.json
 """
 )
 @click.argument("suite", metavar="[SUITE]", required=False, type=click.Path(path_type=Path))
@@ -30,31 +37,38 @@ Examples:
 def command(suite: Path | None, path: Path | None, workers: Any) -> int:
     """Record the figures of the policies of a suite on the levels as they are now, for `tltlc regress`.
 
-    Of each level that is the variant with which its cases are compared, by default the first one.
+    Of each level that is the variant with which its cases are compared, by default the first one.  Without SUITE, the
+    levels that come with tltlc are played, and `shipped.baseline.json` is written.
     """
     with Report() as report, learning_for("`tltlc baseline`"), requests_heard():
         from tltl_runtime.commands.regression_display import RegressionDisplay
-        from tltl_runtime.regression.baseline import baseline_path, write_baseline
-        from tltl_runtime.regression.baseline_run import record_baseline
+        from tltl_runtime.regression.baseline import written_to
+        from tltl_runtime.regression.baseline_run import write_recorded
         from tltl_runtime.regression.suite import SHIPPED, read_suite
-        from tltlc.writing import replaced
 
         read = read_suite(suite or SHIPPED)
-        wrote = path or baseline_path(read.path)
-        references = []
+        wrote = path or written_to(read.path)
         try:
-            # The place may refuse: better to know before minutes of play.
-            with replaced(wrote, "name another place with --output") as temporary, RegressionDisplay() as display:
-                for each in record_baseline(read, workers, display):
+            with RegressionDisplay() as display:
+                for case, reference in write_recorded(read, wrote, workers, display):
                     display.over()
-                    references.append(each)
-                    passed, count = sum(account.success for account in each.accounts), len(each.accounts)
-                    met = f"{each.played.spec} met in {passed} of {count} episodes"
-                    click.echo(plain(f"{each.played.level}:{each.played.variant}: {met}"))
-                write_baseline(temporary, tuple(references))
+                    _tell(case, reference)
         except KeyboardInterrupt:
-            click.echo(f"stopped: nothing was written, and `{wrote}` is as it was", err=True)
+            click.echo(f"stopped: `{wrote}` is as it was; the same command goes on with what is over", err=True)
             raise
         click.echo(f"wrote {wrote}", err=True)
+        if wrote != read.baseline:
+            words = ["tltlc", "regress", *([str(suite)] if suite else []), "--baseline", str(wrote)]
+            click.echo(f"to judge by it: {join(words)}", err=True)
         return exits.CLEAN
     return report.status
+
+
+def _tell(case: Case, reference: Reference) -> None:
+    """Say what was recorded, and where no case can pass by it."""
+    played, passed, count = reference.played, sum(each.success for each in reference.accounts), len(reference.accounts)
+    click.echo(plain(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes"))
+    if passed / count < case.thresholds.pass_rate:
+        wanted = f"less than the pass rate of {case.thresholds.pass_rate:g} that `{case.name}` asks for"
+        advice = "train the policy further, or lower the threshold in the suite"
+        click.echo(plain(f"    {wanted}, so that it cannot pass even as it is: {advice}"), err=True)

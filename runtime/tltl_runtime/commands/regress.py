@@ -52,6 +52,7 @@ class _Wanted:
     github: bool
     fresh: bool
     workers: Any
+    baseline: Path | None
     minutes: float | None
     """Of a training for each case that does not pass, at the most; None: none is trained."""
 
@@ -90,6 +91,12 @@ Examples:
 @click.option("--junit", "junit_file", metavar="FILE", type=_file(), help="Write it as JUnit XML, too.")
 @click.option("--html", "html_file", metavar="FILE", type=_file(), help="Write the page here, too.")
 @click.option("--github", is_flag=True, help="Print findings as annotations of GitHub Actions, too.")
+@click.option(
+    "--baseline",
+    metavar="FILE",
+    type=_file(),
+    help="What they are judged against (default: SUITE.baseline.json, beside the suite).",
+)
 @click.option("--fresh", is_flag=True, help="Play cases again of which nothing has changed since they were played.")
 @click.option(
     "--retrain",
@@ -111,6 +118,7 @@ def command(
     junit_file: Path | None,
     html_file: Path | None,
     github: bool,
+    baseline: Path | None,
     fresh: bool,
     retrain: bool,
     minutes: float | None,
@@ -128,7 +136,7 @@ def command(
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes are those of --retrain")
     named = tuple(filter(None, changed)) if changed else None
-    place = folder or Path("regression") / (suite.stem if suite else "shipped")
+    place = folder or _default_folder(suite)
     wanted = _Wanted(
         suite,
         named,
@@ -139,31 +147,40 @@ def command(
         github,
         fresh,
         workers,
+        baseline,
         (minutes or _MINUTES) if retrain else None,
     )
     with Report() as report, learning_for("`tltlc regress`"), requests_heard():
         from tltl_runtime.regression.baseline import baseline_of
-        from tltl_runtime.regression.run import forget
+        from tltl_runtime.regression.run import check, owned
         from tltl_runtime.regression.suite import SHIPPED, read_suite
 
         check_writable({"--json": None if wanted.is_json else json_file, "--junit": junit_file, "--html": html_file})
-        read = read_suite(suite or SHIPPED)
+        read = read_suite(suite or SHIPPED, baseline)
         cases, left_out = _chosen(read, named)
-        references = baseline_of(read.path) if cases else ()
-        if fresh:
-            forget(read, cases, place)
+        references = baseline_of(read) if cases else ()
+        check(read, cases, references)
         found: list[Done] = []
-        try:
-            _play(read, cases, references, wanted, found)
-            _retrain(read, wanted, found)
-        except KeyboardInterrupt:
-            _stopped(wanted, found, len(cases))
-            raise
-        finally:
-            if found or not cases:
-                _tell(_outcome(read, found, len(cases), left_out, wanted), wanted)
+        with owned(place):
+            try:
+                _play(read, cases, references, wanted, found)
+                _retrain(read, wanted, found)
+            except KeyboardInterrupt:
+                _stopped(wanted, found, len(cases))
+                raise
+            finally:
+                if found or not cases:
+                    _tell(_outcome(read, found, cases, left_out, wanted), wanted)
         return exits.CLEAN if all(done.report.verdict == "pass" for done in found) else exits.FINDINGS
     return report.status
+
+
+def _default_folder(suite: Path | None) -> Path:
+    """For each suite below the current folder one of its own; "regression/game" for `game.toml`."""
+    if suite is None:
+        return Path("regression", "shipped")
+    parts = Path(os.path.relpath(suite.with_suffix(""))).parts
+    return Path("regression", *(part for part in parts if part != os.pardir))
 
 
 def _chosen(suite: Suite, changed: Sequence[str] | None) -> tuple[tuple[Case, ...], tuple[str, ...]]:
@@ -193,7 +210,9 @@ def _play(
     width = max((len(plain(case.name)) for case in cases), default=0)
     with (
         RegressionDisplay("at most") as display,
-        closing(regress(suite, cases, references, wanted.folder, wanted.workers, display)) as running,
+        closing(
+            regress(suite, cases, references, wanted.folder, wanted.workers, display, fresh=wanted.fresh)
+        ) as running,
     ):
         for done in running:
             found.append(done)
@@ -214,8 +233,19 @@ def _retrain(suite: Suite, wanted: _Wanted, found: list[Done]) -> None:
 
 
 def _again(wanted: _Wanted) -> list[str]:
-    """The words of the command that goes on with a run."""
-    words = ["tltlc", "regress", *([str(wanted.suite)] if wanted.suite else []), "--out", str(wanted.folder)]
+    """The words of the command that goes on with a run, but for --retrain and its --minutes."""
+    options = {
+        "--out": wanted.folder,
+        "--baseline": wanted.baseline,
+        "--json": wanted.json_file,
+        "--junit": wanted.junit_file,
+        "--html": wanted.html_file,
+        "--workers": wanted.workers or None,
+    }
+    words = ["tltlc", "regress", *([str(wanted.suite)] if wanted.suite else [])]
+    for name, value in options.items():
+        words += [] if value is None else [name, str(value)]
+    words += ["--github"] if wanted.github else []
     return words if wanted.changed is None else [*words, "--changed", *wanted.changed]
 
 
@@ -239,11 +269,13 @@ def _wanting(wanted: _Wanted, found: list[Done]) -> int:
     return wanting(found)
 
 
-def _outcome(suite: Suite, found: list[Done], cases: int, left_out: tuple[str, ...], wanted: _Wanted) -> Outcome:
+def _outcome(
+    suite: Suite, found: list[Done], cases: Sequence[Case], left_out: tuple[str, ...], wanted: _Wanted
+) -> Outcome:
     from tltl_runtime.commands.regression_files import Outcome
 
-    complete = len(found) == cases and not _wanting(wanted, found)
-    return Outcome(suite, tuple(found), complete, left_out)
+    missing = tuple(case.name for case in cases[len(found) :])
+    return Outcome(suite, tuple(found), not missing and not _wanting(wanted, found), left_out, missing)
 
 
 def _tell(outcome: Outcome, wanted: _Wanted) -> None:

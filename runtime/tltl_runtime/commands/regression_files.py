@@ -25,7 +25,8 @@ PAGE: Final = "report.html"
 
 @record
 class Outcome:
-    """What a run of a suite came to; ``left_out`` are the names of cases that no change concerns.
+    """What a run of a suite came to; ``left_out`` are the names of cases that no change concerns, ``missing`` of those
+    that were not judged before the run was stopped.
 
     ``complete`` says whether all cases were judged, and trained for, that this was asked for.
     """
@@ -34,6 +35,7 @@ class Outcome:
     cases: tuple[Done, ...]
     complete: bool
     left_out: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
 
 
 def json_text(outcome: Outcome) -> str:
@@ -48,7 +50,7 @@ def write_reports(outcome: Outcome, json_file: Path | None, junit_file: Path | N
     if json_file is not None:
         write_file(json_file, json_text(outcome), "name another place with --json")
     if junit_file is not None:
-        text = junit(outcome.suite, [done.report for done in outcome.cases])
+        text = junit(outcome.suite, [done.report for done in outcome.cases], outcome.missing)
         write_file(junit_file, text, "name another place with --junit")
 
 

@@ -96,7 +96,7 @@ def _lines(asked: Retraining, name: str, outcome: Retrained) -> Iterator[str]:
     elif asked.suite.path == SHIPPED:
         yield f"    the new policy: {policy}"
     else:
-        then = baseline_command(asked.suite.path)
+        then = baseline_command(asked.suite)
         yield f"    where the change was meant: copy {policy} beside the suite, name it there as `policy`, {then}"
     if outcome.episode:
         yield f"    an episode that met the spec: tltlc replay {quote(str(asked.folder / outcome.episode))}"

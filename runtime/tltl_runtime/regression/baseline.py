@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from shlex import quote
+from shlex import join
 from typing import Any, Final
 
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.refusals import Refusals
 from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.suite import SHIPPED
+from tltl_runtime.regression.suite import SHIPPED, Suite, baseline_path
 from tltl_runtime.stealth.levels.made_for import shown
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
@@ -56,11 +56,6 @@ class Reference:
     accounts: tuple[Account, ...]
 
 
-def baseline_path(suite: Path) -> Path:
-    """Where the baseline of a suite lies: ``NAME.baseline.json`` beside ``NAME.toml``."""
-    return suite.with_name(f"{suite.stem}.baseline.json")
-
-
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     """Write the baseline of a suite; raises TltlError, TLT0005."""
     document = {"format": FORMAT, "version": VERSION, "references": to_json(references)}
@@ -85,21 +80,26 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
         raise _REFUSALS.unreadable(name, "it is something else")
     _REFUSALS.check_version(name, document.get("version"), VERSION)
     try:
-        return from_json(_Document, document, "baseline").references
+        found = from_json(_Document, document, "baseline").references
     except (RecordJsonError, RecursionError) as error:
         raise _REFUSALS.broken(name, str(error)) from None
+    for row, each in enumerate(found):
+        # Episodes are compared by their place, and a mean of none is no figure.
+        if not each.accounts or any(account.index != place for place, account in enumerate(each.accounts)):
+            what = f"baseline.references[{row}].accounts: the episodes must be there from number 0 on, without a gap"
+            raise _REFUSALS.broken(name, what)
+    return found
 
 
-def baseline_of(suite: Path) -> tuple[Reference, ...]:
-    """The baseline beside a suite; TLT0903 where there is none, and errors as of :func:`read_baseline`."""
-    path = baseline_path(suite)
-    if not path.exists():
-        title = f"the suite `{shown(suite)}` has no baseline: there is no `{shown(path)}`"
+def baseline_of(suite: Suite) -> tuple[Reference, ...]:
+    """The baseline of a suite; TLT0903 where there is none, and errors as of :func:`read_baseline`."""
+    if not suite.baseline.exists():
+        title = f"the suite `{shown(suite.path)}` has no baseline: there is no `{shown(suite.baseline)}`"
         raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
-    return read_baseline(path)
+    return read_baseline(suite.baseline)
 
 
-def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Path) -> Reference:
+def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Suite) -> Reference:
     """What the baseline has of the same level, variant, spec, policy and seed; the level may be another one by now.
 
     Raises:
@@ -120,9 +120,17 @@ def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Path)
     raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
 
 
-def baseline_command(suite: Path) -> str:
+def written_to(suite: Path) -> Path:
+    """Where `tltlc baseline` writes, unless it is told: of the suite that comes with the package not into this."""
+    return Path("shipped.baseline.json") if suite == SHIPPED else baseline_path(suite)
+
+
+def baseline_command(suite: Suite) -> str:
     """What records the baseline of a suite, to be pasted."""
-    return "tltlc baseline" if suite == SHIPPED else f"tltlc baseline {quote(shown(suite))}"
+    words = ["tltlc", "baseline", *([] if suite.path == SHIPPED else [shown(suite.path)])]
+    if suite.baseline != written_to(suite.path):
+        words += ["--output", shown(suite.baseline)]
+    return join(words)
 
 
 @record

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from tltl_runtime.regression.baseline import baseline_path
 from tltl_runtime.regression.play import policy_file
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.levels.file import level_path
@@ -65,7 +64,7 @@ def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
 
     Those that would take the place of another one count, too, so that it matters when they are made or deleted.
     """
-    found = [suite.path, baseline_path(suite.path), policy_file(case.policy)]
+    found = [suite.path, suite.baseline, policy_file(case.policy)]
     found += _level_files(level_path(case.level), case.variant)
     if case.spec is not None:
         found += _spec_files(Path(split(case.spec)[0]))

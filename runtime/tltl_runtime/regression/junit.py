@@ -18,17 +18,17 @@ _ELEMENTS: Final = {"fail": "failure", "review": "error"}
 """A review is an ``error``, by which JUnit means a test that came to no result: nothing that shows it may hide it."""
 
 
-def junit(suite: Suite, reports: Sequence[CaseReport]) -> str:
+def junit(suite: Suite, reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
     """A ``testsuite`` with a ``testcase`` for each case, as the schema junit-10 of Jenkins' xUnit plugin has it.
 
     Reasons are texts, figures properties of the ``testsuite``, since a ``testcase`` has none: ``CASE.pass_rate``.
+    Cases that are ``missing``, since the run was stopped, are errors.
     """
+    verdicts = [report.verdict for report in reports]
     counts = {
-        "tests": str(len(reports)),
-        **{
-            f"{element}s": str(sum(report.verdict == verdict for report in reports))
-            for verdict, element in _ELEMENTS.items()
-        },
+        "tests": str(len(reports) + len(missing)),
+        "failures": str(verdicts.count("fail")),
+        "errors": str(verdicts.count("review") + len(missing)),
     }
     root = ET.Element("testsuites", {"name": "tltlc regress", **counts})
     tests = ET.SubElement(root, "testsuite", {"name": _legal(suite.path.stem), **counts, "skipped": "0"})
@@ -37,6 +37,9 @@ def junit(suite: Suite, reports: Sequence[CaseReport]) -> str:
         ET.SubElement(properties, "property", {"name": _legal(name), "value": _legal(value)})
     for report in reports:
         tests.append(_testcase(suite, report))
+    for name in missing:
+        test = ET.SubElement(tests, "testcase", {"name": _legal(name), "classname": _legal(suite.path.stem)})
+        ET.SubElement(test, "error", {"type": "missing", "message": "not judged: the run was stopped before"})
     ET.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 

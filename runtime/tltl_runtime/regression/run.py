@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Generator, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Final
 
@@ -52,36 +53,52 @@ class Done:
     reference: Reference | None = None
 
 
+def check(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
+    """Raise TltlError, TLT0903, where the baseline lacks a case that can be played."""
+    for case in cases:
+        _prepared(suite, case, references)
+
+
+def owned(folder: Path) -> AbstractContextManager[None]:
+    """Within, no other run of a suite uses the folder, which is made where it is missing; raises TLT0904, TLT0005."""
+    title = f"another run of `tltlc regress` plays in `{folder}`"
+    busy = Diagnostic("TLT0904", title, help="wait for its end, or name another folder with --out")
+    return held(folder, busy, _WRITABLE)
+
+
 def regress(
-    suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...], folder: Path, pool: Pool, told: Told
+    suite: Suite,
+    cases: Sequence[Case],
+    references: tuple[Reference, ...],
+    folder: Path,
+    pool: Pool,
+    told: Told,
+    *,
+    fresh: bool = False,
 ) -> Generator[Done]:
     """Judge some cases of a suite, in their order, each as soon as it is over.
 
-    What was played is kept below ``folder``, which is this run's until it ends; a case of which nothing has changed
-    since is not played again.  A case that cannot be played fails, one whose level is edited while it is played is to
-    be reviewed, and the others go on.
+    What was played is kept below ``folder``, which is to be :func:`owned`; a case of which nothing has changed since is
+    not played again, unless ``fresh``.  A case that cannot be played fails, one whose level is edited while it is
+    played is to be reviewed, and the others go on.
 
     Raises:
-        TltlError: before anything is played, TLT0903 where the baseline lacks a case, and TLT0005 and TLT0904 for the
-            folder; then TLT0730, TLT0850 and TLT0852 of the workers, TLT0005, and TLT0903 where a policy or its spec
-            has become another one meanwhile.
+        TltlError: TLT0903 where the baseline lacks a case, or a policy or its spec has become another one meanwhile;
+            TLT0730, TLT0850 and TLT0852 of the workers; TLT0005 for the folder.
     """
+    if fresh:
+        _forget(suite, cases, folder)
     for case in cases:
-        _prepared(suite, case, references)
-    title = f"another run of `tltlc regress` plays in `{folder}`"
-    busy = Diagnostic("TLT0904", title, help="wait for its end, or name another folder with --out")
-    with held(folder, busy, _WRITABLE):
-        for case in cases:
-            # Its files may have changed while others were played.
-            prepared = _prepared(suite, case, references)
-            if isinstance(prepared, TltlError):
-                yield Done(report_on_broken(case, prepared), kept=False)
-            else:
-                yield _done(suite, *prepared, folder, pool, told)
+        # Its files may have changed while others were played.
+        prepared = _prepared(suite, case, references)
+        if isinstance(prepared, TltlError):
+            yield Done(report_on_broken(case, prepared), kept=False)
+        else:
+            yield _done(suite, *prepared, folder, pool, told)
 
 
-def forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
-    """Have the next :func:`regress` play some cases anew, whatever is kept of them in ``folder``; raises TLT0005."""
+def _forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
+    """Remove at once what is kept of all of the cases, so that a run that is stopped goes on with fresh ones."""
     for case in cases:
         path = case_folder(suite, case.name, folder / CASES) / _REPORT
         try:
@@ -104,7 +121,7 @@ def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tu
     except TltlError as error:
         return error
     wanted = replace(one.played, variant=case.reference)
-    return one, reference_of(references, wanted, suite.path)
+    return one, reference_of(references, wanted, suite)
 
 
 def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Pool, told: Told) -> Done:

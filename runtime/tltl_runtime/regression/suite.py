@@ -70,17 +70,24 @@ class Case:
 class Suite:
     """Cases that are judged together.
 
-    ``seed`` is that of the episodes; ``error`` bounds the probability that any of the verdicts is wrong, in (0, 1).
+    ``seed`` is that of the episodes; ``error`` bounds the probability that any of the verdicts is wrong, in (0, 1);
+    ``baseline`` is the file that they are judged against.
     """
 
     path: Path
     seed: int
     error: float
     cases: tuple[Case, ...]
+    baseline: Path
 
 
-def read_suite(path: Path) -> Suite:
-    """The suite in a file; paths in it are relative to it.
+def baseline_path(suite: Path) -> Path:
+    """Where the baseline of a suite lies, unless another one is named: ``NAME.baseline.json`` beside ``NAME.toml``."""
+    return suite.with_name(f"{suite.stem}.baseline.json")
+
+
+def read_suite(path: Path, baseline: Path | None = None) -> Suite:
+    """The suite in a file, judged against the baseline beside it or another one; paths in it are relative to it.
 
     Raises:
         TltlError: all that is wrong, as far as it can be told at once.  TLT0801 no TOML; TLT0802 an unknown key;
@@ -106,7 +113,7 @@ def read_suite(path: Path) -> Suite:
         found[case.name] = label
     if log:
         raise TltlError(log)
-    return Suite(path, seed, error, tuple(case for case, _ in filter(None, cases)))
+    return Suite(path, seed, error, tuple(case for case, _ in filter(None, cases)), baseline or baseline_path(path))
 
 
 def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> tuple[Case, Label] | None:

@@ -121,6 +121,31 @@ def test_the_report_for_continuous_integration(
     assert found.err.splitlines()[-1] == "wrote page.html: open it in a browser"
 
 
+def test_another_baseline(tltlc: Run, game: Path) -> None:  # noqa: F811
+    Path("game.baseline.json").rename("tonight.json")
+    found = tltlc("regress", "game.toml", "--baseline", "tonight.json", "--changed", "tonight", *ONE)
+    assert verdicts(found.out) == ["room:v0 pass", "room:v1 pass", "hopeless fail"]
+    found = tltlc("regress", "game.toml", "--baseline", "nowhere.json", *ONE)
+    assert found.err == (
+        "error[TLT0903]: the suite `game.toml` has no baseline: there is no `nowhere.json`\n"
+        "  help: record it: tltlc baseline game.toml --output nowhere.json\n"
+    )
+
+
+def test_the_default_folder_follows_the_place_of_the_suite(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(game.parent)
+    found = tltlc("regress", "game/game.toml", "--changed", "soon", *ONE)
+    assert found.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
+    (game.parent / "elsewhere").mkdir()
+    monkeypatch.chdir(game.parent / "elsewhere")
+    found = tltlc("regress", str(game / "game.toml"), "--changed", "soon", *ONE)
+    assert found.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
+
+
 def test_only_what_a_change_concerns(tltlc: Run, game: Path) -> None:  # noqa: F811
     found = tltlc("regress", "game.toml", *ONE, "--changed", "soon.safetensors", "README.md", "--json", "report.json")
     assert verdicts(found.out) == ["hopeless fail"]
@@ -193,7 +218,12 @@ def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
     assert found.out == "room:v0: easy met in 50 of 50 episodes\nroom:v0: soon met in 0 of 50 episodes\n"
     told = found.err.splitlines()
     assert "hopeless: 50 of 50 episodes, 0 met the spec" in told
-    assert told[-1] == "wrote again.json"
+    assert told[-3:] == [
+        "    less than the pass rate of 0.85 that `hopeless` asks for, so that it cannot pass even as it is: "
+        "train the policy further, or lower the threshold in the suite",
+        "wrote again.json",
+        "to judge by it: tltlc regress game.toml --baseline again.json",
+    ]
     assert Path("again.json").read_bytes() == before
     assert len(read_baseline(Path("again.json"))) == 2
     # It is known before anything is played that it cannot be written.
@@ -207,7 +237,8 @@ def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str
     endless = 'name = "hopeless"\nepisodes = 10000\nthresholds = { pass_rate = 0.001, fail_rate = 0.0005 }'
     text = SUITE.replace('name = "hopeless"', endless)
     Path("game.toml").write_text(text, encoding="utf-8")
-    command = [sys.executable, "-m", "tltlc", "regress", "game.toml", "--json", "report.json", *ONE]
+    reports = ("--json", "report.json", "--junit", "report.xml")
+    command = [sys.executable, "-m", "tltlc", "regress", "game.toml", *reports, "--github", *ONE]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as playing:
         assert playing.stderr is not None
         for line in playing.stderr:
@@ -217,9 +248,10 @@ def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str
         out, err = playing.communicate(timeout=300)
     assert playing.returncode == status
     assert verdicts(out) == ["room:v0 pass", "room:v1 pass"]
-    assert (
-        "stopped: 2 of 3 cases are judged, and kept; to go on: tltlc regress game.toml --out regression/game"
-    ) in err.splitlines()
+    again = "tltlc regress game.toml --out regression/game --json report.json --junit report.xml --workers 1 --github"
+    assert f"stopped: 2 of 3 cases are judged, and kept; to go on: {again}" in err.splitlines()
+    (tests,) = ET.parse("report.xml").getroot()
+    assert [test.get("name") for test in tests.iter("testcase") if test.find("error") is not None] == ["hopeless"]
     said = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert (said["complete"], len(said["cases"])) == (False, 2)
     assert Path("regression/game/report.html").exists()
@@ -239,6 +271,6 @@ def test_a_baseline_that_is_stopped_leaves_the_old_one(game: Path) -> None:
         playing.send_signal(signal.SIGINT)
         _, err = playing.communicate(timeout=300)
     assert playing.returncode == 130
-    assert "stopped: nothing was written, and `game.baseline.json` is as it was" in err
+    assert "stopped: `game.baseline.json` is as it was; the same command goes on with what is over" in err
     assert Path("game.baseline.json").read_bytes() == before
     assert sorted(path.name for path in Path().glob(".*")) == []

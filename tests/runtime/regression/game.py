@@ -7,9 +7,9 @@ from pathlib import Path
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.file import write_policy
-from tltl_runtime.regression.baseline import baseline_path, write_baseline
+from tltl_runtime.regression.baseline import write_baseline
 from tltl_runtime.regression.baseline_run import record_baseline
-from tltl_runtime.regression.suite import Suite, read_suite
+from tltl_runtime.regression.suite import Suite, baseline_path, read_suite
 
 EASY = """\
 import stealth
@@ -54,5 +54,5 @@ def write_game(folder: Path, suite: str = SUITE) -> Path:
 def with_baseline(path: Path) -> Suite:
     """The suite, whose baseline is recorded."""
     suite = read_suite(path)
-    write_baseline(baseline_path(path), tuple(record_baseline(suite, 1, lambda *_: None)))
+    write_baseline(baseline_path(path), tuple(each for _, each in record_baseline(suite, 1, lambda *_: None)))
     return suite

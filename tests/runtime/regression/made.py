@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tltl_runtime.regression.account import Account, Arrival, Nearest
 from tltl_runtime.regression.baseline import Played, Reference
-from tltl_runtime.regression.suite import Case, Suite, Thresholds
+from tltl_runtime.regression.suite import Case, Suite, Thresholds, baseline_path
 from tltl_runtime.stealth.episodes.cause import Kind
 from tltl_runtime.stealth.level import Point
 from tltlc.record import replace
@@ -98,4 +98,4 @@ def case(name: str, level: str = "navigation", variant: str = "v0", policy: Path
 
 
 def suite(*cases: Case, path: Path = Path("game.toml")) -> Suite:
-    return Suite(path, 7, 0.05, cases)
+    return Suite(path, 7, 0.05, cases, baseline_path(path))

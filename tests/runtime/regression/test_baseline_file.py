@@ -7,19 +7,21 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.regression.made import PLAYED, made, reference, several
+from tests.runtime.regression.made import PLAYED, made, reference, several, suite
 from tltl_runtime.regression.account import Nearest
 from tltl_runtime.regression.baseline import (
+    baseline_command,
     baseline_of,
-    baseline_path,
     read_baseline,
     reference_of,
     write_baseline,
+    written_to,
 )
-from tltl_runtime.regression.suite import SHIPPED
+from tltl_runtime.regression.suite import SHIPPED, baseline_path, read_suite
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
 
+SUITE = suite()
 NEAREST = Nearest("near(exit)", -0.25, (1.0, 2.0, 0.0), "exit", 3.2)
 
 
@@ -77,15 +79,15 @@ def test_what_is_something_else_is_refused(tmp_path: Path, text: str) -> None:
 def test_figures_are_found_whatever_the_level_has_become() -> None:
     known = (reference(variant="v1"), reference(several(2)))
     wanted = replace(PLAYED, level_hash="0" * 64, files=(), versions={})
-    assert reference_of(known, wanted, Path("game.toml")) == known[1]
+    assert reference_of(known, wanted, SUITE) == known[1]
 
 
 def test_levels_of_one_name_are_told_apart() -> None:
     known = tuple(reference(several(count), place=f"{place}/room.toml") for count, place in ((1, "old"), (2, "new")))
     for each in known:
-        assert reference_of(known, replace(PLAYED, place=each.played.place), Path("game.toml")) == each
+        assert reference_of(known, replace(PLAYED, place=each.played.place), SUITE) == each
     with pytest.raises(TltlError, match="no figures of `other/room"):
-        reference_of(known, replace(PLAYED, place="other/room.toml"), Path("game.toml"))
+        reference_of(known, replace(PLAYED, place="other/room.toml"), SUITE)
 
 
 def test_a_baseline_that_tells_them_not_apart_will_do(tmp_path: Path) -> None:
@@ -93,7 +95,7 @@ def test_a_baseline_that_tells_them_not_apart_will_do(tmp_path: Path) -> None:
     write_baseline(path, (reference(several(2)),))
     path.write_text(path.read_text(encoding="utf-8").replace(',"place":""', ""), encoding="utf-8")
     (found,) = read_baseline(path)
-    assert reference_of((found,), replace(PLAYED, place="new/room.toml"), Path("game.toml")) == found
+    assert reference_of((found,), replace(PLAYED, place="new/room.toml"), SUITE) == found
 
 
 @pytest.mark.parametrize(
@@ -108,7 +110,7 @@ def test_a_baseline_that_tells_them_not_apart_will_do(tmp_path: Path) -> None:
 )
 def test_figures_that_are_missing(changed: dict[str, object], title: str) -> None:
     with pytest.raises(TltlError) as error:
-        reference_of((reference(several(2)),), replace(PLAYED, **changed), Path("a game.toml"))
+        reference_of((reference(several(2)),), replace(PLAYED, **changed), suite(path=Path("a game.toml")))
     (found,) = error.value.diagnostics
     assert (found.code, found.title) == ("TLT0903", title)
     assert found.help == "record it: tltlc baseline 'a game.toml'"
@@ -116,10 +118,32 @@ def test_figures_that_are_missing(changed: dict[str, object], title: str) -> Non
 
 def test_a_suite_without_a_baseline(tmp_path: Path) -> None:
     with pytest.raises(TltlError) as error:
-        baseline_of(tmp_path / "game.toml")
+        baseline_of(suite(path=tmp_path / "game.toml"))
     (found,) = error.value.diagnostics
     assert found.code == "TLT0903"
     assert found.help == f"record it: tltlc baseline {tmp_path / 'game.toml'}"
-    write_baseline(tmp_path / "game.baseline.json", (reference(),))
-    assert baseline_of(tmp_path / "game.toml") == (reference(),)
+    write_baseline(tmp_path / "game.baseline.json", (reference(several(1)),))
+    assert baseline_of(suite(path=tmp_path / "game.toml")) == (reference(several(1)),)
     assert baseline_path(SHIPPED).parent == SHIPPED.parent
+
+
+@pytest.mark.parametrize("path", [Path("game.toml"), SHIPPED])
+def test_what_records_a_baseline_writes_the_one_that_is_missing(path: Path) -> None:
+    """That of the package is written only where this is said."""
+    named = replace(suite(path=path), baseline=Path("a night.json"))
+    words = "" if path == SHIPPED else " game.toml"
+    assert baseline_command(named) == f"tltlc baseline{words} --output 'a night.json'"
+    shipped = replace(named, baseline=written_to(path))
+    assert baseline_command(shipped) == f"tltlc baseline{words}"
+    assert baseline_command(read_suite(SHIPPED)) == f"tltlc baseline --output {baseline_path(SHIPPED)}"
+
+
+@pytest.mark.parametrize("indices", [[], [1], [0, 2], [0, 0], [1, 0]])
+def test_episodes_must_be_there_in_their_order(tmp_path: Path, indices: list[int]) -> None:
+    path = tmp_path / "game.baseline.json"
+    write_baseline(path, (reference(several(1)), reference([made(index) for index in indices])))
+    with pytest.raises(TltlError) as error:
+        read_baseline(path)
+    (found,) = error.value.diagnostics
+    assert found.code == "TLT0902"
+    assert "baseline.references[1].accounts: the episodes must be there from number 0 on" in found.title

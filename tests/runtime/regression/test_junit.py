@@ -117,6 +117,17 @@ def test_what_a_training_came_to() -> None:
     assert "room:v0.retrained" not in found
 
 
+def test_cases_that_were_not_judged_are_errors() -> None:
+    root = ET.fromstring(junit(SUITE, (GOOD,), ("room:v1", "room:v2")).encode())
+    check(root)
+    (tests,) = root
+    assert (tests.get("tests"), tests.get("failures"), tests.get("errors")) == ("3", "0", "2")
+    assert [each.get("name") for each in tests.iter("testcase") if each.find("error") is not None] == [
+        "room:v1",
+        "room:v2",
+    ]
+
+
 def test_no_cases() -> None:
     (tests,) = read(())
     assert (tests.get("tests"), tests.get("failures"), tests.get("errors")) == ("0", "0", "0")

@@ -29,7 +29,7 @@ SHORT = 0.02
 
 
 def judged(suite: Suite) -> list[Done]:
-    return list(regress(suite, suite.cases, baseline_of(suite.path), Path("run"), 1, lambda *_: None))
+    return list(regress(suite, suite.cases, baseline_of(suite), Path("run"), 1, lambda *_: None))
 
 
 def training_of(suite: Suite, done: Done, minutes: float = SHORT) -> Run:

@@ -19,11 +19,11 @@ from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import baseline_of, baseline_path
-from tltl_runtime.regression.baseline_run import record_baseline
+from tltl_runtime.regression.baseline import baseline_of, read_baseline
+from tltl_runtime.regression.baseline_run import record_baseline, write_recorded
 from tltl_runtime.regression.dependencies import dependencies
 from tltl_runtime.regression.play import Ready, episodes, ready
-from tltl_runtime.regression.run import CASES, Done, _identity, case_folder, forget, regress
+from tltl_runtime.regression.run import CASES, Done, _identity, case_folder, check, owned, regress
 from tltl_runtime.regression.suite import Case, Suite, read_suite
 from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.episodes.versions import versions
@@ -52,7 +52,7 @@ def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A game with its baseline and what a first run of its suite has left in ``run``."""
     folder = tmp_path_factory.mktemp("recorded")
     suite = with_baseline(write_game(folder))
-    list(regress(suite, suite.cases, baseline_of(suite.path), folder / "run", 1, Played()))
+    list(regress(suite, suite.cases, baseline_of(suite), folder / "run", 1, Played()))
     return folder
 
 
@@ -64,7 +64,7 @@ def _game(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
 
 
 def running(suite: Suite, folder: str = "run", told: Played | None = None) -> Iterator[Done]:
-    return regress(suite, suite.cases, baseline_of(suite.path), Path(folder), 1, told or Played())
+    return regress(suite, suite.cases, baseline_of(suite), Path(folder), 1, told or Played())
 
 
 def run(folder: str = "run", suite: Suite | None = None) -> tuple[list[Done], dict[str, int]]:
@@ -171,7 +171,7 @@ def test_another_version_plays_again(game: Path, monkeypatch: pytest.MonkeyPatch
 
 def test_names_that_reasons_speak_of_are_part_of_what_is_kept(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
-    made, reference = ready(suite.cases[0], suite.seed), baseline_of(suite.path)[0]
+    made, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
     fspa = made.setup.fspa
     for other in (
         replace(fspa, atoms=tuple(replace(each, name=f"{each.name}_2") for each in fspa.atoms)),
@@ -263,7 +263,7 @@ def test_what_is_wrong_with_the_workers_ends_the_run(game: Path, monkeypatch: py
 
     monkeypatch.setattr("tltl_runtime.regression.run.ready", deadly)
     with pytest.raises(TltlError) as error:
-        list(regress(suite, suite.cases, baseline_of(suite.path), Path("new"), 2, Played()))
+        list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 2, Played()))
     assert [found.code for found in error.value.diagnostics] == ["TLT0850"]
     assert not (Path("new") / CASES).exists()
 
@@ -308,7 +308,7 @@ def test_a_folder_may_have_a_plus_in_its_name(game: Path, tmp_path: Path, monkey
 
 
 def test_another_baseline_is_another_comparison(game: Path) -> None:
-    path = baseline_path(Path("game.toml"))
+    path = read_suite(Path("game.toml")).baseline
     document = json.loads(path.read_text(encoding="utf-8"))
     document["references"][0]["accounts"][0]["reward"] += 0.001
     path.write_text(json.dumps(document), encoding="utf-8")
@@ -336,7 +336,7 @@ def test_a_case_that_was_stopped_in_the_middle_is_played_from_its_start(game: Pa
 
     suite = read_suite(Path("game.toml"))
     with pytest.raises(StopError):
-        list(regress(suite, suite.cases, baseline_of(suite.path), Path("new"), 1, told))
+        list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 1, told))
     found, played = run("new")
     assert [done.kept for done in found] == [True, False, False]
     assert [done.report for done in found] == [done.report for done in run()[0]]
@@ -353,11 +353,13 @@ def test_what_was_damaged_is_played_again(game: Path, damage: str | None) -> Non
     assert list(run()[1]) == ["room:v0"]
 
 
-def test_what_is_forgotten_is_played_again(game: Path) -> None:
-    suite = read_suite(Path("game.toml"))
-    forget(suite, suite.cases[1:], Path("run"))
-    forget(suite, suite.cases[1:], Path("nowhere"))
-    assert list(run()[1]) == ["room:v1", "hopeless"]
+def test_what_is_asked_for_afresh_is_played_again_and_nothing_else(game: Path) -> None:
+    suite, played = read_suite(Path("game.toml")), Played()
+    with closing(regress(suite, suite.cases[1:], baseline_of(suite), Path("run"), 1, played, fresh=True)) as stopped:
+        assert next(stopped).report.name == "room:v1"
+    assert list(run()[1]) == ["hopeless"], "what was not played again before the stop is, too"
+    references = baseline_of(suite)
+    assert len(list(regress(suite, suite.cases, references, Path("nowhere"), 1, Played(), fresh=True))) == 3
 
 
 def test_a_level_that_does_not_load_fails_its_cases_and_the_others_go_on(game: Path) -> None:
@@ -399,38 +401,35 @@ def test_a_level_that_a_player_leaves_fails_its_case_and_the_others_go_on(game: 
 
 
 def test_a_case_that_the_baseline_lacks_is_told_before_anything_is_played(game: Path) -> None:
-    suite = read_suite(Path("game.toml"))
-    references = tuple(each for each in baseline_of(suite.path) if each.played.spec != "soon")
-    played = Played()
+    suite, played = read_suite(Path("game.toml")), Played()
+    references = tuple(each for each in baseline_of(suite) if each.played.spec != "soon")
     with pytest.raises(TltlError) as error:
-        list(regress(suite, suite.cases, references, Path("new"), 1, played))
+        check(suite, suite.cases, references)
     assert [found.code for found in error.value.diagnostics] == ["TLT0903"]
-    assert (played.counts, Path("new").exists()) == ({}, False)
     # What is not asked for may be missing.
+    check(suite, suite.cases[:2], references)
     assert len(list(regress(suite, suite.cases[:2], references, Path("new"), 1, played))) == 2
 
 
 def test_a_folder_that_cannot_be_written_is_told_before_anything_is_played(game: Path) -> None:
     Path("file").touch()
-    played = Played()
     for place in ("file", "file/run"):
-        with pytest.raises(TltlError) as error:
-            list(running(read_suite(Path("game.toml")), place, played))
+        with pytest.raises(TltlError) as error, owned(Path(place)):
+            pytest.fail("nothing can be written there")
         assert [found.code for found in error.value.diagnostics] == ["TLT0005"]
-    assert played.counts == {}
 
 
 def test_a_folder_belongs_to_one_run_at_a_time(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
-    first = running(suite)
-    next(first)
-    with pytest.raises(TltlError) as error:
-        next(running(suite))
-    (found,) = error.value.diagnostics
-    assert (found.code, found.title) == ("TLT0904", "another run of `tltlc regress` plays in `run`")
-    assert next(running(suite, "new")).report.verdict == "pass", "elsewhere there is room"
-    assert len(list(first)) == 2
-    assert len(list(running(suite))) == 3
+    with owned(Path("run")):
+        with pytest.raises(TltlError) as error, owned(Path("run")):
+            pytest.fail("it is taken")
+        (found,) = error.value.diagnostics
+        assert (found.code, found.title) == ("TLT0904", "another run of `tltlc regress` plays in `run`")
+        with owned(Path("new")):
+            assert len(list(running(suite, "new"))) == 3, "elsewhere there is room"
+    with owned(Path("run")):
+        assert len(list(running(suite))) == 3
 
 
 def test_a_case_may_be_called_anything(game: Path) -> None:
@@ -444,19 +443,19 @@ def test_a_case_may_be_called_anything(game: Path) -> None:
 
 def test_a_baseline_plays_each_place_once_and_all_of_its_episodes(game: Path) -> None:
     suite, played = read_suite(Path("game.toml")), Played()
-    found = list(record_baseline(suite, 1, played))
+    found = [each for _, each in record_baseline(suite, 1, played)]
     assert [(each.played.spec, each.played.variant, len(each.accounts)) for each in found] == [
         ("easy", "v0", 50),
         ("soon", "v0", 50),
     ]
     assert played.counts == {"room:v0": 50, "hopeless": 50}
-    assert tuple(found) == baseline_of(suite.path)
+    assert tuple(found) == baseline_of(suite)
 
 
 def test_a_baseline_has_the_episodes_of_the_case_that_asks_for_most(game: Path) -> None:
     _edit("game.toml", 'level = "room.toml"\nvariant = "v1"', 'level = "room.toml"\nepisodes = 30\nvariant = "v1"')
     _edit("game.toml", "episodes = 50", "episodes = 25")
-    found = list(record_baseline(read_suite(Path("game.toml")), 1, Played()))
+    found = [each for _, each in record_baseline(read_suite(Path("game.toml")), 1, Played())]
     assert [(each.played.spec, len(each.accounts)) for each in found] == [("easy", 30), ("soon", 25)]
 
 
@@ -466,7 +465,7 @@ def test_levels_of_one_name_have_a_baseline_each(game: Path) -> None:
     again = '[[case]]\nname = "other"\nlevel = "./other//room.toml"\npolicy = "easy.safetensors"\n'
     _edit("game.toml", SUITE, SUITE.replace("episodes = 50", "episodes = 25") + again)
     suite = read_suite(Path("game.toml"))
-    found = list(record_baseline(suite, 1, Played()))
+    found = [each for _, each in record_baseline(suite, 1, Played())]
     assert [(each.played.spec, each.played.place) for each in found] == [
         ("easy", "room.toml"),
         ("soon", "room.toml"),
@@ -480,7 +479,7 @@ def test_a_report_does_not_say_where_an_overlay_lies(game: Path) -> None:
     _edit("game.toml", 'variant = "v1"', 'overlay = "edits/wide.toml"')
     Path("room.toml").write_text(ROOM.replace("size = [10.0", "siez = [10.0"), encoding="utf-8")
     suite = read_suite((game / "game.toml").absolute())
-    found = list(regress(suite, suite.cases, baseline_of(suite.path), Path("new"), 1, Played()))
+    found = list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 1, Played()))
     assert [done.report.variant for done in found] == ["v0", "v0+wide", "v0"]
 
 
@@ -490,3 +489,27 @@ def test_a_baseline_of_what_cannot_be_played_is_refused_before_anything_is_playe
     with pytest.raises(TltlError, match="TLT0840"):
         list(record_baseline(read_suite(Path("game.toml")), 1, played))
     assert played.counts == {}
+
+
+def test_a_baseline_that_was_stopped_goes_on(game: Path) -> None:
+    suite, path = read_suite(Path("game.toml")), Path("new.json")
+    with closing(write_recorded(suite, path, 1, Played())) as stopped:
+        case, reference = next(stopped)
+    assert (case.name, len(reference.accounts), path.exists()) == ("room:v0", 50, False)
+    played = Played()
+    found = [each for _, each in write_recorded(suite, path, 1, played)]
+    assert played.counts == {"hopeless": 50}
+    assert tuple(found) == read_baseline(path) == baseline_of(suite)
+    assert sorted(place.name for place in Path().glob("new.json*")) == ["new.json"]
+    # What is over is recorded anew, since levels may play otherwise.
+    list(write_recorded(suite, path, 1, again := Played()))
+    assert again.counts == {"room:v0": 50, "hopeless": 50}
+
+
+def test_what_was_kept_of_a_baseline_by_other_code_is_played_again(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    suite, path = read_suite(Path("game.toml")), Path("new.json")
+    with closing(write_recorded(suite, path, 1, Played())) as stopped:
+        next(stopped)
+    monkeypatch.setattr("tltl_runtime.regression.baseline_run.sources_hash", lambda: "0" * 64)
+    list(write_recorded(suite, path, 1, played := Played()))
+    assert played.counts == {"room:v0": 50, "hopeless": 50}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import pytest
 
 from tltl_runtime.record_json import to_json
-from tltl_runtime.regression.baseline import baseline_path, read_baseline, reference_of
+from tltl_runtime.regression.baseline import read_baseline, reference_of
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.play import episodes, ready
 from tltl_runtime.regression.run import regress
@@ -27,7 +27,7 @@ def test_it_has_all_levels_in_all_variants() -> None:
 @pytest.mark.parametrize("case", SUITE.cases, ids=lambda case: case.name)
 def test_its_baseline_is_of_the_policy_and_the_spec(case: Case) -> None:
     played = ready(case, SUITE.seed, case.reference).played
-    reference = reference_of(read_baseline(baseline_path(SHIPPED)), played, SHIPPED)
+    reference = reference_of(read_baseline(SUITE.baseline), played, SUITE)
     assert reference.played.level_hash == played.level_hash, "record it again"
     assert len(reference.accounts) == case.episodes
     passed = sum(each.success for each in reference.accounts)
@@ -38,7 +38,7 @@ def test_an_episode_of_the_baseline_is_played_again() -> None:
     case = replace(SUITE.cases[0], episodes=1)
     made = ready(case, SUITE.seed)
     (again,) = episodes(made, 1)
-    reference = reference_of(read_baseline(baseline_path(SHIPPED)), made.played, SHIPPED)
+    reference = reference_of(read_baseline(SUITE.baseline), made.played, SUITE)
     if reference.played.versions != made.played.versions:
         pytest.skip("the baseline was recorded with other versions")
     assert to_json(again.account) == to_json(reference.accounts[0])
@@ -47,7 +47,7 @@ def test_an_episode_of_the_baseline_is_played_again() -> None:
 @pytest.fixture(name="judged", scope="module")
 def _judged(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, CaseReport]:
     """The reports on all cases, by name: all are played, by as many processes as there are cores."""
-    references = read_baseline(baseline_path(SHIPPED))
+    references = read_baseline(SUITE.baseline)
     running = regress(SUITE, SUITE.cases, references, tmp_path_factory.mktemp("judged"), 0, lambda *_: None)
     return {done.report.name: done.report for done in running}
 
