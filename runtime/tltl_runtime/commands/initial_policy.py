@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from tltl_runtime.commands.policy_path import check_known, policy_place
+from tltl_runtime.commands.policy_path import check_known, policy_file, policy_place
 from tltl_runtime.commands.senses import option_of
 from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import read_policy
@@ -30,12 +30,10 @@ _COMMAND = "tltlc train --from"
 
 @record
 class Beginning:
-    """A policy to begin with, its file, and the level and variant that it was named for, by default its own."""
+    """A policy to begin with, and its file."""
 
     policy: Policy
     path: Path
-    level: str
-    variant: str
 
     @property
     def card(self) -> Card:
@@ -48,17 +46,19 @@ class Beginning:
         return initial_of(self.path, self.policy)
 
 
-def beginning(named: Path, level: str | None) -> Beginning:
-    """The policy that ``--from`` names as `tltlc evaluate` names one, and where it is to be trained.
+def beginning(named: Path) -> Beginning:
+    """The policy that ``--from`` names as `tltlc evaluate` names one; raises TltlError for one that is none."""
+    path = policy_file(named)
+    return Beginning(read_policy(path), path)
 
-    ``level`` is what ``--level`` says.  Raises TltlError for a policy that is none, or whose level is not known.
-    """
-    path, name, variant = policy_place(named, level, _COMMAND)
-    policy = read_policy(path)
+
+def own_place(named: Path, begun: Beginning) -> tuple[str, str]:
+    """The level and the variant that a policy was trained on; raises TltlError where they are not known."""
+    path, name, variant = policy_place(named, None, _COMMAND)
     if name is None:
-        check_known(policy.card.level, path, _COMMAND)
-        name, variant = policy.card.level, policy.card.variant
-    return Beginning(policy, path, name, variant or "v0")
+        check_known(begun.card.level, path, _COMMAND)
+        name, variant = begun.card.level, begun.card.variant
+    return name, variant or "v0"
 
 
 def own_parameters(begun: Beginning, offered: Mapping[str, float]) -> dict[str, float]:
@@ -77,7 +77,8 @@ def as_its_policy(settings: Settings, begun: Beginning, config: Path | None) -> 
         message = "--from is for the method `automaton`: an agent that imitates begins with what it is shown"
         raise click.UsageError(message, click.get_current_context())
     network = begun.card.network
-    if settings.network != network and config is not None and "network" in read_values(read_source(config)):
+    asked = {} if config is None else read_values(read_source(config)).get("network", {})
+    if replace(network, **asked) != network:
         title = f"`{begun.path}` has another network than `[network]` in `{config}` asks for"
         raise TltlError([Diagnostic("TLT0941", title, help=f"leave `[network]` out of `{config}`, or --from")])
     return replace(settings, network=network)
@@ -100,18 +101,16 @@ def check_beginning(begun: Beginning, level: Level, fspa: Fspa, asked: Mapping[s
 def is_another(run: Run, named: Path) -> str | None:
     """In what a training differs from one that ``--from`` such a policy would be, a sentence; None where in nothing."""
     where = f"the training in `{run.folder}` begins with"
-    path, *_ = policy_place(named, None, _COMMAND)
     if run.initial is None:
         return f"{where} weights that are drawn, not with the policy `{named}`"
-    same = weights_hash(read_policy(path)) == run.initial.weights
+    same = weights_hash(read_policy(policy_file(named))) == run.initial.weights
     return None if same else f"{where} another policy than `{named}`"
 
 
 def moved(run: Run, named: Path) -> Run:
     """The training with its policy where it is now."""
     assert run.initial is not None
-    path, *_ = policy_place(named, None, _COMMAND)
-    return replace(run, initial=replace(run.initial, path=str(path)))
+    return replace(run, initial=replace(run.initial, path=str(policy_file(named))))
 
 
 def _other_senses(begun: Beginning, level: Level, asked: Mapping[str, Any]) -> Iterator[str]:

@@ -27,7 +27,7 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
     name, variant = (None, None) if level is None else level_place(level)
     if policy is not None and names_level(str(policy)):
         named, its = level_place(str(policy))
-        return _shipped(named), name or named, variant if name else its
+        return policy_file(policy), name or named, variant if name else its
     if policy is None:
         assert name is not None
         return _shipped(name), name, variant
@@ -37,6 +37,11 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
         name, variant = read_place(policy)
         check_there(name, variant, f"{command} {quote(str(policy))}")
     return path, name, variant
+
+
+def policy_file(policy: Path) -> Path:
+    """The file of a policy as :func:`policy_place` takes one, wherever its level is; errors as there, of the policy."""
+    return _shipped(level_place(str(policy))[0]) if names_level(str(policy)) else policy_path(policy)
 
 
 def check_known(level: str, policy: Path, command: str) -> None:

@@ -70,7 +70,11 @@ def _train(asked: Retraining, name: str, run: Run) -> None:
     if kept and ended_as(run):
         return
     how = "goes on" if kept else "begins with its policy"
-    why = "" if kept or not there or asked.fresh else ", anew, since the level, the policy or tltlc has changed"
+    why = (
+        ""
+        if kept or not there or asked.fresh
+        else ", anew, since what is kept is of another level, policy, spec or seed, or cannot be read"
+    )
     limit = said_minutes(asked.minutes)
     click.echo(f"{plain(name)}: a training {how}{why}, for {limit} at the most, in {run.folder}", err=True)
     if there and not kept:

@@ -31,7 +31,7 @@ def stopped_line(run: Run, again: str) -> str | None:
     """What is told of a training that Ctrl-C has stopped; None where it had not begun."""
     if not (run.folder / RUN).exists():
         return None
-    before = "before the first iteration" if run.settings.imitates else "in the search, which then begins anew"
+    before = "in the search, which then begins anew" if run.settings.searches else "before the first iteration"
     return f"stopped{'' if (run.folder / CHECKPOINT).exists() else f' {before}'}; to go on: {again}"
 
 

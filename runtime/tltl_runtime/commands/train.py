@@ -57,7 +57,10 @@ Watching, from another terminal:
 @click.option(
     "--level", metavar="LEVEL[:VARIANT]", help="Where; by default the level that the spec names.  VARIANT: v0."
 )
-@output_folder("The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED).")
+@output_folder(
+    "The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED, by imitation "
+    "with -imitation behind it, with --from -tuned)."
+)
 @click.option("--seed", metavar="N", type=click.IntRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
 @click.option(
     "--resume",
@@ -188,7 +191,7 @@ def _begins(run: Run, *, resume: bool) -> Iterator[str]:
     place = f"{Path(run.level).stem} {run.variant}"
     how = f" by {run.settings.method}" if run.settings.imitates else ""
     yield f"training {run.fspa.name} on {place}{how}, seed {run.seed}, in {run.folder}"
-    if run.initial:
+    if run.initial and not (run.folder / CHECKPOINT).exists():
         alone = f"; its critic is new, and learns alone in the first {run.settings.ppo.warm_up} iterations"
         yield f"it begins with the weights of {run.initial.path}{alone if run.settings.ppo.warm_up else ''}"
     files = [name for name in (METRICS, RECORD, POLICY) if (run.folder / name).exists()]

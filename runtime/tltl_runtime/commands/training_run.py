@@ -17,6 +17,7 @@ from tltl_runtime.commands.initial_policy import (
     is_another,
     moved,
     own_parameters,
+    own_place,
 )
 from tltl_runtime.commands.level_argument import check_there, names_level, own_level
 from tltl_runtime.commands.senses import option_of
@@ -155,7 +156,7 @@ def check_limits(run: Run) -> None:
 
 def _begun(asked: Asked) -> Beginning | None:
     """The policy to begin with, None where there is none."""
-    return None if asked.policy is None else beginning(asked.policy, asked.level)
+    return None if asked.policy is None else beginning(asked.policy)
 
 
 def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
@@ -165,8 +166,8 @@ def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
         return path, variant or "v0"
     if asked.spec is not None:
         return own_level(asked.spec), "v0"
-    if begun is not None:
-        return begun.level, begun.variant
+    if begun is not None and asked.policy is not None:
+        return own_place(asked.policy, begun)
     raise _usage("say what to train for: a spec, a level, or both")
 
 

@@ -10,14 +10,23 @@ import numpy as np
 from torch import Tensor
 
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint
+from tltl_runtime.training.checkpoint import Checkpoint, level_changed, read_checkpoint
 from tltl_runtime.training.demonstrated import Demonstrated, read_demonstrations, record_expert
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import Peers, cores
 from tltl_runtime.training.environment import TrainingEnv
 from tltl_runtime.training.initial import read_initial
 from tltl_runtime.training.restarts import Restarts
-from tltl_runtime.training.run import CHECKPOINT, RUN, Run, demonstrations_of, identity, read_run, write_run
+from tltl_runtime.training.run import (
+    CHECKPOINT,
+    RUN,
+    Run,
+    demonstrations_of,
+    identity,
+    read_level_hash,
+    read_run,
+    write_run,
+)
 from tltl_runtime.training.search import Search, Searched
 from tltl_runtime.training.self_imitation import Lessons
 from tltl_runtime.training.starts import Replayed
@@ -34,11 +43,13 @@ def begun(run: Run, resume: bool) -> Checkpoint | None:
     """The checkpoint to go on from, None where the training begins; what is trained is written into its folder.
 
     Raises:
-        TltlError: TLT0864, the checkpoint cannot be resumed from; TLT0867, the folder holds a training and ``resume``
-            is false; TLT0005, the folder cannot be written to.
+        TltlError: TLT0864, the checkpoint cannot be resumed from; TLT0868, the level is another one now; TLT0867, the
+            folder holds a training and ``resume`` is false; TLT0005, the folder cannot be written to.
     """
     if resume:
         checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
+        if checkpoint is None and read_level_hash(run.folder) != identity(run)["level"]:
+            raise level_changed(run.folder)
         if read_run(run.folder) != run:
             # Its limits, or the place of its level's file, are others now, and hold when it is resumed the next time.
             write_run(run)
@@ -61,7 +72,7 @@ def environments(run: Run) -> WorkerVectorEnv:
         "ray" if rollout.pool == "ray" else rollout.workers or cores(),
         spec=run.fspa,
         sensors=run.sensors,
-        reward=settings.reward.options,
+        reward=settings.rewards,
         params=run.params,
         wrapper=Replayed if settings.searches else None,
         info={**TLTL_INFO, "cell": np.int64},
@@ -201,6 +212,6 @@ def _env_of(run: Run) -> Callable[[], TltlEnv]:
         run.variant,
         run.fspa,
         sensors=run.sensors,
-        reward=run.settings.reward.options,
+        reward=run.settings.rewards,
         params=run.params,
     )

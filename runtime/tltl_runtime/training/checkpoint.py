@@ -20,7 +20,7 @@ from tltlc.record import record
 from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-checkpoint"
-VERSION: Final = 4
+VERSION: Final = 5
 
 
 @record
@@ -39,9 +39,9 @@ class Checkpoint:
     ``run`` is :func:`~tltl_runtime.training.run.identity` of what is trained, ``searched`` what the search before it
     found, ``replayed`` the decisions that were played again.  ``algorithm`` is what rsl-rl's algorithm saves;
     ``processes`` holds what each process has for itself: the states of torch's generators of random numbers by device,
-    and that of its :class:`~tltl_runtime.training.restarts.Restarts`; ``window`` and
-    ``unbroken`` are those of :class:`~tltl_runtime.training.windows.Windows`, and ``met`` says whether the best policy
-    has met the spec in them and in fresh episodes.
+    and that of its :class:`~tltl_runtime.training.restarts.Restarts`; ``window`` and ``unbroken`` are those of
+    :class:`~tltl_runtime.training.windows.Windows`, ``standstill`` what its ``Standstill`` is made of, and ``met`` says
+    whether the best policy has met the spec in them and in fresh episodes.
     """
 
     run: Mapping[str, str]
@@ -57,6 +57,7 @@ class Checkpoint:
     unbroken: int
     best: Best | None
     met: bool
+    standstill: tuple[float, int]
 
 
 _RECORDS: Final[Mapping[str, Any]] = {"best": Best, "searched": Searched}

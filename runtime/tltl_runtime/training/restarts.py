@@ -8,7 +8,7 @@ CoRL 2017; Salimans and Chen, Learning Montezuma's Revenge from a single demonst
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -133,10 +133,8 @@ class Restarts:
         """All but the generator, as arrays, for :meth:`load`."""
         ways = [way for known in self.ways.values() for way in known]
         return {
-            "way_seeds": np.array([way.seed for way in ways], dtype=np.int64),
-            "way_ends": np.array([way.end for way in ways], dtype=np.int64),
-            "way_lengths": np.array([len(way.actions) for way in ways], dtype=np.int64),
-            "way_actions": np.array([action for way in ways for action in way.actions], dtype=np.int8),
+            **_arrays("way", [(way.seed, way.actions, way.end) for way in ways]),
+            **_arrays("failure", [(each.seed, each.actions, each.state) for each in self.failures]),
             "rates": np.array(list(self.rates.values())),
             "passed": np.array([self.passed]),
             "lengths": self.lengths.copy(),
@@ -145,11 +143,11 @@ class Restarts:
     def load(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Take up what :meth:`state` gave."""
         self.ways, self.rates = {}, {}
-        if len(state["way_seeds"]):
-            actions = np.split(state["way_actions"], np.cumsum(state["way_lengths"])[:-1])
-            for seed, end, own in zip(state["way_seeds"], state["way_ends"], actions, strict=True):
-                self.add(Way(int(seed), own.tolist(), int(end)))
-            self.rates = dict(zip(self.rates, state["rates"].copy(), strict=True))
+        for way in _lists("way", state):
+            self.add(Way(*way))
+        self.rates = dict(zip(self.rates, state["rates"].copy(), strict=True))
+        self.failures.clear()
+        self.failures.extend(Failure(*each) for each in _lists("failure", state))
         self.passed = float(state["passed"][0])
         self.lengths = state["lengths"].copy()
 
@@ -161,6 +159,24 @@ class Restarts:
         # From the level's start itself there may have been few episodes.
         passed = max(self.passed, float(np.mean([rates[0] for rates in self.rates.values()])))
         return float(least + (most - least) * passed)
+
+
+def _arrays(name: str, played: Sequence[tuple[int, Actions, int]]) -> dict[str, NDArray[Any]]:
+    """Seeds, actions and ends of what was played, as arrays."""
+    return {
+        f"{name}_seeds": np.array([seed for seed, _, _ in played], dtype=np.int64),
+        f"{name}_ends": np.array([end for _, _, end in played], dtype=np.int64),
+        f"{name}_lengths": np.array([len(actions) for _, actions, _ in played], dtype=np.int64),
+        f"{name}_actions": np.array([each for _, actions, _ in played for each in actions], dtype=np.int8),
+    }
+
+
+def _lists(name: str, arrays: Mapping[str, NDArray[Any]]) -> Iterator[tuple[int, Actions, int]]:
+    """What :func:`_arrays` was given."""
+    seeds, ends, lengths = (arrays[f"{name}_{what}"].tolist() for what in ("seeds", "ends", "lengths"))
+    actions = np.split(arrays[f"{name}_actions"], np.cumsum(lengths)[:-1]) if lengths else []
+    for seed, own, end in zip(seeds, actions, ends, strict=True):
+        yield seed, own.tolist(), end
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -152,6 +152,11 @@ class Settings:
         return self.method == "imitation"
 
     @property
+    def rewards(self) -> RewardOptions:
+        """How the environments reward; by imitation as they do where nothing is said."""
+        return RewardOptions() if self.imitates else self.reward.options
+
+    @property
     def searches(self) -> bool:
         """Whether ways are searched before the training, and episodes begin on them."""
         return self.exploration.ways > 0 and not self.imitates

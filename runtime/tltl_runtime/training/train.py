@@ -139,6 +139,7 @@ class _Training:
             unbroken=0,
             best=None,
             met=False,
+            standstill=Standstill().state(),
         )
         if searched:
             seconds = own.broadcast(self._state.seconds + searched.seconds)
@@ -151,7 +152,7 @@ class _Training:
         self._replayed_before = self._state.replayed
         self._saved: Checkpoint | None = begun
         self._saved_at = self._began
-        self._standstill = Standstill(self._state.steps)
+        self._standstill, self._stands_still = Standstill(*self._state.standstill), False
         self._written: Best | None = None
         """The best policy of which there is a file."""
         self._tell_time()
@@ -170,7 +171,7 @@ class _Training:
                 yield (report := self._after(iteration, metrics))
                 if report.stop:
                     return
-                if self._standstill.add(self._windows.window, self._state.steps):
+                if self._stands_still:
                     self._search_again()
         finally:
             try:
@@ -199,6 +200,9 @@ class _Training:
         iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
         self._windows.add(finished)
         self._weigh()
+        steps = self._state.steps + iteration.steps
+        standstill = self._standstill.state()
+        self._stands_still = self._standstill.add(self._windows.window, steps)
         best = self._best() if finished else self._state.best
         confirmation = self._confirmation(best, iteration.number) if best and self._windows.met else None
         if confirmation and not confirmation.passed:
@@ -209,9 +213,8 @@ class _Training:
                 self._state,
                 iteration=iteration.number,
                 losses=iteration.losses,
-                steps=self._state.steps + iteration.steps,
-                # What all decide upon must be the same for all: the first process has the clock.
-                seconds=self._own.broadcast(self._seconds_before + time.perf_counter() - self._began),
+                steps=steps,
+                seconds=self._seconds(),
                 replayed=self._replayed_before + sum(replayed for *_, replayed in told),
                 processes=tuple(theirs for _, theirs, _ in told),
                 algorithm=copied(self._runner.alg.save()),
@@ -219,6 +222,8 @@ class _Training:
                 unbroken=self._windows.unbroken,
                 best=best,
                 met=confirmation is not None and confirmation.passed,
+                # Where it stands still the search is yet to come, of whoever resumes it, too.
+                standstill=standstill if self._stands_still else self._standstill.state(),
             ),
         )
         self._tell_time()
@@ -243,10 +248,23 @@ class _Training:
             self._run, self._own, self._runner.env, state.iteration, state.seconds, self._searching
         )
         processes = tuple(self._own.gather(_own(self._runner)))
+        seconds = self._seconds()
         if state.searched and searched:
             # Whether it was broken off is asked of the search before the training alone.
             searched = replace(together(state.searched, searched), complete=state.searched.complete)
-            self._state = replace(state, searched=searched, processes=processes)
+            self._state = replace(
+                state,
+                searched=searched,
+                processes=processes,
+                seconds=seconds,
+                standstill=self._standstill.state(),
+            )
+            # Whoever is killed soon need not search again.
+            self._save()
+
+    def _seconds(self) -> float:
+        """How long the training has gone on: what all decide upon must be the same for all, so one has the clock."""
+        return self._own.broadcast(self._seconds_before + time.perf_counter() - self._began)
 
     def _weigh(self) -> None:
         """Weigh the entropy bonus the less, the more often the spec is met, and failures the more: then there is less

@@ -93,10 +93,13 @@ class Windows:
 
 
 class Standstill:
-    """Whether a training has come to a standstill: it succeeds now and then, and its pass rate rises no more."""
+    """Whether a training has come to a standstill: it succeeds now and then, and its pass rate rises no more.
 
-    def __init__(self, steps: int = 0) -> None:
-        self._best, self._since = 0.0, steps
+    ``best`` is the greatest pass rate so far, in [0, 1], and ``since`` the steps after which it was one.
+    """
+
+    def __init__(self, best: float = 0.0, since: int = 0) -> None:
+        self._best, self._since = best, since
 
     def add(self, window: Window, steps: int) -> bool:
         """Take the window after so many ``steps`` of all environments; True where it is one, and then counts anew."""
@@ -107,3 +110,7 @@ class Standstill:
             return False
         self._since = steps
         return True
+
+    def state(self) -> tuple[float, int]:
+        """What :class:`Standstill` is made of to go on from here."""
+        return self._best, self._since

@@ -14,6 +14,7 @@ from tests.runtime.commands.test_train import SMALL, SOON
 from tests.runtime.evaluation.untrained import untrained
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.shipped import shipped_policy
+from tltl_runtime.stealth.levels.file import level_path
 from tltl_runtime.training.initial import weights_hash
 
 TltlcFunction = Callable[..., Outcome]
@@ -116,3 +117,38 @@ def test_going_on_it_may_lie_elsewhere_and_be_no_other(tltlc: TltlcFunction, her
     assert plain.status == 1
     asked = tltlc("train", "--resume", "plain", "--from", "moved.safetensors", "--steps", "128")
     assert "begins with weights that are drawn, not with the policy `moved.safetensors`" in asked.err
+
+
+def test_its_level_need_not_be_there_where_another_is_named(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    """The level of a spec, too; and who goes on needs the file of the policy alone."""
+    shutil.copy(level_path("cover_and_hide"), "plan.toml")
+    shutil.copytree(level_path("cover_and_hide").parent / "assets", "assets")
+    Path("own.tltl").write_text(SOON.replace("level cover_and_hide", "level plan"))
+    spec = ("own.tltl", "--config", "small.toml")
+    assert tltlc("train", *spec, "--out", "first").status == 0
+    alone = ("--from", "first/policy.safetensors")
+    begun = tltlc("train", *spec, *alone, "--out", "second")
+    assert begun.status == 0, begun.err
+    assert "error[TLT0800]: there is no level `plan`" in tltlc("train", *alone).err
+    Path("small.toml").write_text(Path("small.toml").read_text().replace("episodes = 2", "episodes = 100_000"))
+    assert tltlc("train", *spec, "--from", "first", "--out", "third", "--steps", "64").status == 1
+    Path("third/checkpoint.pt").unlink()
+    for old, new in (("plan.toml", "moved.toml"), ("first", "elsewhere")):
+        shutil.move(old, new)
+    on = tltlc("train", "--resume", "third", "--level", "moved.toml", "--from", "elsewhere", "--steps", "128")
+    assert "error" not in on.err and "128 steps" in on.out, on.err
+
+
+def test_settings_that_agree_with_its_network_are_no_others(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    own = read_policy("old.safetensors").card.network
+    assert own.hidden != (512, 512)
+    Path("same.toml").write_text(f'[network]\nactivation = "{own.activation}"\n')
+    found = tltlc("train", "--from", "old.safetensors", "--config", "same.toml", "--print-config")
+    assert found.status == 0, found.err
+    assert f"hidden = {list(own.hidden)}" in found.out
+
+
+def test_once_it_has_begun_the_beginning_is_not_told_again(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
+    Path("small.toml").write_text(Path("small.toml").read_text().replace("episodes = 2", "episodes = 100_000"))
+    assert "it begins with the weights of" in tltlc(*BEGUN, "--out", "it", "--steps", "64").err
+    assert "it begins with the weights of" not in tltlc("train", "--resume", "it", "--steps", "128").err

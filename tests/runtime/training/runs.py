@@ -96,11 +96,15 @@ class Failing(Runner):
 
 
 class Weighing(Runner):
-    """A runner that tells the weights of the entropy bonus and of the terminal penalty's rise among the losses."""
+    """A runner that tells the weights of the entropy bonus and of the terminal penalty's rise, and this rise at the
+    first step, among the losses.
+    """
 
     def iterations(self) -> Iterator[Iteration]:
         for iteration in super().iterations():
-            yield replace(iteration, losses={"weight": self.alg.entropy_coef, "severity": self.env.severity})
+            dearer = self.env._dearer
+            losses = {"weight": self.alg.entropy_coef, "severity": self.env.severity}
+            yield replace(iteration, losses=losses | {"dearer": dearer(0) if dearer else 0.0})
 
 
 def _say(**values: Any) -> None:

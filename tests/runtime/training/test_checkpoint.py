@@ -31,6 +31,7 @@ def _checkpoint() -> Checkpoint:
         unbroken=0,
         best=Best((0.5, 1.0, -2.0), {}, 64),
         met=False,
+        standstill=(0.5, 128),
     )
 
 

@@ -149,7 +149,8 @@ def test_workers_do_not_count(folder: Path, imitated: tuple[Run, list[Report]], 
 def test_the_rewards_of_the_automaton_do_not_count(
     folder: Path, imitated: tuple[Run, list[Report]], mine: Path
 ) -> None:
-    other = imitating(folder / "edge", mine, reward__mode="edge", exploration__ways=3)
+    changes = {"reward__mode": "edge", "reward__termination": "paper", "exploration__ways": 3}
+    other = imitating(folder / "edge", mine, **changes)
     assert numbers(list(train(other))) == numbers(imitated[1])
     assert equal(checkpoint_of(other).algorithm, checkpoint_of(imitated[0]).algorithm)
 

@@ -183,6 +183,11 @@ def test_a_policy_is_not_confirmed_on_a_level_that_has_changed(tmp_path: Path, m
     with pytest.raises(TltlError) as caught:
         next(train(run, resume=True))
     compare("TLT0868_resumed", caught.value)
+    # Nor does what has no checkpoint yet go on on another level.
+    (run.folder / CHECKPOINT).unlink()
+    with pytest.raises(TltlError) as caught:
+        next(train(run, resume=True))
+    compare("TLT0868_resumed", caught.value)
     Path("plan.toml").write_text(shipped)
     assert list(train(run, resume=True))[-1].stop == "met"
 
@@ -328,6 +333,27 @@ def test_a_training_at_a_standstill_searches_again_for_what_fails(
     assert checkpoint_of(run).searched == last
 
 
+def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tltl_runtime.training.windows._BETWEEN", (0.0, 2.0))
+    monkeypatch.setattr("tltl_runtime.training.windows._STANDSTILL_STEPS", 256)
+    changes = {"exploration__ways": 4, "exploration__steps": 2000, "checkpoint_s": 10**6}
+    run, told = run_in(folder / "kept", CHANCE, **changes, stop__steps=10**5), list[Searched]()
+    reports = train(run, searching=told.append)
+    before = [next(reports) for _ in range(4)][-1]
+    first = len(told)
+    next(reports)
+    # It is killed then.
+    monkeypatch.setattr("tltl_runtime.training.train._Training._save", lambda _: None)
+    reports.close()
+    kept = checkpoint_of(run)
+    assert before.searched is not None and kept.searched is not None
+    assert len(told) > first and kept.searched.steps == before.searched.steps + told[-1].steps
+    assert kept.seconds >= before.seconds + told[-1].seconds
+    assert (kept.iteration, kept.standstill[1]) == (4, 256)
+
+
 @pytest.mark.parametrize(("schedule", "last"), [("fading", 0.0084), ("fixed", 0.01)])
 def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str, last: float) -> None:
     run = run_in(
@@ -347,6 +373,20 @@ def test_failures_cost_more_as_the_spec_is_met(folder: Path) -> None:
     first, second = train(_judged_by(run, SOON))
     assert (first.window.successes, second.stop) == (8, "met")
     assert (first.iteration.losses["severity"], second.iteration.losses["severity"]) == (0.0, pytest.approx(0.6))
+    rise = dearer(run)
+    assert rise is not None
+    assert first.iteration.losses["dearer"] == rise(0) > 0
+
+
+def test_a_training_that_is_resumed_weighs_as_it_did(folder: Path) -> None:
+    changes = {"stop__windows": 1, "stop__episodes": 10, "classes__runner": "tests.runtime.training.runs:Weighing"}
+    run = _judged_by(run_in(folder / "weighed", **changes), SOON)
+    reports = train(run)
+    assert next(reports).window.successes == 8
+    reports.close()
+    losses = next(train(run, resume=True)).iteration.losses
+    assert losses["severity"] == pytest.approx(0.6)
+    assert losses["weight"] == pytest.approx(0.002)
 
 
 def test_the_discounted_penalty_rises_to_the_undiscounted_one(folder: Path) -> None:

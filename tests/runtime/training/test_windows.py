@@ -78,6 +78,7 @@ def test_a_standstill_is_a_pass_rate_that_rises_no_more() -> None:
     assert not any(standstill.add(window_of(successes), steps) for steps, successes in rates)
     assert standstill.add(window_of(44), 350_000)
     assert not standstill.add(window_of(44), 449_999), "it counts anew"
+    assert Standstill(*standstill.state()).add(window_of(30), 450_000), "one that is resumed, too"
     assert standstill.add(window_of(30), 450_000)
     assert not standstill.add(window_of(50), 549_999), "it has risen"
     assert not standstill.add(window_of(80), 600_000)
