@@ -126,7 +126,7 @@ def command(
     """Train an agent until it meets a spec.
 
     SPEC is the spec by which it is judged and rewarded; where it is left out, that for which --level is made.
-    The training ends when the spec was met in 100 episodes in a row, and by the policy as it then is in 100 fresh ones;
+    The training ends when the spec was met in 100 episodes in a row, and by the policy as it then is in 150 fresh ones;
     or at a limit.  The folder then holds the policy of the agent (policy.safetensors), the record of the training
     (record.json, curve.png) and what was measured (metrics.jsonl, and event files for TensorBoard).  Ctrl-C keeps what
     was learned, for --resume.

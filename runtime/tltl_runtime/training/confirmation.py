@@ -1,7 +1,7 @@
 """The last word on a policy: whether it meets the spec in fresh episodes, too.
 
 The windows that seem to end a training were played by the policies of several iterations, and chance, too, makes
-windows without a failure.
+windows without a failure.  A policy whose pass rate is 0.98 meets it in 150 in a row once in twenty times.
 """
 
 from __future__ import annotations
@@ -18,15 +18,13 @@ from tltl_runtime.training.run import Run
 
 
 def confirm(run: Run, policy: Policy, stream: np.random.SeedSequence) -> Confirmation:
-    """Have a policy play as many fresh episodes as the windows have, up to the first one that fails.
+    """Have a policy play fresh episodes, as many as the settings say, up to the first one that fails.
 
     Raises:
         TltlError: TLT0868, the level is another now than the one that was trained on.
     """
     _check_level(run, policy)
-    seed, stop = int(stream.generate_state(1)[0]), run.settings.stop
-    count = stop.windows * stop.episodes
-    met = 0
+    seed, count, met = int(stream.generate_state(1)[0]), run.settings.stop.confirmation, 0
     for played in evaluate(policy, run.level, run.variant, episodes=count, seed=seed):
         if not played.success:
             break

@@ -106,12 +106,13 @@ class Reward:
 @record
 class Stop:
     """Training ends when the spec was met throughout ``windows`` successive windows of ``episodes`` each, and then by
-    the policy in as many fresh episodes as these are; or after ``steps`` decisions of all environments, or after
-    ``minutes`` of training (0: no such limit).
+    the policy in as many fresh episodes as ``confirmation`` says; or after ``steps`` decisions of all environments, or
+    after ``minutes`` of training (0: no such limit).
     """
 
     windows: int
     episodes: int
+    confirmation: int
     steps: int
     minutes: float
 

@@ -162,6 +162,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     "stop": {
         "windows": Whole(1, 1_000),
         "episodes": Whole(1, 100_000),
+        "confirmation": Whole(1, 100_000),
         "steps": Whole(1, 10**15),
         "minutes": Number(0.0, 1_000_000.0),
     },

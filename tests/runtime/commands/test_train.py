@@ -46,6 +46,7 @@ hidden = [8]
 [stop]
 windows = 1
 episodes = 2
+confirmation = 2
 steps = 128
 """
 

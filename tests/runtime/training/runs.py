@@ -31,6 +31,7 @@ SMALL: dict[str, Any] = {
     "network.channels": (4,),
     "exploration.ways": 0,
     "stop.steps": 192,
+    "stop.confirmation": 4,
     "checkpoint_s": 0.0,
 }
 

@@ -77,6 +77,7 @@ penalty_schedule = "fixed"
 [stop]
 windows = 1
 episodes = 2
+confirmation = 3
 steps = 100
 minutes = 0.25
 [classes]
@@ -99,7 +100,7 @@ def test_the_defaults_are_those_of_the_paper() -> None:
     assert settings.network.hidden == (512, 512)
     assert settings.reward.options == RewardOptions(terminal_penalty="discounted", gamma=0.99)
     assert settings.reward.rises
-    assert (settings.stop.windows, settings.stop.episodes) == (2, 50)
+    assert (settings.stop.windows, settings.stop.episodes, settings.stop.confirmation) == (2, 50, 150)
 
 
 def test_the_file_of_defaults_has_every_setting_and_no_other() -> None:

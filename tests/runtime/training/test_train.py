@@ -367,10 +367,9 @@ def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str,
 
 
 def test_failures_cost_more_as_the_spec_is_met(folder: Path) -> None:
-    run = run_in(
-        folder / "rising", stop__windows=1, stop__episodes=10, classes__runner="tests.runtime.training.runs:Weighing"
-    )
-    first, second = train(_judged_by(run, SOON))
+    changes = {"stop__windows": 1, "stop__episodes": 10, "classes__runner": "tests.runtime.training.runs:Weighing"}
+    run = _judged_by(run_in(folder / "rising", **changes), SOON)
+    first, second = train(run)
     assert (first.window.successes, second.stop) == (8, "met")
     assert (first.iteration.losses["severity"], second.iteration.losses["severity"]) == (0.0, pytest.approx(0.6))
     rise = dearer(run)
