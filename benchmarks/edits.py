@@ -179,9 +179,9 @@ def _reference(suite: Suite, case: Case) -> Reference:
 
     path = suite.path.with_name(f"{case.level}.baseline.json")
     kept = read_baseline(path) if path.exists() else ()
-    ((_, made),) = record_baseline(replace(suite, cases=(case,)), 1, lambda *_: None, kept)
-    write_baseline(path, (made,))
-    return made
+    (made,) = record_baseline(replace(suite, cases=(case,)), 1, lambda *_: None, kept)
+    write_baseline(path, (made.reference,))
+    return made.reference
 
 
 def _written(edits: Sequence[Edit], plan: Plan, folder: Path) -> Path:

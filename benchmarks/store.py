@@ -48,19 +48,24 @@ def measure_missing(
     say: Callable[[str], None],
     *,
     done: str = "steps_per_s",
+    like: Record | None = None,
 ) -> None:
-    """Put the record of each name that has no ``done`` in the store yet: not measured, or failed."""
+    """Put the record of each name that has no ``done`` in the store yet, or other values than ``like``: it was not
+    measured, failed, or is of another time.
+    """
     for name in names:
-        if done not in store.section(section).get(name, {}):
+        kept = store.section(section).get(name, {})
+        if done not in kept or any(kept.get(key) != value for key, value in (like or {}).items()):
             record = measured(name)
             store.put(section, name, record)
             say(f"{name}: {json.dumps(record)}")
 
 
-def source_digest(*packages: str) -> str:
-    """Twelve hexadecimal digits that stand for the Python sources of these folders of the project."""
+def source_digest(*places: str) -> str:
+    """Twelve hexadecimal digits that stand for these Python files of the project, and those of these folders."""
     digest = hashlib.sha256()
-    for package in packages:
-        for file in sorted((ROOT / package).rglob("*.py")):
+    for place in places:
+        path = ROOT / place
+        for file in [path] if path.is_file() else sorted(path.rglob("*.py")):
             digest.update(file.relative_to(ROOT).as_posix().encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()[:12]

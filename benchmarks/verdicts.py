@@ -15,7 +15,7 @@ from importlib.util import find_spec
 from math import exp, fsum, lgamma, log, log1p
 from typing import TYPE_CHECKING, Final, Literal
 
-from benchmarks.store import Record, Store, measure_missing
+from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
     import numpy as np
@@ -142,7 +142,12 @@ def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan | Non
         scenario = scenarios[name]
         return measured(scenario, made.trials if scenario.is_rare else made.few, made.sizes)
 
-    measure_missing(store, SECTION, scenarios, record, say, done="slight")
+    measure_missing(store, SECTION, scenarios, record, say, done="suites", like={"rule": rule()})
+
+
+def rule() -> str:
+    """Twelve hexadecimal digits that stand for the rule: figures of another one are measured again."""
+    return source_digest(*(f"runtime/tltl_runtime/regression/{name}.py" for name in ("verdict", "confidence")))
 
 
 def measured(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
@@ -157,6 +162,7 @@ def measured(scenario: Scenario, trials: int, sizes: Sequence[int]) -> Record:
             found[size].append(judged(now, before, ERROR / size))
     return {
         "trials": trials,
+        "rule": rule(),
         "rates": [scenario.before.rate, scenario.now.rate],
         "pairing": scenario.pairing,
         "changed": scenario.now != scenario.before,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from benchmarks import verdicts, verdicts_report
-from benchmarks.store import Store
+from benchmarks.store import ROOT, Store
 from benchmarks.verdicts import ERROR, Plan, Play, Scenario, at_most, drawn, in_suite, judged, measured
 
 np = pytest.importorskip("numpy")
@@ -108,3 +109,32 @@ def test_false_alarms_and_misses_are_goals() -> None:
     earlier = {"changed": False, "rates": [1.0, 1.0], "suites": {"1": good}}
     assert list(verdicts_report.goals({"1 half": earlier})) == [] == list(verdicts_report.goals({}))
     assert verdicts_report.section({"1 half": earlier}) == ""
+
+
+def test_the_documentation_has_the_rates_of_false_alarms_that_were_measured() -> None:
+    """Each row of the table is the worst of what it names."""
+    rows = {
+        "99 % or more": [
+            *(f"{rate} {pairing}" for rate in ("1", "0.99") for pairing in ("identical", "half", "independent")),
+            *("0.98 identical", "0.98 half"),
+        ],
+        "98 %, all": ["0.98 independent"],
+        "97 %, half": ["0.97 half"],
+        "97 %, none": ["0.97 identical"],
+        "97 %, all": ["0.97 independent"],
+        "95 %": ["0.95 identical", "0.95 half", "0.95 independent"],
+    }
+    records = Store().section(verdicts.SECTION)
+    lines = (ROOT / "docs" / "regression.md").read_text(encoding="utf-8").splitlines()
+    for begin, names in rows.items():
+        (line,) = (each for each in lines if each.startswith(f"| {begin}"))
+        for cell, size in zip(line.split("|")[2:4], (9, 30), strict=True):
+            alarms = [1.0 - records[name]["suites"][str(size)]["pass"] for name in names]
+            most = [
+                in_suite(at_most(each, records[name]["trials"]), size) for each, name in zip(alarms, names, strict=True)
+            ]
+            *seen, limit = (float(each) / 100 for each in re.findall(r"[\d.]+", cell))
+            digits = 3 if "." in cell else 2
+            ends = {round(in_suite(each, size), digits) for each in (min(alarms), max(alarms))}
+            assert {round(each, digits) for each in seen} == ends, line
+            assert limit == pytest.approx(round(max(most), digits)), line

@@ -18,8 +18,8 @@ from tltlc.cli import exits
 from tltlc.cli.report import Report
 
 if TYPE_CHECKING:
-    from tltl_runtime.regression.baseline import Reference
-    from tltl_runtime.regression.suite import Case
+    from tltl_runtime.regression.baseline_run import Compared
+    from tltl_runtime.regression.suite import Suite
 
 
 @click.command(
@@ -50,9 +50,9 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
         wrote = path or written_to(read.path)
         try:
             with RegressionDisplay() as display:
-                for case, reference in write_recorded(read, wrote, workers, display):
+                for each in write_recorded(read, wrote, workers, display):
                     display.over()
-                    _tell(case, reference)
+                    _tell(read, each)
         except KeyboardInterrupt:
             click.echo(f"stopped: `{wrote}` is as it was; the same command goes on with what is over", err=True)
             raise
@@ -64,11 +64,15 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
     return report.status
 
 
-def _tell(case: Case, reference: Reference) -> None:
-    """Say what was recorded, and where no case can pass by it."""
+def _tell(suite: Suite, compared: Compared) -> None:
+    """Say what was recorded, and which cases do not pass by it even where nothing has changed."""
+    from tltl_runtime.regression.baseline_run import verdict_as_it_is
+
+    reference = compared.reference
     played, passed, count = reference.played, sum(each.success for each in reference.accounts), len(reference.accounts)
     click.echo(plain(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes"))
-    if passed / count < case.thresholds.pass_rate:
-        wanted = f"less than the pass rate of {case.thresholds.pass_rate:g} that `{case.name}` asks for"
-        advice = "train the policy further, or lower the threshold in the suite"
-        click.echo(plain(f"    {wanted}, so that it cannot pass even as it is: {advice}"), err=True)
+    for case in compared.cases:
+        verdict = verdict_as_it_is(suite, case, reference) if case.variant == case.reference else "pass"
+        if verdict != "pass":
+            advice = "train its policy further, lower its `pass_rate`, or give it more `episodes`"
+            click.echo(plain(f"    `{case.name}` is `{verdict}` even if nothing changes: {advice}"), err=True)

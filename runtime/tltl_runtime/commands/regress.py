@@ -162,6 +162,11 @@ def command(
         check(read, cases, references)
         found: list[Done] = []
         with owned(place):
+            if fresh and retrain:
+                from tltl_runtime.regression.retrain import forget_trainings
+
+                # At once, so that a run that is stopped goes on with fresh ones.
+                forget_trainings(read, cases, place)
             try:
                 _play(read, cases, references, wanted, found)
                 _retrain(read, wanted, found)
@@ -169,18 +174,20 @@ def command(
                 _stopped(wanted, found, len(cases))
                 raise
             finally:
-                if found or not cases:
-                    _tell(_outcome(read, found, cases, left_out, wanted), wanted)
+                _tell(_outcome(read, found, cases, left_out, wanted), wanted)
         return exits.CLEAN if all(done.report.verdict == "pass" for done in found) else exits.FINDINGS
     return report.status
 
 
 def _default_folder(suite: Path | None) -> Path:
-    """For each suite below the current folder one of its own; "regression/game" for `game.toml`."""
+    """The suite's place as seen from here, without its ending: "regression/levels/game" for `levels/game.toml`."""
     if suite is None:
         return Path("regression", "shipped")
-    parts = Path(os.path.relpath(suite.with_suffix(""))).parts
-    return Path("regression", *(part for part in parts if part != os.pardir))
+    try:
+        path = Path(os.path.relpath(suite))
+    except ValueError:  # Windows: on another drive
+        path = Path(suite.name)
+    return Path("regression", *(part for part in path.parent.parts if part != os.pardir), path.stem)
 
 
 def _chosen(suite: Suite, changed: Sequence[str] | None) -> tuple[tuple[Case, ...], tuple[str, ...]]:
@@ -228,7 +235,7 @@ def _retrain(suite: Suite, wanted: _Wanted, found: list[Done]) -> None:
     from tltl_runtime.commands.retrain import Retraining, retrain_cases
 
     again = join([*_again(wanted), "--retrain"])
-    asked = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, wanted.fresh, again)
+    asked = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, again)
     retrain_cases(asked, found, to_stderr=wanted.is_json)
 
 
@@ -284,7 +291,7 @@ def _tell(outcome: Outcome, wanted: _Wanted) -> None:
     from tltl_runtime.commands.regression_text import sum_line
 
     reports = [done.report for done in outcome.cases]
-    click.echo(sum_line(reports), err=wanted.is_json)
+    click.echo(sum_line(reports, outcome.missing), err=wanted.is_json)
     if wanted.is_json:
         click.echo(json_text(outcome), nl=False)
     if wanted.github:

@@ -14,7 +14,7 @@ from tltl_runtime.regression.run import CASES, Done, case_folder
 from tltl_runtime.regression.suite import Suite
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import read_episode
-from tltl_runtime.stealth.episodes.versions import versions
+from tltl_runtime.training.versions import versions
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import record
 from tltlc.writing import write_file, write_files
@@ -62,7 +62,17 @@ def write_page(outcome: Outcome, folder: Path, html_file: Path | None) -> Path:
     """
     suite = outcome.suite
     cases = tuple(_reported(done, suite, folder) for done in outcome.cases)
-    page = html_report(SuiteReport(suite.path.stem, suite.seed, suite.error, versions(), cases, outcome.complete))
+    contents = SuiteReport(
+        suite=suite.path.stem,
+        seed=suite.seed,
+        error=suite.error,
+        versions=versions(),
+        cases=cases,
+        complete=outcome.complete,
+        missing=outcome.missing,
+        left_out=outcome.left_out,
+    )
+    page = html_report(contents)
     write_files(folder, {PAGE: page}, "name another folder with --out")
     if html_file is None:
         return folder / PAGE

@@ -23,10 +23,10 @@ def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
         yield from (f"    {plain(reason)}" for reason in report.reasons)
 
 
-def sum_line(reports: Sequence[CaseReport]) -> str:
-    """How many cases have which verdict."""
+def sum_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
+    """How many cases have which verdict; ``missing`` were not judged."""
     if not reports:
-        return "no case was to be played"
+        return "no case was judged" if missing else "no case was to be played"
     counts = [(sum(each.verdict == verdict for each in reports), verdict) for verdict in _COLORS]
     return f"{len(reports)} case{'s' * (len(reports) != 1)}: " + ", ".join(
         f"{count} {verdict}" for count, verdict in counts if count

@@ -27,14 +27,13 @@ from tltlc.record import record, replace
 class Retraining:
     """How cases are trained anew: for so many ``minutes`` each at the most, below the ``folder`` of the run.
 
-    ``fresh``: whatever is kept there is left out; ``again`` is the command that goes on after a stop.
+    ``again`` is the command that goes on after a stop, but for its --minutes.
     """
 
     suite: Suite
     folder: Path
     minutes: float
     pool: Pool
-    fresh: bool
     again: str
 
 
@@ -66,20 +65,17 @@ def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> N
 def _train(asked: Retraining, name: str, run: Run) -> None:
     """Train to the end, or go on, unless the training is over already."""
     there = (run.folder / RUN).exists()
-    kept = there and not asked.fresh and is_kept(run)
+    kept = there and is_kept(run)
     if kept and ended_as(run):
         return
     how = "goes on" if kept else "begins with its policy"
-    why = (
-        ""
-        if kept or not there or asked.fresh
-        else ", anew, since what is kept is of another level, policy, spec or seed, or cannot be read"
-    )
+    other = "what is kept is of another level, policy, spec, seed or settings, or cannot be read"
+    why = f", anew, since {other}" if there and not kept else ""
     limit = said_minutes(asked.minutes)
     click.echo(f"{plain(name)}: a training {how}{why}, for {limit} at the most, in {run.folder}", err=True)
     if there and not kept:
         forget_training(run.folder)
-    write_record(run, train_shown(run, resume=kept, again=asked.again))
+    write_record(run, train_shown(run, resume=kept, again=f"{asked.again} --minutes {asked.minutes:g}"))
 
 
 def _played(asked: Retraining, done: Done, run: Run) -> Retrained:
@@ -96,7 +92,8 @@ def _lines(asked: Retraining, name: str, outcome: Retrained) -> Iterator[str]:
     policy = quote(str(asked.folder / outcome.policy))
     if outcome.outcome != "learned":
         if outcome.trained.end == "minutes":
-            yield f"    to train longer: {asked.again} --minutes {2 * asked.minutes:g}"
+            longer = 2 * max(asked.minutes, round(outcome.trained.seconds / 60, 2))
+            yield f"    to train longer: {asked.again} --minutes {longer:g}"
     elif asked.suite.path == SHIPPED:
         yield f"    the new policy: {policy}"
     else:

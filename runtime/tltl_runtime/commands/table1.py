@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from tltl_runtime.regression.table_trainings import Trained
 
 _ELSEWHERE = "name another place with --out"
+_SAVING_S = 20.0
+"""Seconds in which a training that is asked to end has written its checkpoint."""
 
 
 @record
@@ -91,7 +93,9 @@ def _table(wanted: _Wanted) -> str:
             for runs, table in rows.items():
                 shown = {name: figures(cell, runs) for name, cell in found.items()}
                 table[level, model] = Row(shown, hours, cloned)
-    return "\n".join(f"{runs} episodes each:\n\n{markdown(table)}" for runs, table in rows.items())
+    return "\n".join(
+        f"{runs} episodes each of ours, {RUNS} of the paper's:\n\n{markdown(table)}" for runs, table in rows.items()
+    )
 
 
 def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
@@ -127,6 +131,10 @@ def _train(arguments: list[str]) -> None:
         try:
             training.wait()
         except BaseException:
-            training.terminate()
-            training.wait()
+            # It may have heard Ctrl-C itself, and saves what it has learned; a second request would break that off.
+            try:
+                training.wait(_SAVING_S)
+            except subprocess.TimeoutExpired:
+                training.terminate()
+                training.wait()
             raise

@@ -33,7 +33,7 @@ class Played:
 
     ``level`` and ``spec`` are names; the hashes are those of :mod:`tltl_runtime.policies.identity`, and ``policy`` is
     the SHA-256 of its file.  ``files`` are those that the level was made of, with their SHA-256; ``place`` is the
-    case's, empty also in baselines that tell no levels of one name apart.
+    case's.
     """
 
     level: str
@@ -106,7 +106,7 @@ def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Suite
         TltlError: TLT0903, there is none.
     """
     named = [each for each in references if _same(each.played, wanted, ("level", "variant"))]
-    there = [each for each in named if each.played.place in (wanted.place, "")]
+    there = [each for each in named if each.played.place == wanted.place]
     known = [each for each in there if _same(each.played, wanted, ("policy", "spec_hash", "seed"))]
     if known:
         return known[0]

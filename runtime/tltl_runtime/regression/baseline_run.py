@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
-from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Reference, write_baseline
+from tltl_runtime.regression.kept import identity, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, Told, episodes, ready
-from tltl_runtime.regression.suite import Case, Suite
-from tltl_runtime.sources import sources_hash
+from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite
+from tltl_runtime.regression.verdict import Verdict, judge
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
 from tltlc.record import record
@@ -22,32 +21,28 @@ from tltlc.writing import write_file
 _ADVICE: Final = "name another place with --output"
 
 
-def record_baseline(
-    suite: Suite, pool: Pool, told: Told, kept: tuple[Reference, ...] = ()
-) -> Generator[tuple[Case, Reference]]:
+@record
+class Compared:
+    """What was recorded, and the cases that are compared with it."""
+
+    reference: Reference
+    cases: tuple[Case, ...]
+
+
+def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference, ...] = ()) -> Generator[Compared]:
     """Play all episodes of each level, variant, spec and policy that the suite's cases are compared with.
 
-    Each comes as soon as it is over, with the case that asks for most episodes among those that are compared with it.
-    What is ``kept`` of an earlier recording is not played again where nothing has changed since.
+    Of cases that are compared with the same, that counts which asks for most episodes.  What is ``kept`` of an earlier
+    recording is not played again where nothing has changed since.
 
     Raises:
         TltlError: something does not fit, before anything is played; TLT0905, a level was edited since; what playing
             raises.
     """
-    wanted: list[Ready] = []
-    for case in suite.cases:
-        one = ready(case, suite.seed, case.reference)
-        rows = [row for row, other in enumerate(wanted) if other.played == one.played]
-        if not rows:
-            wanted.append(one)
-        elif wanted[rows[0]].case.episodes < case.episodes:
-            wanted[rows[0]] = one
-    for one in wanted:
-        there = [each for each in kept if each.played == one.played and len(each.accounts) == one.case.episodes]
-        yield one.case, there[0] if there else _played(one, pool, told)
+    yield from _recorded(_groups(suite), pool, told, kept)
 
 
-def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generator[tuple[Case, Reference]]:
+def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generator[Compared]:
     """Record the baseline of a suite, as :func:`record_baseline` does, and write it to ``path`` when all is over.
 
     Until then what is over is kept beside it, so that a recording that was stopped goes on.
@@ -55,16 +50,48 @@ def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generato
     Raises:
         TltlError: TLT0005, a file cannot be written; what :func:`record_baseline` raises.
     """
-    partial = path.with_name(f"{path.name}.partial")
-    kept, found = _kept(partial), list[Reference]()
+    groups, partial = _groups(suite), path.with_name(f"{path.name}.partial")
+    kept, found = read_kept(tuple[Reference, ...], partial, identity([])) or (), list[Reference]()
     # The place may refuse: better to know before minutes of play.
     _keep(partial, kept)
-    for case, reference in record_baseline(suite, pool, told, kept):
-        found.append(reference)
-        _keep(partial, (*found, *(each for each in kept if each not in found)))
-        yield case, reference
+    for each in _recorded(groups, pool, told, kept):
+        found.append(each.reference)
+        _keep(partial, (*found, *(other for other in kept if other not in found)))
+        yield each
     write_baseline(path, tuple(found))
     _remove(partial)
+
+
+def verdict_as_it_is(suite: Suite, case: Case, reference: Reference) -> Verdict:
+    """The verdict of a case whose episodes are those of its reference, one by one."""
+    accounts, error = reference.accounts, suite.error / len(suite.cases)
+    for count in range(LEAST_EPISODES, case.episodes + 1):
+        if found := judge(accounts[:count], accounts, case.episodes, case.thresholds, error):
+            return found.verdict
+    raise AssertionError("the last episode settles every verdict")
+
+
+def _groups(suite: Suite) -> list[list[Ready]]:
+    """Cases that are compared with the same, made ready to play that."""
+    groups: list[list[Ready]] = []
+    for case in suite.cases:
+        one = ready(case, suite.seed, case.reference)
+        same = [group for group in groups if group[0].played == one.played]
+        if same:
+            same[0].append(one)
+        else:
+            groups.append([one])
+    return groups
+
+
+def _recorded(
+    groups: Sequence[Sequence[Ready]], pool: Pool, told: Told, kept: tuple[Reference, ...]
+) -> Generator[Compared]:
+    for group in groups:
+        one = max(group, key=lambda each: each.case.episodes)
+        there = [each for each in kept if each.played == one.played and len(each.accounts) == one.case.episodes]
+        reference = there[0] if there else _played(one, pool, told)
+        yield Compared(reference, tuple(each.case for each in group))
 
 
 def _played(one: Ready, pool: Pool, told: Told) -> Reference:
@@ -75,23 +102,8 @@ def _played(one: Ready, pool: Pool, told: Told) -> Reference:
     return Reference(one.played, tuple(accounts))
 
 
-@record
-class _Partial:
-    sources: str
-    references: tuple[Reference, ...]
-
-
 def _keep(path: Path, references: tuple[Reference, ...]) -> None:
-    write_file(path, json.dumps(to_json(_Partial(sources_hash(), references))), _ADVICE)
-
-
-def _kept(path: Path) -> tuple[Reference, ...]:
-    """What the same code has left there; nothing where it cannot be read."""
-    try:
-        found = from_json(_Partial, json.loads(path.read_text(encoding="utf-8")), "partial")
-    except (OSError, ValueError, RecordJsonError, RecursionError):
-        return ()
-    return found.references if found.sources == sources_hash() else ()
+    write_file(path, kept_text(identity([]), references), _ADVICE)
 
 
 def _remove(path: Path) -> None:

@@ -21,7 +21,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Import
-from tltlc.project import project_for
+from tltlc.project import FILE_NAME, project_for
 from tltlc.record import record
 from tltlc.resolve.imports import standard_library
 from tltlc.source import SourceFile
@@ -78,7 +78,7 @@ def _is_meant(name: str, paths: Iterable[Path]) -> bool:
         place == path
         or place in path.parents
         or path.parts[-len(parts) :] == parts
-        or (*path.parts[-len(parts) : -1], path.name.partition(".")[0]) == parts
+        or any((*path.parts[-len(parts) : -1], bare) == parts for bare in (path.stem, path.name.partition(".")[0]))
         for path in paths
     )
 
@@ -143,6 +143,9 @@ def _imports(spec: Path) -> Iterator[Path]:
     text = _text(spec)
     if text is None or spec.suffix != ".tltl":
         return
+    folder = spec.absolute().parent
+    # Where imports are looked for.
+    yield from _first(place / FILE_NAME for place in (folder, *folder.parents))
     try:
         libraries = project_for(str(spec)).libraries
     except TltlError:

@@ -13,7 +13,20 @@ from tltl_runtime.regression.suite import Suite
 FORMAT: Final = "tltl-regression"
 VERSION: Final = 1
 
-_OF_EPISODES: Final = ("index", "seed", "success", "end", "progress", "reward", "steps", "cause", "by", "place")
+_OF_EPISODES: Final = (
+    "index",
+    "seed",
+    "success",
+    "end",
+    "progress",
+    "reward",
+    "steps",
+    "unmet",
+    "nearest",
+    "cause",
+    "by",
+    "place",
+)
 
 
 def document(

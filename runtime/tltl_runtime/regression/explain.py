@@ -90,7 +90,8 @@ def _ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Acc
         # Where one end comes in several stages, the sentences must tell them apart.
         stage = f" before it {undone}" if stages[end] > 1 else ""
         text = f"{_told(level, end, accounts)}{stage} in {_of(len(accounts), now)}; before: in {_of(used, before)}"
-        yield Finding(text + _approach(accounts), tuple(each.index for each in accounts))
+        ended = f"{text}{_approach(accounts)}; {_remained(fspa, accounts)}"
+        yield Finding(ended, tuple(each.index for each in accounts))
 
 
 @record
@@ -139,7 +140,14 @@ def _approach(accounts: Sequence[Account]) -> str:
     if best.target is None:
         return f"; the limit is `{best.atom}`, {best.robustness:+.2f} at best"
     least = min(each.distance for each in near if each.target == best.target and each.distance is not None)
-    return f"; closest approach to `{best.target}`: {least:.1f} m"
+    return f"; closest approach to `{best.target}`: {least:.1f} m (`{best.atom}` is the limit)"
+
+
+def _remained(fspa: Fspa, accounts: Sequence[Account]) -> str:
+    """In which state of the automaton most of the episodes failed, and what remained to be done there."""
+    ((state, count),) = Counter(each.unmet for each in accounts).most_common(1)
+    mostly = "mostly " if count < len(accounts) else ""
+    return f"{mostly}in state {state}, where this remained: {fspa.states[state].label.english}"
 
 
 def _lengths(now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:

@@ -17,10 +17,10 @@ from tltl_runtime.regression.baseline import Played, Reference
 from tltl_runtime.regression.suite import Case
 from tltl_runtime.regression.verdict import Judgement, judge
 from tltl_runtime.stealth.episodes.file import from_bytes as episode_from_bytes
-from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_and_changes
 from tltl_runtime.task import read_spec
+from tltl_runtime.training.versions import versions
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
 from tltlc.record import record

@@ -33,7 +33,8 @@ def reasons(
         how = "lower" if change.now < change.before else "higher"
         yield f"{change.figure} is {how}, {change.now:.2f} on average; before: {change.before:.2f}"
     if judgement.verdict == "review" and not judgement.certain:
-        for figure in beyond(now, before, thresholds):
+        certain = {change.figure for change in judgement.changes}
+        for figure in (each for each in beyond(now, before, thresholds) if each not in certain):
             yield f"{figure} seems to have changed by {getattr(thresholds, figure):g} or more, which is not certain"
 
 

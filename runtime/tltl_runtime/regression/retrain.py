@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Callable, Sequence
 from contextlib import closing
@@ -11,15 +10,16 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.policies.file import read_policy
-from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.record_json import to_json
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.confidence import rate_interval
 from tltl_runtime.regression.figures import figures
+from tltl_runtime.regression.kept import identity as identity_of
+from tltl_runtime.regression.kept import kept_text, read_kept
 from tltl_runtime.regression.play import Ready, episodes, policy_file
 from tltl_runtime.regression.retrained import Best, Retrained, Trained, outcome_of, sentence
 from tltl_runtime.regression.run import Done, case_folder
-from tltl_runtime.regression.suite import LEAST_EPISODES, Suite
-from tltl_runtime.sources import sources_hash
+from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.initial import initial_of, weights_hash
@@ -29,7 +29,7 @@ from tltl_runtime.training.settings import read_settings
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
-from tltlc.record import record, replace
+from tltlc.record import replace
 from tltlc.writing import write_files
 
 FOLDER: Final = "retrained"
@@ -51,14 +51,9 @@ def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: P
     """The training of a case's policy on its level, for so many minutes at the most, below the ``folder`` of a run.
 
     Raises:
-        TltlError: TLT0942, the policy lies where the training goes.
+        TltlError: TLT0942, the policy of a case lies where the training goes.
     """
-    place = case_folder(suite, ready.case.name, folder / FOLDER)
-    path = policy_file(ready.case.policy)
-    if path.resolve().parent == place.resolve():
-        title = f"the policy of the case `{ready.case.name}` lies in `{place}`, where its training goes"
-        help_ = "move it beside the suite, and name that place there as `policy`"
-        raise TltlError([Diagnostic("TLT0942", title, help=help_)])
+    place, path = _place(suite, ready.case, folder), policy_file(ready.case.policy)
     setup, card, settings = ready.setup, ready.setup.policy.card, read_settings()
     rollout = replace(
         settings.rollout, pool="ray" if pool == "ray" else "processes", workers=0 if pool == "ray" else pool
@@ -83,11 +78,35 @@ def is_kept(run: Run) -> bool:
         there = replace(read_run(run.folder), level=run.level, variant=run.variant)
         if {**identity(there), "level": read_level_hash(run.folder)} != identity(run):
             return False
-        read_checkpoint(run.folder / CHECKPOINT, identity(run))
+        checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
     except TltlError:
         # It is damaged, or of another version.
         return False
-    return True
+    # A search that was not over has none yet, and begins anew.
+    over = (run.folder / RECORD).exists()
+    return not over or (checkpoint is not None and (run.folder / POLICY).exists())
+
+
+def forget_trainings(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
+    """Remove the trainings for some cases below the ``folder`` of a run; errors as of :func:`forget_training`, and
+    TLT0942 before anything is removed.
+    """
+    places = [_place(suite, case, folder) for case in cases]
+    for place in places:
+        if place.is_dir():
+            forget_training(place)
+
+
+def _place(suite: Suite, case: Case, folder: Path) -> Path:
+    """Where the training for a case goes; raises TltlError, TLT0942, where the policy of a case lies there."""
+    place = case_folder(suite, case.name, folder / FOLDER)
+    for other in suite.cases:
+        if policy_file(other.policy).resolve().parent == place.resolve():
+            whose = "its training" if other.name == case.name else f"the training for `{case.name}`"
+            title = f"the policy of the case `{other.name}` lies in `{place}`, where {whose} goes"
+            help_ = "move it beside the suite, and name that place there as `policy`"
+            raise TltlError([Diagnostic("TLT0942", title, help=help_)])
+    return place
 
 
 def forget_training(folder: Path) -> None:
@@ -121,7 +140,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
     # Episodes of another seed: those of the suite's were played by the policy that this one comes of.
     setup = replace(done.ready.setup, policy=policy, seed=(suite.seed + 1) % 2**31)
     ready = replace(done.ready, setup=setup)
-    inputs = _identity(ready, weights_hash(policy), trained, error, done.report.accounts)
+    inputs = _inputs(ready, weights_hash(policy), trained, error, done.report.accounts)
     if kept := _kept(run.folder, inputs):
         return kept
     accounts, recording, interval = _played(ready, error, pool, told)
@@ -140,8 +159,8 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
         policy=f"{place}/{POLICY}",
         episode=f"{place}/{EPISODE}" if recording else None,
     )
-    text = json.dumps(to_json(_Document(inputs, found)), ensure_ascii=False) + "\n"
-    write_files(run.folder, {**({EPISODE: recording} if recording else {}), _RESULT: text}, _WRITABLE)
+    files: dict[str, str | bytes] = {EPISODE: recording} if recording else {}
+    write_files(run.folder, {**files, _RESULT: kept_text(inputs, found)}, _WRITABLE)
     return found
 
 
@@ -189,25 +208,14 @@ def _best(accounts: Sequence[Account], fspa: Fspa) -> Best | None:
     return Best(farthest.progress, fspa.states[farthest.unmet].label.english)
 
 
-def _identity(ready: Ready, weights: str, trained: Trained, error: float, own: Sequence[Account]) -> str:
-    """The hash of all that the outcome depends on; ``own`` are the episodes by which the case was judged."""
+def _inputs(ready: Ready, weights: str, trained: Trained, error: float, own: Sequence[Account]) -> str:
+    """The identity of all that the outcome depends on; ``own`` are the episodes by which the case was judged."""
     case = ready.case
     parts = [_VERSION, case.episodes, to_json(case.thresholds), error, to_json(ready.played), weights, to_json(trained)]
-    parts += [sum(each.success for each in own), sources_hash()]
-    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
-
-
-@record
-class _Document:
-    identity: str
-    retrained: Retrained
+    return identity_of([*parts, sum(each.success for each in own)])
 
 
 def _kept(folder: Path, inputs: str) -> Retrained | None:
-    try:
-        found = from_json(_Document, json.loads((folder / _RESULT).read_text(encoding="utf-8")), "retrained")
-    except (OSError, ValueError, RecordJsonError, RecursionError):
-        # It is played again.
-        return None
-    there = found.retrained.episode is None or (folder / EPISODE).is_file()
-    return found.retrained if found.identity == inputs and there else None
+    """What an earlier run has found, if nothing has changed since, nor its episode been removed."""
+    found = read_kept(Retrained, folder / _RESULT, inputs)
+    return found if found and (found.episode is None or (folder / EPISODE).is_file()) else None

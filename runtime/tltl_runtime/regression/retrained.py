@@ -90,7 +90,7 @@ def _clauses(
     else:
         broken = "" if trained.complete else ", which the limit broke off,"
         yield f"no way found: neither a search of {trained.searched:,} steps{broken} nor {took} met the spec once"
-        yield "the changed level is likely infeasible"
+        yield "the level is likely infeasible" if trained.complete else "that says little: let it train longer"
     if best is not None and outcome != "learned":
         which = "the best of the failed ones" if passed else "the best of its episodes"
         yield f"{which} came to progress {number(best.progress, 2)}, where this remained: {best.remained}"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Generator, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -11,13 +9,13 @@ from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.held_folder import held
-from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.record_json import to_json
 from tltl_runtime.regression.baseline import Reference, reference_of
 from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken, report_on_edited
+from tltl_runtime.regression.kept import identity, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, Result, Told, judged, ready
 from tltl_runtime.regression.slugs import slugs
 from tltl_runtime.regression.suite import Case, Suite
-from tltl_runtime.sources import sources_hash
 from tltl_runtime.stealth.episodes.file import SUFFIX
 from tltl_runtime.stealth.world.faults import player_fault
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -130,8 +128,8 @@ def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Po
     Raises TltlError for what is no fault of the case.
     """
     case, error = one.case, suite.error / len(suite.cases)
-    place, identity = case_folder(suite, case.name, folder / CASES), _identity(one, reference, error)
-    kept = _kept(place, identity)
+    place, inputs = case_folder(suite, case.name, folder / CASES), _inputs(one, reference, error)
+    kept = _kept(place, inputs)
     if kept:
         return Done(kept, kept=True, ready=one, reference=reference)
     try:
@@ -147,11 +145,11 @@ def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Po
         if found is None:
             raise
         return Done(report_on_broken(case, found), kept=False)
-    return Done(_write(place, identity, result), kept=False, ready=one, reference=reference)
+    return Done(_write(place, inputs, result), kept=False, ready=one, reference=reference)
 
 
-def _identity(one: Ready, reference: Reference, error: float) -> str:
-    """The hash of all that the report on a case depends on."""
+def _inputs(one: Ready, reference: Reference, error: float) -> str:
+    """The identity of all that the report on a case depends on."""
     case, fspa = one.case, one.setup.fspa
     parts = [
         _VERSION,
@@ -161,34 +159,22 @@ def _identity(one: Ready, reference: Reference, error: float) -> str:
         error,
         to_json(one.played),
         to_json(reference),
-        # What reasons are worded with, and the code that plays, judges and words.
+        # What reasons are worded with.
         [each.name for each in fspa.signals],
         [each.name for each in fspa.atoms],
         [each.label.english for each in fspa.states],
         one.outdated,
-        sources_hash(),
     ]
-    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
+    return identity(parts)
 
 
-@record
-class _Document:
-    identity: str
-    report: CaseReport
+def _kept(place: Path, inputs: str) -> CaseReport | None:
+    """The report that an earlier run has left, if nothing has changed since, nor a recording been removed."""
+    found = read_kept(CaseReport, place / _REPORT, inputs)
+    return found if found and all((place / name).is_file() for _, name in found.recordings) else None
 
 
-def _kept(place: Path, identity: str) -> CaseReport | None:
-    """The report that an earlier run has left, if nothing has changed since."""
-    try:
-        found = from_json(_Document, json.loads((place / _REPORT).read_text(encoding="utf-8")), "report")
-    except (OSError, ValueError, RecordJsonError, RecursionError):
-        # It is played again.
-        return None
-    there = all((place / name).is_file() for _, name in found.report.recordings)
-    return found.report if found.identity == identity and there else None
-
-
-def _write(place: Path, identity: str, result: Result) -> CaseReport:
+def _write(place: Path, inputs: str, result: Result) -> CaseReport:
     """Write the report on a case and the recordings of the episodes that it speaks of."""
     report = report_on(result)
     by_index = {each.account.index: each.recording for each in result.episodes}
@@ -196,6 +182,10 @@ def _write(place: Path, identity: str, result: Result) -> CaseReport:
     spoken_of = [index for finding in report.explanation for index in finding.episodes[:_RECORDINGS]]
     named = {index: f"{index}{SUFFIX}" for index in sorted({*spoken_of, *successes[:1]})}
     report = replace(report, recordings=tuple(named.items()))
-    text = json.dumps(to_json(_Document(identity, report)), ensure_ascii=False) + "\n"
-    write_files(place, {**{name: by_index[index] for index, name in named.items()}, _REPORT: text}, _WRITABLE)
+    recordings = {name: by_index[index] for index, name in named.items()}
+    write_files(place, {**recordings, _REPORT: kept_text(inputs, report)}, _WRITABLE)
+    for path in place.glob(f"*{SUFFIX}"):
+        # Of an earlier run, on another level perhaps.
+        if path.name not in recordings:
+            path.unlink(missing_ok=True)
     return report

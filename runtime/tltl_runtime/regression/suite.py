@@ -70,8 +70,9 @@ class Case:
 class Suite:
     """Cases that are judged together.
 
-    ``seed`` is that of the episodes; ``error`` bounds the probability that any of the verdicts is wrong, in (0, 1);
-    ``baseline`` is the file that they are judged against.
+    ``seed`` is that of the episodes; ``error``, in (0, 1), bounds the probability that any certain fail or review is
+    wrong, or any case passes whose pass rate is below the one that it asks for; ``baseline`` is the file that they are
+    judged against.
     """
 
     path: Path

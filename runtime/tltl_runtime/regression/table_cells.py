@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from hashlib import sha256
@@ -13,15 +12,14 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool, evaluate
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash, spec_hash
-from tltl_runtime.record_json import RecordJsonError, from_json, to_json
+from tltl_runtime.regression.kept import identity, kept_text, read_kept
 from tltl_runtime.regression.paper_table import CellFigures, Model
-from tltl_runtime.sources import sources_hash
 from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.episodes.outcome import outcome
-from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
+from tltl_runtime.training.versions import versions
 from tltlc.record import record
 from tltlc.writing import write_file
 
@@ -39,17 +37,9 @@ class Went:
     reward: float
 
 
-@record
-class Cell:
-    """The episodes of a model on a level in a variant, and the hash of what they depend on."""
-
-    identity: str
-    episodes: tuple[Went, ...]
-
-
-def figures(cell: Cell, runs: int) -> CellFigures:
-    """The figures of a cell over its first ``runs`` episodes."""
-    first = cell.episodes[:runs]
+def figures(episodes: Sequence[Went], runs: int) -> CellFigures:
+    """The figures of a cell over the first ``runs`` of its episodes."""
+    first = episodes[:runs]
     return CellFigures(
         runs=len(first),
         pass_rate=sum(each.success for each in first) / len(first),
@@ -58,40 +48,29 @@ def figures(cell: Cell, runs: int) -> CellFigures:
     )
 
 
-def measured(folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool) -> Cell:
-    """A cell that ``folder`` has, or that is played now and kept there; the expert plays where there is no ``policy``.
+def measured(folder: Path, model: Model, level: str, variant: str, policy: Path | None, pool: Pool) -> tuple[Went, ...]:
+    """The episodes of a cell that ``folder`` has, or that are played now and kept there.
 
-    Whoever plays is judged by the spec that the level is made for now.
+    The expert plays where there is no ``policy``.  Whoever plays is judged by the spec that the level is made for now.
 
     Raises:
         TltlError: what playing raises, TLT0843 for a policy of another spec; TLT0005.
     """
     path = folder / f"{level}-{variant}-{model}.json"
-    identity = _identity(level, variant, policy)
-    if (kept := _kept(path, identity)) is not None:
+    inputs = _inputs(level, variant, policy)
+    if (kept := read_kept(tuple[Went, ...], path, inputs)) is not None:
         return kept
     episodes = tuple(_by_policy(policy, level, variant, pool) if policy else _by_expert(level, variant, pool))
-    cell = Cell(identity, episodes)
-    write_file(path, json.dumps(to_json(cell)) + "\n")
-    return cell
+    write_file(path, kept_text(inputs, episodes))
+    return episodes
 
 
-def _identity(level: str, variant: str, policy: Path | None) -> str:
-    """The hash of all that a cell depends on."""
+def _inputs(level: str, variant: str, policy: Path | None) -> str:
+    """The identity of all that a cell depends on."""
     place = load_level(level, variant)
     spec = load_task(spec_of(place), offered=params(place)).fspa
     played = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
-    parts = [level_hash(place), spec_hash(spec), played, EPISODES, SEED, dict(versions()), sources_hash()]
-    return sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
-
-
-def _kept(path: Path, identity: str) -> Cell | None:
-    try:
-        cell = from_json(Cell, json.loads(path.read_text(encoding="utf-8")), "cell")
-    except (OSError, ValueError, RecordJsonError, RecursionError):
-        # It is played again.
-        return None
-    return cell if cell.identity == identity else None
+    return identity([level_hash(place), spec_hash(spec), played, EPISODES, SEED, versions()])
 
 
 def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[Went]:

@@ -110,7 +110,7 @@ def beyond(now: Sequence[Outcome], before: Sequence[Outcome], thresholds: Thresh
 
 
 def _beyond(differences: Mapping[str, float], thresholds: Thresholds) -> tuple[str, ...]:
-    return tuple(figure for figure, by in differences.items() if by >= getattr(thresholds, figure))
+    return tuple(figure for figure, by in differences.items() if 0 < by >= getattr(thresholds, figure))
 
 
 def _differences(now: Sequence[Outcome], before: Sequence[Outcome]) -> dict[str, float]:

@@ -26,7 +26,6 @@ What the paper leaves open is decided so:
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf
 from typing import Any
 
 import torch
@@ -120,8 +119,7 @@ class Gail(PPO):
         self.discriminator.load_state_dict(loaded_dict["discriminator_state_dict"], strict=strict)
         self._discriminating.load_state_dict(loaded_dict["discriminator_optimizer_state_dict"])
         self.steps, self.cloning_steps = loaded_dict["steps"], loaded_dict["cloning_steps"]
-        # Older checkpoints were cloned by their steps alone.
-        self.cloning_s = loaded_dict.get("cloning_s", inf)
+        self.cloning_s = loaded_dict["cloning_s"]
         return bool(super().load(loaded_dict, load_cfg, strict))
 
     def train_mode(self) -> None:

@@ -146,6 +146,24 @@ def test_the_default_folder_follows_the_place_of_the_suite(
     assert found.err.splitlines()[-1] == "wrote regression/game/game/report.html: open it in a browser"
 
 
+def test_a_run_that_is_stopped_in_its_first_case_reports_that_nothing_is_judged(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tltl_runtime.regression.run._done", stopped)
+    found = tltlc("regress", "game.toml", "--json", "report.json", "--junit", "report.xml", *ONE)
+    assert found.status == 130
+    assert found.out == "no case was judged\n"
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert (said["complete"], said["cases"]) == (False, [])
+    (tests,) = ET.parse("report.xml").getroot()
+    assert (tests.get("tests"), tests.get("errors")) == ("3", "3")
+
+
 def test_only_what_a_change_concerns(tltlc: Run, game: Path) -> None:  # noqa: F811
     found = tltlc("regress", "game.toml", *ONE, "--changed", "soon.safetensors", "README.md", "--json", "report.json")
     assert verdicts(found.out) == ["hopeless fail"]
@@ -193,8 +211,9 @@ def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
         "error[TLT0005]: cannot write into `taken/run`: a part of its path is a file, and no folder\n"
         "  help: see that there is room, and that you may write there, or name another folder with --out\n"
     )
-    found = tltlc("regress", "nowhere.toml")
-    assert found.status == 3 and "TLT0001" in found.err
+    for name in ("nowhere.toml", ".", "", "/"):
+        found = tltlc("regress", name)
+        assert found.status == 3 and "TLT000" in found.err, found.err
     for option in ("--json", "--junit", "--html"):
         found = tltlc("regress", "game.toml", "--fresh", option, "nowhere/report", *ONE)
         assert (found.status, found.out) == (3, ""), "nothing was played"
@@ -219,8 +238,8 @@ def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
     told = found.err.splitlines()
     assert "hopeless: 50 of 50 episodes, 0 met the spec" in told
     assert told[-3:] == [
-        "    less than the pass rate of 0.85 that `hopeless` asks for, so that it cannot pass even as it is: "
-        "train the policy further, or lower the threshold in the suite",
+        "    `hopeless` is `fail` even if nothing changes: "
+        "train its policy further, lower its `pass_rate`, or give it more `episodes`",
         "wrote again.json",
         "to judge by it: tltlc regress game.toml --baseline again.json",
     ]

@@ -45,8 +45,10 @@ def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa
     assert found.status == 1
     (told,) = (line for line in found.out.splitlines() if "trained anew" in line)
     assert told.startswith("hopeless, trained anew: no way found: neither a search of ")
-    again = "tltlc regress game.toml --out regression/game --retrain --minutes 0.04"
-    assert f"    to train longer: {again}" in found.out.splitlines()
+    reports = "--json report.json --junit report.xml --workers 1"
+    again = f"tltlc regress game.toml --out regression/game {reports} --retrain --minutes "
+    (longer,) = (line for line in found.out.splitlines() if line.startswith(f"    to train longer: {again}"))
+    assert float(longer.removeprefix(f"    to train longer: {again}")) >= 0.04
     assert f"hopeless: a training begins with its policy, for 0.02 minutes at the most, in {FOLDER}" in found.err
     assert "hopeless, trained anew: 25 of at most 50 episodes, 0 met the spec" in found.err
     said = json.loads(Path("report.json").read_text(encoding="utf-8"))
@@ -73,7 +75,10 @@ def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa
     write_policy("soon.safetensors", untrained(NEVER, "room.toml", seed=7))
     assert tltlc("baseline", "game.toml", *ONE).status == 0
     third = tltlc(*RETRAIN)
-    assert "begins with its policy, anew, since the level, the policy or tltlc has changed" in third.err
+    assert (
+        "begins with its policy, anew, since what is kept is of another level, policy, spec, seed or settings"
+        in third.err
+    )
 
 
 def test_where_all_pass_nothing_is_trained(tltlc: Run, game: Path) -> None:  # noqa: F811
@@ -108,7 +113,7 @@ def test_asked_to_end_it_keeps_what_there_is(tltlc: Run, game: Path) -> None:  #
     assert training.returncode == 130
     assert (
         "stopped: all cases are judged, and 1 is still to be trained for; to go on: "
-        "tltlc regress game.toml --out regression/game --retrain --minutes 60"
+        "tltlc regress game.toml --out regression/game --json report.json --workers 1 --retrain --minutes 60"
     ) in err.splitlines()
     said = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert (said["complete"], len(said["cases"]), said["cases"][2]["retrained"]) == (False, 3, None)

@@ -54,5 +54,5 @@ def write_game(folder: Path, suite: str = SUITE) -> Path:
 def with_baseline(path: Path) -> Suite:
     """The suite, whose baseline is recorded."""
     suite = read_suite(path)
-    write_baseline(baseline_path(path), tuple(each for _, each in record_baseline(suite, 1, lambda *_: None)))
+    write_baseline(baseline_path(path), tuple(each.reference for each in record_baseline(suite, 1, lambda *_: None)))
     return suite

@@ -165,6 +165,23 @@ def test_what_git_tells_of_a_renamed_asset(suite: Suite) -> None:
     assert concerned(suite, *git("diff", "--no-renames", "--name-only", "HEAD")) == BOTH
 
 
+def test_the_project_file_says_where_imports_are(suite: Suite) -> None:
+    """One that is made nearer to a spec, too."""
+    assert concerned(suite, "game/tltl.toml") == [0, 1, 3]
+    assert concerned(suite, "tltl.toml") == ALL
+    assert concerned(suite, "game/levels/tltl.toml") == BOTH
+    Path("game/tltl.toml").write_text("", encoding="utf-8")
+    assert concerned(suite, "game/tltl.toml") == [0, 1, 3]
+    assert concerned(suite, str(Path("tltl.toml").absolute())) == []
+
+
+def test_a_name_may_have_dots(suite: Suite) -> None:
+    Path("game/levels/assets/crates.toml").rename("game/levels/assets/crates.v2.toml")
+    text = (VAULT + ROOM).replace('"crates"', '"crates.v2"')
+    Path("game/levels/vault.toml").write_text(text, encoding="utf-8")
+    assert concerned(suite, "assets/crates.v2") == concerned(suite, "assets/crates.v2.toml") == BOTH
+
+
 def test_several_names_and_unknown_ones(suite: Suite) -> None:
     found = select(suite, ["navigation.toml", "README.md", "src/game.py", "vault", "README.md"])
     assert [suite.cases.index(case) for case in found.cases] == [0, 1, 2]

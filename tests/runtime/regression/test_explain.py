@@ -9,6 +9,7 @@ import pytest
 from tests.runtime.regression.made import ROOM, made
 from tltl_runtime.regression.account import Account, Nearest
 from tltl_runtime.regression.explain import findings
+from tltl_runtime.regression.stages import chain
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc import compile_text
@@ -74,7 +75,8 @@ def test_the_first_stage_that_is_not_as_before_is_told_and_where_it_ends(level: 
     assert stage.episodes == end.episodes == tuple(range(14))
     assert end.text == (
         "dies in the north hall by `guard` in 14 of 25 episodes; before: in 0 of 25 episodes; "
-        "closest approach to `exit`: 3.2 m"
+        "closest approach to `exit`: 3.2 m (`near(exit)` is the limit); "
+        "in state 3, where this remained: Reach near(exit), and keep alive throughout."
     )
 
 
@@ -85,7 +87,7 @@ def test_ends_are_told_by_kind_and_place_the_most_frequent_first(level: Level, f
     for index in range(5, 12):
         now[index] = made(index, False, states=to(fspa, 1), place=(8.5, 8.0, 0.0))
     texts = told(level, fspa, now)
-    assert texts[1:] == [
+    assert [each.partition("; in state")[0] for each in texts[1:]] == [
         "is near `exit` when time is up in 7 of 25 episodes; before: in 0 of 25 episodes",
         "breaks the spec in the middle (`seen`), seen by `guard`, in 5 of 25 episodes; before: in 0 of 25 episodes",
     ]
@@ -142,13 +144,22 @@ def test_ends_as_before_say_so(level: Level, fspa: Fspa) -> None:
     now = [made(index, index >= 10, states=to(fspa, 3 if index >= 10 else 2)) for index in range(25)]
     texts = told(level, fspa, now, now)
     assert texts[0] == "reaches `s1`, `s2` as before"
-    assert texts[1] == "is in the middle when time is up in 10 of 25 episodes; before: in 10 of 25 episodes"
+    assert texts[1].startswith("is in the middle when time is up in 10 of 25 episodes; before: in 10 of 25 episodes; ")
+
+
+def test_the_state_in_which_they_failed_is_told_with_what_remained(level: Level, fspa: Fspa) -> None:
+    first, other = chain(fspa)[:2]
+    now = [made(index, False, states=to(fspa, 0), unmet=first if index < 14 else other) for index in range(25)]
+    # Of two stages there are two sentences, each of one state.
+    ends = [text for text in told(level, fspa, now) if "where this remained" in text]
+    assert [text.rpartition("; ")[2].partition(",")[0] for text in ends] == [f"in state {first}", f"in state {other}"]
+    assert ends[0].endswith(f"where this remained: {fspa.states[first].label.english}")
 
 
 def test_where_no_distance_is_the_limit_the_atom_is_named(level: Level, fspa: Fspa) -> None:
     near = [Nearest("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
     now = [made(index, False, states=to(fspa, 0), nearest=near[index % 3]) for index in range(25)]
-    assert told(level, fspa, now)[1].endswith("; the limit is `alive`, -0.25 at best")
+    assert told(level, fspa, now)[1].partition("; in state")[0].endswith("; the limit is `alive`, -0.25 at best")
 
 
 def test_what_is_in_the_way_is_named(level: Level, fspa: Fspa) -> None:

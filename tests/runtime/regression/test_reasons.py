@@ -54,6 +54,14 @@ def test_what_may_have_changed() -> None:
     assert len(said(40, 0, -0.04)) == 1
 
 
+def test_what_has_certainly_changed_is_not_doubted_too() -> None:
+    """Where the rate is near `fail_rate` to the end, and figures have fallen with it."""
+    told = said(150, 150)
+    assert told[0].endswith(" can be said for certain, and 85% are asked for")
+    assert [each.partition(" ")[0] for each in told[1:]] == ["progress", "reward"]
+    assert not any("not certain" in each for each in told)
+
+
 def test_what_nobody_can_reach_is_told_for_certain() -> None:
     level = load_level("navigation", "v2")
     task = load_task(level.spec)

@@ -14,12 +14,20 @@ from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import baseline_of
 from tltl_runtime.regression.play import ready
-from tltl_runtime.regression.retrain import EPISODE, forget_training, is_kept, needs_it, retrained, retraining
+from tltl_runtime.regression.retrain import (
+    EPISODE,
+    forget_training,
+    forget_trainings,
+    is_kept,
+    needs_it,
+    retrained,
+    retraining,
+)
 from tltl_runtime.regression.run import Done, regress
 from tltl_runtime.regression.suite import Suite, read_suite
 from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.training.record import write_record
-from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, Run
+from tltl_runtime.training.run import CHECKPOINT, POLICY, RECORD, RUN, Run
 from tltl_runtime.training.train import train
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
@@ -136,6 +144,29 @@ def test_what_is_kept_and_what_is_not(game: Suite) -> None:
     assert is_kept(run)
     (run.folder / CHECKPOINT).write_bytes(b"torn")
     assert not is_kept(run)
+    (run.folder / CHECKPOINT).unlink()
+    assert not is_kept(run), "it is over, and nothing can be told of it"
+    (run.folder / RECORD).unlink()
+    assert is_kept(run), "its search was not over"
+
+
+def test_of_a_training_that_is_over_its_policy_is_needed(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    run = training_of(game, hopeless)
+    (run.folder / POLICY).unlink()
+    assert not is_kept(run)
+
+
+def test_trainings_are_forgotten_all_at_once_unless_a_policy_lies_there(game: Suite) -> None:
+    places = [Path("run/retrained") / name for name in ("room-v0", "hopeless")]
+    assert all((place / RUN).exists() for place in places)
+    own = replace(game.cases[1], policy=places[1] / POLICY)
+    with pytest.raises(TltlError, match="TLT0942: the policy of the case `room:v1` lies in `run/retrained/hopeless`"):
+        forget_trainings(replace(game, cases=(game.cases[0], own, game.cases[2])), game.cases, Path("run"))
+    assert all((place / RUN).exists() for place in places)
+    forget_trainings(game, game.cases, Path("run"))
+    assert not any((place / RUN).exists() for place in places)
+    assert not (Path("run/retrained") / "room-v1").exists()
 
 
 def test_with_more_minutes_it_goes_on(game: Suite) -> None:

@@ -56,7 +56,7 @@ def test_a_level_that_was_not_learned() -> None:
 def test_a_level_that_is_likely_infeasible() -> None:
     assert told("no_way", 0, 25) == (
         "no way found: neither a search of 200,000 steps nor 5 min 3 s of training (212,992 steps) met the spec once; "
-        "the changed level is likely infeasible; the best of its episodes came to progress 0.50, where this remained: "
+        "the level is likely infeasible; the best of its episodes came to progress 0.50, where this remained: "
         "reach near(exit)"
     )
     assert "a search of 9 steps, which the limit broke off, nor" in told("no_way", 0, 25, searched=9, complete=False)

@@ -20,10 +20,10 @@ from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import baseline_of, read_baseline
-from tltl_runtime.regression.baseline_run import record_baseline, write_recorded
+from tltl_runtime.regression.baseline_run import record_baseline, verdict_as_it_is, write_recorded
 from tltl_runtime.regression.dependencies import dependencies
 from tltl_runtime.regression.play import Ready, episodes, ready
-from tltl_runtime.regression.run import CASES, Done, _identity, case_folder, check, owned, regress
+from tltl_runtime.regression.run import CASES, Done, _inputs, case_folder, check, owned, regress
 from tltl_runtime.regression.suite import Case, Suite, read_suite
 from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.episodes.versions import versions
@@ -162,7 +162,7 @@ def test_another_version_plays_again(game: Path, monkeypatch: pytest.MonkeyPatch
         other = {**versions(), "numpy": "0.1"}
         monkeypatch.setattr("tltl_runtime.regression.play.versions", lambda: other)
     else:
-        monkeypatch.setattr("tltl_runtime.regression.run.sources_hash", lambda: "0" * 64)
+        monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
     found, played = run()
     assert list(played) == ["room:v0", "room:v1", "hopeless"]
     told = "the baseline was recorded with numpy " in " ".join(found[2].report.reasons)
@@ -179,8 +179,8 @@ def test_names_that_reasons_speak_of_are_part_of_what_is_kept(game: Path) -> Non
     ):
         assert spec_hash(other) == spec_hash(fspa)
         renamed = replace(made, setup=replace(made.setup, fspa=other))
-        assert _identity(renamed, reference, 0.01) != _identity(made, reference, 0.01)
-    assert _identity(made, reference, 0.01) == _identity(ready(suite.cases[0], suite.seed), reference, 0.01)
+        assert _inputs(renamed, reference, 0.01) != _inputs(made, reference, 0.01)
+    assert _inputs(made, reference, 0.01) == _inputs(ready(suite.cases[0], suite.seed), reference, 0.01)
 
 
 def test_a_level_that_is_edited_between_cases_is_played_as_it_is_then(game: Path) -> None:
@@ -202,13 +202,11 @@ def test_a_level_that_is_edited_between_cases_is_played_as_it_is_then(game: Path
 
 
 def _edited_after(name: str, edit: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have something done once a case has been made ready for the second time, right before it is played."""
-    counts: list[str] = []
+    """Have something done once a case has been made ready, right before it is played."""
 
     def then(case: Case, seed: int) -> Ready:
         made = ready(case, seed)
-        counts.append(case.name)
-        if case.name == name and counts.count(name) == 2:
+        if case.name == name:
             edit()
         return made
 
@@ -443,7 +441,7 @@ def test_a_case_may_be_called_anything(game: Path) -> None:
 
 def test_a_baseline_plays_each_place_once_and_all_of_its_episodes(game: Path) -> None:
     suite, played = read_suite(Path("game.toml")), Played()
-    found = [each for _, each in record_baseline(suite, 1, played)]
+    found = [each.reference for each in record_baseline(suite, 1, played)]
     assert [(each.played.spec, each.played.variant, len(each.accounts)) for each in found] == [
         ("easy", "v0", 50),
         ("soon", "v0", 50),
@@ -455,7 +453,7 @@ def test_a_baseline_plays_each_place_once_and_all_of_its_episodes(game: Path) ->
 def test_a_baseline_has_the_episodes_of_the_case_that_asks_for_most(game: Path) -> None:
     _edit("game.toml", 'level = "room.toml"\nvariant = "v1"', 'level = "room.toml"\nepisodes = 30\nvariant = "v1"')
     _edit("game.toml", "episodes = 50", "episodes = 25")
-    found = [each for _, each in record_baseline(read_suite(Path("game.toml")), 1, Played())]
+    found = [each.reference for each in record_baseline(read_suite(Path("game.toml")), 1, Played())]
     assert [(each.played.spec, len(each.accounts)) for each in found] == [("easy", 30), ("soon", 25)]
 
 
@@ -465,7 +463,7 @@ def test_levels_of_one_name_have_a_baseline_each(game: Path) -> None:
     again = '[[case]]\nname = "other"\nlevel = "./other//room.toml"\npolicy = "easy.safetensors"\n'
     _edit("game.toml", SUITE, SUITE.replace("episodes = 50", "episodes = 25") + again)
     suite = read_suite(Path("game.toml"))
-    found = [each for _, each in record_baseline(suite, 1, Played())]
+    found = [each.reference for each in record_baseline(suite, 1, Played())]
     assert [(each.played.spec, each.played.place) for each in found] == [
         ("easy", "room.toml"),
         ("soon", "room.toml"),
@@ -487,17 +485,39 @@ def test_a_baseline_of_what_cannot_be_played_is_refused_before_anything_is_playe
     Path("soon.safetensors").write_bytes(b"no policy")
     played = Played()
     with pytest.raises(TltlError, match="TLT0840"):
-        list(record_baseline(read_suite(Path("game.toml")), 1, played))
-    assert played.counts == {}
+        list(write_recorded(read_suite(Path("game.toml")), Path("new.json"), 1, played))
+    assert played.counts == {} and not list(Path().glob("new.json*"))
+
+
+def test_what_a_case_comes_to_where_nothing_changes(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    easy, _, hopeless = suite.cases
+    good, bad = baseline_of(suite)
+    assert verdict_as_it_is(suite, easy, good) == "pass"
+    assert verdict_as_it_is(suite, hopeless, bad) == "fail"
+    some = replace(good, accounts=tuple(replace(each, success=each.index % 10 > 0) for each in good.accounts))
+    assert verdict_as_it_is(suite, easy, some) == "review", "nine of ten are too few to be certain"
+    assert verdict_as_it_is(suite, replace(easy, episodes=25), good) == "review", "so are 25 episodes"
+
+
+def test_recordings_of_an_earlier_run_do_not_stay(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    folder = case_folder(suite, "room:v0", Path("run") / CASES)
+    (folder / "49.episode.npz").write_bytes(b"old")
+    _edit("room.toml", "8.0, 8.0", "8.0, 8.5")
+    found, _ = run()
+    names = {path.name for path in folder.glob("*.episode.npz")}
+    assert names == set(dict(found[0].report.recordings).values())
 
 
 def test_a_baseline_that_was_stopped_goes_on(game: Path) -> None:
     suite, path = read_suite(Path("game.toml")), Path("new.json")
     with closing(write_recorded(suite, path, 1, Played())) as stopped:
-        case, reference = next(stopped)
-    assert (case.name, len(reference.accounts), path.exists()) == ("room:v0", 50, False)
+        first = next(stopped)
+    assert ([case.name for case in first.cases], len(first.reference.accounts)) == (["room:v0", "room:v1"], 50)
+    assert not path.exists()
     played = Played()
-    found = [each for _, each in write_recorded(suite, path, 1, played)]
+    found = [each.reference for each in write_recorded(suite, path, 1, played)]
     assert played.counts == {"hopeless": 50}
     assert tuple(found) == read_baseline(path) == baseline_of(suite)
     assert sorted(place.name for place in Path().glob("new.json*")) == ["new.json"]
@@ -510,6 +530,6 @@ def test_what_was_kept_of_a_baseline_by_other_code_is_played_again(game: Path, m
     suite, path = read_suite(Path("game.toml")), Path("new.json")
     with closing(write_recorded(suite, path, 1, Played())) as stopped:
         next(stopped)
-    monkeypatch.setattr("tltl_runtime.regression.baseline_run.sources_hash", lambda: "0" * 64)
+    monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
     list(write_recorded(suite, path, 1, played := Played()))
     assert played.counts == {"room:v0": 50, "hopeless": 50}

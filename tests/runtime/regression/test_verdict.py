@@ -139,6 +139,14 @@ def test_a_change_is_none_where_the_designer_says_so() -> None:
     assert found is not None and (found.verdict, found.changes) == ("pass", ())
 
 
+def test_what_is_the_same_has_not_changed_whatever_the_designer_says() -> None:
+    episodes = [replace(made(index), reward=0.3 if index < 40 else 0.9) for index in range(300)]
+    strict = replace(DEFAULT, progress=0.0, reward=0.0)
+    found = [judge(episodes[:count], episodes, 300, strict, 0.05) for count in range(25, 60)]
+    assert [each.verdict for each in found if each][:1] == ["pass"]
+    assert not any(each.changes for each in found if each)
+
+
 def test_pass_where_the_rate_is_certain_and_the_figures_are_alike() -> None:
     count, found = first(several(300))
     assert (count, found.verdict, found.certain, found.changes) == (29, "pass", True, ())

@@ -119,10 +119,7 @@ def _mark_edge(
         return
     shown, said = [], []
     for when, seen in (("now", now), ("before", before)):
-        took = max(
-            (count for edge, count in seen.took.items() if tuple(whole.get(end, end) for end in edge) == ends),
-            default=0,
-        )
+        took = sum(any(tuple(whole.get(end, end) for end in edge) == ends for edge in edges) for edges in seen.took)
         share = took / seen.episodes if seen.episodes else 0.0
         shown.append(f"--took-{when}: {short(_THINNEST + share * (_THICKEST - _THINNEST))}")
         said.append(f"{when}: taken by {took} of {seen.episodes} episodes")

@@ -77,7 +77,7 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
         facts.append(f"compared with {report.reference.variant}")
     if report.played:
         facts += [f"spec {report.played.spec}", f"policy {report.played.policy[:12]}"]
-    if not report.certain:
+    if report.figures and not report.certain:
         facts.append("not certain after all of its episodes")
     goal = element("p", fspa.formula.english, class_="goal") if fspa else None
     return joined((element("p", " · ".join(facts), class_="facts"), goal))

@@ -34,7 +34,8 @@ class SuiteReport:
     """What a suite came to: its name, the seed and the error bound of its verdicts, and its cases in their order.
 
     ``versions`` are those of what played, by name; ``complete`` says whether all cases were judged, and trained anew,
-    that were asked for.
+    that were asked for.  ``missing`` are the names of those that were not judged, ``left_out`` of those that no change
+    concerns.
     """
 
     suite: str
@@ -43,3 +44,5 @@ class SuiteReport:
     versions: Mapping[str, str]
     cases: tuple[ReportedCase, ...]
     complete: bool = True
+    missing: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()

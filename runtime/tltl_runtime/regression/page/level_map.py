@@ -49,7 +49,7 @@ def level_map(level: Level) -> Markup:
         above[-1],
         class_="plan map",
         viewBox=view,
-        role="img",
+        role="group",
         aria_label=f"Map of {level.name} {level.variant}",
     )
 

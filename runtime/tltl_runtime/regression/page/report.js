@@ -144,7 +144,7 @@ class Report {
   #press(event) {
     const player = this.active?.player;
     if (!player?.episode || event.ctrlKey || event.altKey || event.metaKey) return;
-    if (event.target.closest("button, select, summary, a, input:not(.scrub)")) return;
+    if (event.target.closest("button, select, summary, a, input:not(.scrub), .scroll")) return;
     if (!isOnScreen(this.active.section.querySelector(".stage"))) return;
     const actions = {
       " ": () => player.toggle(),

@@ -24,7 +24,8 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     least = element("p", "The run was stopped before all was judged and trained that was asked for.", class_="warning")
     facts = [
         f"seed {suite.seed}",
-        f"a certain verdict is wrong with a probability of {suite.error:.3g} at most",
+        f"that a certain fail or review is wrong, or a pass rate too low for a pass, has a probability of at most "
+        f"{suite.error:.3g}",
         *(f"{name} {version}" for name, version in suite.versions.items()),
     ]
     rows = [_row(report, slug) for report, slug in zip(reports, slugs, strict=True)]
@@ -33,6 +34,8 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
         (
             element("h1", "Regression report: ", element("span", suite.suite, class_="suite")),
             None if suite.complete else least,
+            _named("Not judged", suite.missing),
+            _named("Left out, since nothing has changed that they depend on", suite.left_out),
             element("ul", *counts, class_="counts-of-verdicts", aria_label="Verdicts"),
             element("p", " · ".join(facts), class_="facts"),
             element("h2", "Verdicts"),
@@ -44,6 +47,11 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
             element("table", head, element("tbody", *rows), class_="verdicts"),
         )
     )
+
+
+def _named(what: str, names: Sequence[str]) -> Markup | None:
+    """Cases that are not on the page."""
+    return element("p", f"{what}: {', '.join(names)}.", class_="facts") if names else None
 
 
 def badge(verdict: Verdict) -> Markup:

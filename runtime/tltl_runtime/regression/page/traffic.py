@@ -12,7 +12,7 @@ from tltlc.record import record
 
 @record
 class Traffic:
-    """Of so many ``episodes``: how many ``visited`` each state, ``failed`` in it, and ``took`` each edge.
+    """Of so many ``episodes``: how many ``visited`` each state and ``failed`` in it, and the edges that each ``took``.
 
     Edges are (source, target); loops, on which an episode stays where it is, are not counted.  An episode that fails
     does so in the state that it could not leave, or in which the spec was broken.
@@ -21,16 +21,16 @@ class Traffic:
     episodes: int
     visited: Mapping[int, int]
     failed: Mapping[int, int]
-    took: Mapping[tuple[int, int], int]
+    took: tuple[frozenset[tuple[int, int]], ...]
 
 
 def traffic(accounts: Sequence[Account]) -> Traffic:
     """The traffic of some episodes, each counted once for each state and edge."""
     visited: Counter[int] = Counter()
-    took: Counter[tuple[int, int]] = Counter()
+    took = []
     for each in accounts:
         states = [arrival.state for arrival in each.arrivals]
         visited.update(set(states))
-        took.update(set(pairwise(states)))
+        took.append(frozenset(pairwise(states)))
     failed = Counter(each.unmet for each in accounts if not each.success)
-    return Traffic(len(accounts), visited, failed, took)
+    return Traffic(len(accounts), visited, failed, tuple(took))

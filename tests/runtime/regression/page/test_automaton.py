@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from itertools import pairwise
 from xml.etree import ElementTree
 
@@ -60,6 +61,7 @@ def test_each_state_has_its_counts(root: ElementTree.Element, fspa: Fspa, now: T
 
 
 def test_edges_are_the_thicker_the_more_episodes_took_them(root: ElementTree.Element, now: Traffic) -> None:
+    took = Counter(edge for edges in now.took for edge in edges)
     widths = {}
     for each in root.iter("g"):
         title = each.findtext("title") or ""
@@ -67,9 +69,9 @@ def test_edges_are_the_thicker_the_more_episodes_took_them(root: ElementTree.Ele
             ends = tuple(int(word) for word in title.partition(";")[0].split() if word.isdigit())
             styles = dict(part.split(": ") for part in (each.get("style") or "").split("; "))
             widths[ends] = float(styles["--took-now"])
-            assert ("untaken-now" in (each.get("class") or "")) == (ends not in now.took)
-    assert widths.keys() >= now.took.keys()
-    ordered = sorted(widths, key=lambda ends: now.took.get(ends, 0))
+            assert ("untaken-now" in (each.get("class") or "")) == (ends not in took)
+    assert widths.keys() >= took.keys()
+    ordered = sorted(widths, key=lambda ends: took.get(ends, 0))
     assert all(widths[one] <= widths[other] for one, other in pairwise(ordered))
     assert widths[ordered[-1]] > widths[ordered[0]]
 
@@ -84,8 +86,11 @@ def test_the_picture_can_stand_in_a_page_beside_others(root: ElementTree.Element
 def test_runs_of_states_that_count_are_one_group() -> None:
     (fspa,) = compile_text("clock 1 Hz  signal seen: bool  spec wait = F[0,9] seen")
     empty = traffic([])
-    took = {(state, state + 1): 3 for state in range(2)}
-    seen = Traffic(4, {0: 4, 1: 3, 2: 3}, {2: 1}, took)
+    # Each episode but one leaves the run of states 2 to 9 from another one, to state 1.
+    took = tuple(
+        frozenset({(0, 2), *((state, state + 1) for state in range(2, last)), (last, 1)}) for last in range(2, 6)
+    )
+    seen = Traffic(5, {0: 5, 1: 5, 2: 4, 3: 3, 4: 2, 5: 1}, {}, (*took, frozenset({(0, 1)})))
     made = drawn(fspa)
     assert made.svg is not None
     root = ElementTree.fromstring(picture(fspa, made.svg, seen, empty))
@@ -98,6 +103,9 @@ def test_runs_of_states_that_count_are_one_group() -> None:
         if each.get("data-states")
     }
     assert texts[folded[0]][0] == str(max(seen.visited.get(int(state), 0) for state in folded))
+    titles = [title.text or "" for title in root.iter("title")]
+    (leaving,) = (title for title in titles if title.startswith("From state 2 to state 1;"))
+    assert "; now: taken by 4 of 5 episodes" in leaving
 
 
 def test_a_layout_that_takes_too_long_is_said_in_place(fspa: Fspa) -> None:

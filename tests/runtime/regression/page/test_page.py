@@ -70,8 +70,16 @@ def test_there_is_a_row_and_a_section_for_each_case() -> None:
         assert case.report.name in page().texts
         assert set(case.report.reasons[0].split("`")[:1]) <= set(page().texts)
     assert [text for text in page().texts if text.startswith("seed 7")] == [
-        "seed 7 · a certain verdict is wrong with a probability of 0.05 at most · tltlc 0.1 · python 3.11"
+        "seed 7 · that a certain fail or review is wrong, or a pass rate too low for a pass, "
+        "has a probability of at most 0.05 · tltlc 0.1 · python 3.11"
     ]
+
+
+def test_cases_that_are_not_on_the_page_are_named() -> None:
+    found = Page(html_report(replace(samples.suite(), complete=False, missing=("a", "b"), left_out=("<c>",))))
+    assert "Not judged: a, b." in found.texts
+    assert "Left out, since nothing has changed that they depend on: <c>." in found.texts
+    assert not [text for text in page().texts if text.startswith(("Not judged", "Left out"))]
 
 
 def test_every_link_leads_to_something() -> None:

@@ -14,8 +14,9 @@ def test_every_episode_is_counted_where_it_was() -> None:
         assert count == sum(state in each.states.tolist() for each in episodes)
     assert sum(found.failed.values()) == sum(not each.success for each in episodes) > 0
     edges = {(edge.source, edge.target) for edge in episodes[0].fspa.edges}
-    assert found.took and found.took.keys() <= edges
-    assert all(source != target for source, target in found.took)
+    took = frozenset[tuple[int, int]]().union(*found.took)
+    assert took and took <= edges
+    assert all(source != target for source, target in took)
 
 
 def test_an_episode_that_breaks_the_spec_fails_in_the_state_before() -> None:
@@ -23,9 +24,10 @@ def test_an_episode_that_breaks_the_spec_fails_in_the_state_before() -> None:
     assert episode.end == "violation"
     found = traffic([samples.account_of(0, episode)])
     assert found.failed == {int(episode.states[-2]): 1}
-    assert found.took[int(episode.states[-2]), int(episode.states[-1])] == 1
+    (took,) = found.took
+    assert (int(episode.states[-2]), int(episode.states[-1])) in took
 
 
 def test_nothing_comes_of_no_episodes() -> None:
     found = traffic([])
-    assert (found.episodes, dict(found.visited), dict(found.failed), dict(found.took)) == (0, {}, {}, {})
+    assert (found.episodes, dict(found.visited), dict(found.failed), found.took) == (0, {}, {}, ())

@@ -1,0 +1,50 @@
+"""What is kept for the next run, and when that does not take it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tltl_runtime.regression.kept import identity, kept_text, read_kept
+from tltl_runtime.regression.table_cells import Went
+
+EPISODES = (Went(True, 1.0, 0.5), Went(False, 0.25, -0.75))
+KIND = tuple[Went, ...]
+
+
+def test_what_was_kept_is_read_again_as_long_as_nothing_has_changed(tmp_path: Path) -> None:
+    path, inputs = tmp_path / "kept.json", identity(["level", 3])
+    path.write_text(kept_text(inputs, EPISODES), encoding="utf-8")
+    assert read_kept(KIND, path, inputs) == EPISODES
+    assert read_kept(KIND, path, identity(["level", 4])) is None
+
+
+def test_the_code_counts_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = identity([1])
+    assert before == identity([1])
+    monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
+    assert identity([1]) != before
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[]",
+        "3",
+        "[" * 100_000,
+        "\xff",
+        '{"identity": "a"}',
+        '{"content": []}',
+        '{"identity": "a", "content": 3}',
+        '{"identity": "a", "content": [{"success": 1, "progress": 1.0, "reward": 0.5}]}',
+        '{"identity": "b", "content": []}',
+        None,
+    ],
+)
+def test_what_cannot_be_taken_is_made_again(tmp_path: Path, text: str | None) -> None:
+    path = tmp_path / "kept.json"
+    if text is not None:
+        path.write_bytes(text.encode("latin-1"))
+    assert read_kept(KIND, path, "a") is None
