@@ -120,6 +120,7 @@ def _trained(records: Mapping[str, Record]) -> str:
         "arg-max: pass rate (95 %)",
         "progress",
         "reward",
+        "revision",
     )
     body = [
         (
@@ -134,6 +135,7 @@ def _trained(records: Mapping[str, Record]) -> str:
             _others(record),
             *_rates(record["sampled"]),
             *_rates(record["argmax"]),
+            record["revision"],
         )
         for name, record in records.items()
         for level, seed in [name.split()]
@@ -145,7 +147,7 @@ def _trained(records: Mapping[str, Record]) -> str:
 `tltlc train --level LEVEL --seed SEED --minutes {MINUTES:g} --steps {NO_LIMIT} --workers {CORES}` on two cores, with
 minutes as the only limit, then `tltlc evaluate` of its policy on fresh episodes, with actions sampled and with the
 likeliest ones. *Ended*: `met` where the spec was met in two successive windows of 50 episodes, and by the policy then
-in 150 fresh ones. *Steps* are the decisions that the agent learned from; *all steps* also those of the search for ways
+in 150 fresh ones (100 before revision c2190bd). *Steps* are the decisions that the agent learned from; *all steps* also those of the search for ways
 and those that were played again to begin on a way. *Minutes* are of wall time, those of the search included; *steps/s*
 are of the time after it; *learning* is the share that updates took of the time of playing and learning; *others* are
 how many cores of the machine were busy with other work. *Pass rate* with its Wilson interval; *progress* and *reward*

@@ -57,7 +57,7 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
             click.echo(f"stopped: `{wrote}` is as it was; the same command goes on with what is over", err=True)
             raise
         click.echo(f"wrote {wrote}", err=True)
-        if wrote != read.baseline:
+        if wrote.resolve() != read.baseline.resolve():
             words = ["tltlc", "regress", *([str(suite)] if suite else []), "--baseline", str(wrote)]
             click.echo(f"to judge by it: {join(words)}", err=True)
         return exits.CLEAN
