@@ -11,7 +11,7 @@ from typing import Any
 import torch
 from rsl_rl.runners import OnPolicyRunner
 from rsl_rl.utils import check_nan
-from torch import Tensor
+from torch import Tensor, nn
 
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.distributed import peers
@@ -71,6 +71,13 @@ class Runner(OnPolicyRunner):
     def begin_with(self, weights: Mapping[str, Tensor]) -> None:
         """Give the actor these weights, by name; the critic's stay as they were drawn."""
         self.alg.actor.load_state_dict({name: each.float() for name, each in weights.items()})
+
+    def sharpen(self, factor: float) -> None:
+        """Multiply the actor's logits: by more than 1, what is likelier becomes likelier still."""
+        last = [layer for layer in self.alg.actor.mlp if isinstance(layer, nn.Linear)][-1]
+        with torch.no_grad():
+            for each in last.parameters():
+                each.mul_(factor)
 
     def iterations(self) -> Iterator[Iteration]:
         """Run an iteration each time that one is asked for, without end."""

@@ -30,6 +30,7 @@ _SETTING: Final = re.compile(r"(?P<head>(?P<key>\w+) = [^#]*?)\s*(?P<comment>#.*
 class Ppo:
     """rsl-rl's PPO; learning rate, entropy, clip, lambda and gamma are by default the paper's (section VI).
 
+    As the pass rate rises from a half to 1, the actor's logits are multiplied by up to ``sharpening``.
     A training that begins with a policy has a critic that knows nothing: in its first ``warm_up`` updates the critic
     learns alone, lest the policy follow what it says then.
     """
@@ -37,6 +38,7 @@ class Ppo:
     learning_rate: float
     entropy: float
     entropy_schedule: Literal["fading", "fixed"]
+    sharpening: float
     clip: float
     lam: float
     gamma: float

@@ -116,6 +116,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "learning_rate": Number(0.0, 1.0, open=True),
         "entropy": Number(0.0, 10.0),
         "entropy_schedule": OneOf(("fading", "fixed")),
+        "sharpening": Number(1.0, 100.0),
         "clip": Number(0.0, 10.0, open=True),
         "lam": Number(0.0, 1.0),
         "gamma": Number(0.0, 1.0, open=True),

@@ -122,9 +122,10 @@ class _Training:
             runner.take_up(begun.algorithm)
             runner.current_learning_iteration = begun.iteration
             self._windows.load(begun.window, begun.unbroken)
-            self._weigh()
             if own.rank < len(begun.processes):
                 _set_own(begun.processes[own.rank], runner)
+        self._sharpness = 1.0
+        self._weigh()
         self._state = begun or Checkpoint(
             run=identity(run),
             iteration=0,
@@ -199,7 +200,9 @@ class _Training:
         finished = tuple(each for each in by_turns if each)
         iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
         self._windows.add(finished)
+        sharpness = self._sharpness
         self._weigh()
+        self._runner.sharpen(self._sharpness / sharpness)
         steps = self._state.steps + iteration.steps
         standstill = self._standstill.state()
         self._stands_still = self._standstill.add(self._windows.window, steps)
@@ -268,13 +271,16 @@ class _Training:
 
     def _weigh(self) -> None:
         """Weigh the entropy bonus the less, the more often the spec is met, and failures the more: then there is less
-        to try, and the discounted penalty is less than what a longer way costs that is safe.
+        to try, and the discounted penalty is less than what a longer way costs that is safe.  What is chosen by chance
+        against what was learned then makes most of the failures, so the likelier choices become likelier.
         """
         ppo, stop = self._run.settings.ppo, self._stop
         met = self._windows.window.successes / (stop.windows * stop.episodes)
         if ppo.entropy_schedule == "fading":
             self._runner.alg.entropy_coef = ppo.entropy * (1 - met)
-        self._runner.env.severity = max(0.0, 2 * met - 1)
+        rise = max(0.0, 2 * met - 1)
+        self._runner.env.severity = rise
+        self._sharpness = 1 + (ppo.sharpening - 1) * rise
 
     def _tell_time(self) -> None:
         """Tell who imitates how long it has trained: it clones for a share of the minutes, where these are limited."""

@@ -37,6 +37,7 @@ checkpoint_s = 0.5
 learning_rate = 1e-5
 entropy = 0.0
 entropy_schedule = "fixed"
+sharpening = 3.0
 clip = 0.3
 lam = 0.9
 gamma = 0.5

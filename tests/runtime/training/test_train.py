@@ -366,6 +366,35 @@ def test_the_entropy_bonus_fades_as_the_spec_is_met(folder: Path, schedule: str,
     assert report.iteration.losses["weight"] == pytest.approx(last)
 
 
+def test_the_likelier_becomes_likelier_as_the_spec_is_met(folder: Path) -> None:
+    def run_of(sharpening: float) -> Run:
+        changes = {"stop__windows": 1, "stop__episodes": 10, "ppo__sharpening": sharpening}
+        return _judged_by(run_in(folder / f"by-{sharpening:.0f}", **changes), SOON)
+
+    learned = []
+    for run in (run_of(1.0), run_of(3.0)):
+        reports = train(run)
+        assert next(reports).window.successes == 8
+        reports.close()
+        learned.append(checkpoint_of(run).algorithm["actor_state_dict"])
+    same, sharper = learned
+    for name, weights in same.items():
+        # From a half of the episodes on, up to all: eight of ten are six tenths of the way.
+        factor = 1 + 0.6 * 2 if name.startswith("mlp.2.") else 1
+        assert torch.allclose(sharper[name], weights * factor), name
+
+
+def test_a_training_that_is_resumed_sharpens_from_there(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = _judged_by(run_in(folder / "sharpened", stop__windows=1, stop__episodes=10, ppo__sharpening=3.0), SOON)
+    reports = train(run)
+    next(reports)
+    reports.close()
+    factors: list[float] = []
+    monkeypatch.setattr(Runner, "sharpen", lambda _, factor: factors.append(factor))
+    assert next(train(run, resume=True)).window.successes == 10
+    assert factors == pytest.approx([3 / 2.2])
+
+
 def test_failures_cost_more_as_the_spec_is_met(folder: Path) -> None:
     changes = {"stop__windows": 1, "stop__episodes": 10, "classes__runner": "tests.runtime.training.runs:Weighing"}
     run = _judged_by(run_in(folder / "rising", **changes), SOON)
