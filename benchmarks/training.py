@@ -59,6 +59,7 @@ ABLATIONS: Mapping[str, Ablation] = {
     "reward potential": Ablation({"reward": {"mode": "potential"}}),
     "terminal penalty undiscounted": Ablation({"reward": {"terminal_penalty": "undiscounted"}}),
     "terminal penalty that stays discounted": Ablation({"reward": {"penalty_schedule": "fixed"}}),
+    "no sharpening": Ablation({"ppo": {"sharpening": 1}}),
     "no semantic map": Ablation(options=("--no-map",)),
     "no imitation of ways": Ablation({"exploration": {"imitation": 0}}),
     "no search for ways": Ablation({"exploration": {"ways": 0}}),
