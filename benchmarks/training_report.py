@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from io import BytesIO
+from itertools import product
 from typing import Any, Final
 
 from benchmarks.markdown import met_or_missed, table
@@ -26,6 +27,7 @@ PICTURE_NAME: Final = "training.png"
 
 _COLORS = ("#0f172a", "#e69f00", "#56b4e9", "#009e73", "#d55e00", "#0072b2", "#cc79a7", "#999999", "#b8a200", "#7a4a1e")
 """Told apart by the colour-blind, too: those of M. Okabe and K. Ito, behind our own."""
+_LINES = ("-", "--", ":")
 
 
 def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
@@ -80,10 +82,10 @@ def picture(records: Mapping[str, Record]) -> bytes:
 
     figure = Figure(figsize=(10.0, 4.5), dpi=100, layout="constrained")
     for axes, title, column in zip(figure.subplots(1, 2, sharey=True), ("progress", "pass rate"), (2, 1), strict=True):
-        ablated = _ablated(records)
-        for (name, record), color in zip(ablated.items(), _COLORS[: len(ablated)], strict=True):
+        for (name, record), (line, color) in zip(_ablated(records).items(), product(_LINES, _COLORS), strict=False):
             points = [point for point in record["curve"] if point[column] is not None]
-            axes.plot([point[0] for point in points], [point[column] for point in points], color=color, label=name)
+            steps, values = [point[0] for point in points], [point[column] for point in points]
+            axes.plot(steps, values, color=color, linestyle=line, label=name)
         axes.set_title(title, loc="left", fontsize=11)
         axes.set_xlabel("steps of all environments")
         axes.xaxis.set_major_formatter(_thousands)

@@ -6,19 +6,23 @@ import json
 import shutil
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import torch
+from torch import nn
 
 from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.policies.summary import summary, summary_text
+from tltl_runtime.training.checkpoint import copied
 from tltl_runtime.training.initial import initial_of, weights_hash
 from tltl_runtime.training.record import record_so_far, write_record
 from tltl_runtime.training.report import Report
 from tltl_runtime.training.run import CHECKPOINT, POLICY, Run, identity, read_run
+from tltl_runtime.training.runner import Runner
 from tltl_runtime.training.train import train
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
@@ -60,6 +64,19 @@ def test_without_a_warm_up_the_actor_learns_at_once(tmp_path: Path, policy: Path
     run = tuned(tmp_path / "run", policy, ppo__warm_up=0, stop__steps=64)
     list(train(run))
     assert differ(read_policy(policy).weights(), weights(run))
+
+
+def test_it_is_sharpened_after_the_warm_up_alone() -> None:
+    last = nn.Linear(2, 2)
+    runner = Runner.__new__(Runner)
+    runner.cfg, runner.alg = {"warm_up": 2}, SimpleNamespace(actor=SimpleNamespace(mlp=[nn.Linear(2, 2), last]))
+    before = copied(last.state_dict())
+    for runner.current_learning_iteration in (1, 2):
+        runner.sharpen(1.5)
+        assert not differ(before, last.state_dict())
+    runner.current_learning_iteration = 3
+    runner.sharpen(1.5)
+    assert all(torch.equal(each, 1.5 * before[name]) for name, each in last.state_dict().items())
 
 
 def test_a_new_actor_does_not_wait(tmp_path: Path) -> None:
