@@ -73,8 +73,9 @@ class Runner(OnPolicyRunner):
         self.alg.actor.load_state_dict({name: each.float() for name, each in weights.items()})
 
     def sharpen(self, factor: float) -> None:
-        """Multiply the actor's logits, but for the first ``cfg["warm_up"]`` iterations: by more than 1, what is likelier
-        becomes likelier still.
+        """Multiply the actor's logits: by more than 1, what is likelier becomes likelier still.
+
+        In the first ``cfg["warm_up"]`` iterations they are left as they are.
         """
         if self.current_learning_iteration <= self.cfg.get("warm_up", 0):
             return
