@@ -70,7 +70,7 @@ class Change:
 
 @record
 class Judgement:
-    """A verdict: not ``certain`` where it came because all episodes were played; ``rate_interval`` of the pass rate."""
+    """A verdict: ``certain`` unless it is only since all episodes are played; ``rate_interval`` of the pass rate."""
 
     verdict: Verdict
     certain: bool
