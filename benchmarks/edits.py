@@ -62,8 +62,7 @@ def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan = FUL
     """Play what the store does not have yet; what was played so far stays in ``folder``."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
-        why = f"{', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)"
-        store.put(SECTION, "left out", {"left_out": why})
+        say(f"{SECTION} left out: {', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
     from tltl_runtime.regression.suite import read_suite
 

@@ -110,8 +110,7 @@ def measure(
     """Train, evaluate and draw what the store does not have yet, or what failed."""
     missing = [name for name in NEEDED if find_spec(name) is None]
     if missing:
-        why = f"{', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)"
-        store.put(SECTION, "left out", {"left_out": why})
+        say(f"{SECTION} left out: {', '.join(missing)} not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
     cells = dict(_cells(plan, folder))
     try:

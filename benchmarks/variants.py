@@ -27,12 +27,10 @@ def measure_each(
 ) -> None:
     """Run ``python -m benchmarks.SECTION CASE…`` for each case that has no ``source`` in the store yet.
 
-    It prints the record of the case as JSON.  Where the game is not installed, the section says so.
+    It prints the record of the case as JSON.  Where the game is not installed, it says so.
     """
     if find_spec("pybullet") is None:
-        store.put(
-            section, "left out", {"left_out": "pybullet is not installed (the extra `game`, Python 3.10 or 3.11)"}
-        )
+        say(f"{section} left out: pybullet is not installed (the extra `game`, Python 3.10 or 3.11)")
         return
 
     def measured(name: str) -> Record:

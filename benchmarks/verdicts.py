@@ -133,7 +133,7 @@ class Drawn:
 def measure(store: Store, _: float, say: Callable[[str], None], plan: Plan | None = None) -> None:
     """Draw what the store does not have yet."""
     if find_spec("numpy") is None:
-        store.put(SECTION, "left out", {"left_out": "numpy is not installed (the extra `rl`, Python 3.10 or 3.11)"})
+        say(f"{SECTION} left out: numpy is not installed (the extra `rl`, Python 3.10 or 3.11)")
         return
     made = plan or Plan()
     scenarios = {scenario.name: scenario for scenario in made.scenarios}
