@@ -26,8 +26,8 @@ from benchmarks.random_edits import WANTED, Asset, Edit, Wanted, random_edits
 from benchmarks.store import Record, Store, measure_missing, source_digest
 
 if TYPE_CHECKING:
+    from tltl_runtime.evaluation.figures import Figures
     from tltl_runtime.regression.baseline import Reference
-    from tltl_runtime.regression.figures import Figures
     from tltl_runtime.regression.suite import Case, Suite
     from tltl_runtime.stealth.episodes.episode import Episode
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.writing import write_file, write_files
+from tltlc.writing import remove_file, write_file, write_files
 
 
 @pytest.fixture(name="done")
@@ -76,3 +76,22 @@ write_file(Path(sys.argv[1]), "newer", durable=True)
         assert len([*tmp_path.iterdir()]) == 2
     write_file(path, "newer", durable=True)
     assert [each.read_text() for each in tmp_path.iterdir()] == ["newer"]
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
+@pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1"])
+def test_a_pipe_is_written_by_the_name_of_its_descriptor(name: str) -> None:
+    code = "import sys, pathlib, tltlc.writing as w; w.write_file(pathlib.Path(sys.argv[1]), 'é')"
+    done = subprocess.run([sys.executable, "-c", code, name], capture_output=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "é".encode()), done.stderr
+
+
+def test_a_file_is_removed_where_it_is_there(tmp_path: Path) -> None:
+    (tmp_path / "a").touch()
+    for _ in range(2):
+        remove_file(tmp_path / "a", "leave it")
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "b").mkdir()
+    with pytest.raises(TltlError, match=r"TLT0005: cannot remove `.*b`") as error:
+        remove_file(tmp_path / "b", "leave it")
+    assert [found.help for found in error.value.diagnostics] == ["leave it"]

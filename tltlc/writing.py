@@ -39,6 +39,14 @@ def write_file(path: Path, content: str | bytes, advice: str = _OPTION, *, durab
     _write({path: content}, advice, durable)
 
 
+def remove_file(path: Path, advice: str) -> None:
+    """Remove a file, unless it is not there; raises TltlError, TLT0005, with ``advice`` on what else can be done."""
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise TltlError([Diagnostic("TLT0005", f"cannot remove `{path}`: {reason(error)}", help=advice)]) from None
+
+
 @contextmanager
 def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
     """A temporary path beside ``path``, of the same ending, for a program that writes by itself.
@@ -65,13 +73,13 @@ def _write(files: Mapping[Path, str | bytes], advice: str, durable: bool) -> tup
     try:
         for shown, content in files.items():
             data = content.encode() if isinstance(content, str) else content
-            place = Path(os.path.realpath(shown))
-            mode = _mode(place)
+            mode = _mode(shown)
             if mode is not None and not stat.S_ISREG(mode):
-                # A device or a pipe keeps its place; a folder refuses to be opened.
-                with place.open("wb") as file:
+                # A device or a pipe keeps its place, which a link of `/dev/fd` alone may name; a folder refuses.
+                with shown.open("wb") as file:
                     file.write(data)
                 continue
+            place = Path(os.path.realpath(shown))
             name = place.name if durable else f"tltlc-{os.getpid()}-{len(waiting)}"
             temporary = place.with_name(f".{name}.tmp")
             waiting.append((temporary, place))

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.texts import column, number, percent, share
+from tltl_runtime.texts import column, listed, number, percent, share
 
 
 @pytest.mark.parametrize(
@@ -26,6 +26,12 @@ def test_the_ends_are_written_for_themselves_alone(value: float, places: int) ->
 
 def test_there_is_no_minus_zero() -> None:
     assert [number(each, 2) for each in (-0.0, -0.004, -0.006, 12.345)] == ["0.00", "0.00", "-0.01", "12.35"]
+
+
+@pytest.mark.parametrize(("most", "said"), [(4, "a, b, c"), (3, "a, b, c"), (2, "a, b and 1 more")])
+def test_a_list(most: int, said: str) -> None:
+    assert listed("abc", most) == said
+    assert listed([], most) == ""
 
 
 def test_a_column() -> None:

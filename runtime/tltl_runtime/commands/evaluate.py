@@ -19,6 +19,8 @@ from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_folder, seed_option
 from tltl_runtime.commands.workers import WorkersType
+from tltl_runtime.commands.writable import check_writable
+from tltl_runtime.texts import listed
 from tltlc.cli.report import Report
 
 if TYPE_CHECKING:
@@ -120,6 +122,8 @@ def command(
         report.add(reach_warnings(load_level(setup.level, setup.variant), setup.fspa))
         again = _command(policy, level, spec, seed)
         files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
+        # The folder, which is there by now, may be that of the report, too.
+        check_writable({"--json": None if str(json_file) == "-" else json_file})
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:
             with closing(results(setup, tasks, workers, _waiting)) as playing:
@@ -187,8 +191,6 @@ def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, w
         click.echo(text, nl=False)
     wrote = files.write(text)
     if removed := files.removed:
-        names = ", ".join(removed[:_MOST_NAMED])
-        more = f" and {count} more" if (count := len(removed) - _MOST_NAMED) > 0 else ""
-        click.echo(f"removed from {folder}, of an earlier evaluation: {names}{more}", err=True)
+        click.echo(f"removed from {folder}, of an earlier evaluation: {listed(removed, _MOST_NAMED)}", err=True)
     if wrote:
         click.echo(f"wrote {wrote}", err=True)

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Final
 
-from tltl_runtime.evaluation.figures import Figures, figures_of
+from tltl_runtime.evaluation.figures import Evaluation, evaluation_of
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.player import CHOICES, Result, Setup
 from tltl_runtime.evaluation.text import report_text
@@ -21,7 +21,7 @@ from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.pictures.plan import draw_episode
 from tltl_runtime.stealth.pictures.trajectories import draw_trajectories
 from tltl_runtime.stealth.recording import writable_folder
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.writing import write_file, write_files
 
 _REPORT: Final = "evaluation.json"
@@ -60,8 +60,6 @@ class EvaluationFiles:
         self._removed: tuple[str, ...] = ()
         if folder is not None:
             writable_folder(folder)
-        if self._json is not None:
-            _check_parent(self._json)
 
     @property
     def played(self) -> dict[str, int]:
@@ -93,8 +91,8 @@ class EvaluationFiles:
         """The report for people."""
         setup = self._setup
         head = f"{self._level.name} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
-        figures = {CHOICES[sampled]: each for sampled, each in self._figures().items()}
-        text = f"{head}\n{self._note()}\n{report_text(figures)}"
+        found = {CHOICES[sampled]: each for sampled, each in self._evaluations().items()}
+        text = f"{head}\n{self._note()}\n{report_text(found)}"
         failed = [each.index for episodes in self._played.values() for each in episodes if not each.success]
         if failed and self._folder is None:
             again = f"{self._command} --first {failed[0]} --episodes 1 --out evaluation"
@@ -106,7 +104,7 @@ class EvaluationFiles:
 
         It does not depend on who played.  ``complete`` says whether all episodes were played.
         """
-        setup, figures = self._setup, self._figures()
+        setup, found = self._setup, self._evaluations()
         card = setup.policy.card
         return {
             "level": self._level.name,
@@ -124,8 +122,8 @@ class EvaluationFiles:
                 "level_hash": card.level_hash,
             },
             "versions": {**versions(), "torch": version("torch")},
-            **(to_json(figures[True]) if True in figures else {}),
-            "argmax": to_json(figures[False]) if False in figures else None,
+            **(_as_json(found[True]) if True in found else {}),
+            "argmax": _as_json(found[False]) if False in found else None,
         }
 
     def write(self, text: str) -> str:
@@ -185,13 +183,11 @@ class EvaluationFiles:
     def _name(self) -> str:
         return f"{self._level.name}-{self._level.variant}"
 
-    def _figures(self) -> dict[bool, Figures]:
-        return {sampled: figures_of(played) for sampled, played in self._played.items() if played}
+    def _evaluations(self) -> dict[bool, Evaluation]:
+        return {sampled: evaluation_of(played) for sampled, played in self._played.items() if played}
 
 
-def _check_parent(path: Path) -> None:
-    """TLT0005 where a file cannot be written for want of its folder: better to know before an hour is played."""
-    if not path.parent.is_dir():
-        title, help_ = f"cannot write `{path}`: there is no such folder", "name another place with --json"
-        raise TltlError([Diagnostic("TLT0005", title, help=help_)])
-    writable_folder(path.parent)
+def _as_json(found: Evaluation) -> dict[str, Any]:
+    """The figures, how failed episodes ended, and the ``episodes``: these themselves, and not how many they are."""
+    figures = {name: each for name, each in to_json(found.figures).items() if name != "episodes"}
+    return {**figures, "ended": to_json(found.ended), "episodes": to_json(found.episodes)}

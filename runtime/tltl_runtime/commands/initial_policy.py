@@ -16,8 +16,8 @@ from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.stealth.level import Level, Sensors
 from tltl_runtime.stealth.senses.sensors import chosen
-from tltl_runtime.training.initial import initial_of, weights_hash
-from tltl_runtime.training.run import Initial, Run
+from tltl_runtime.training.initial import weights_hash
+from tltl_runtime.training.run import Run
 from tltl_runtime.training.settings import Settings
 from tltl_runtime.training.settings_file import read_values
 from tltlc.automaton.fspa import Fspa
@@ -40,11 +40,6 @@ class Beginning:
         """What the policy was trained for."""
         return self.policy.card
 
-    @property
-    def initial(self) -> Initial:
-        """What a training records of it."""
-        return initial_of(self.path, self.policy)
-
 
 def beginning(named: Path) -> Beginning:
     """The policy that ``--from`` names as `tltlc evaluate` names one; raises TltlError for one that is none."""
@@ -59,11 +54,6 @@ def own_place(named: Path, begun: Beginning) -> tuple[str, str]:
         check_known(begun.card.level, path, _COMMAND)
         name, variant = begun.card.level, begun.card.variant
     return name, variant or "v0"
-
-
-def own_parameters(begun: Beginning, offered: Mapping[str, float]) -> dict[str, float]:
-    """The values of the policy's params that the level does not offer, for its own spec."""
-    return {name: value for name, value in begun.card.params.items() if name not in offered}
 
 
 def as_its_policy(settings: Settings, begun: Beginning, config: Path | None) -> Settings:

@@ -39,45 +39,33 @@ def command(files: tuple[str, ...], path: Path | None, format: str) -> int:  # n
         raise click.UsageError("-o takes one POLICY")
     summaries: list[dict[str, Any]] = []
     with Report(format, results=True) as report, learning_for("`tltlc inspect`"):
-        from tltl_runtime.policies.file import read_policy
         from tltl_runtime.policies.summary import summary, summary_text
 
-        for name, policy in read_each(files, lambda name: read_policy(_file(name)), report):
-            said = {"file": name, **summary(policy), **_so_far(Path(name), policy)}
+        for name, (policy, so_far, ended) in read_each(files, _read, report):
+            said = {"file": name, **summary(policy), **so_far}
             if path is not None:
                 _export(policy, path)
                 report.say(f"wrote {path}")
             elif format == "text":
-                print(f"{name}\n{summary_text(said)}{_still_going(Path(name), policy)}")
+                print(f"{name}\n{summary_text(said)}{ended}")
             summaries.append(said)
         if format == "json" and path is None:
             print(json.dumps(summaries, indent=2, ensure_ascii=False))
     return report.status
 
 
-def _file(name: str) -> Path:
-    from tltl_runtime.commands.policy_path import policy_path
-    from tltl_runtime.policies.shipped import shipped_policy
-
-    path = Path(name)
-    return policy_path(path) if path.exists() else shipped_policy(name) or path
-
-
-def _so_far(path: Path, policy: Policy) -> dict[str, Any]:
-    """How the training in a folder goes that has a policy, but no record yet."""
+def _read(name: str) -> tuple[Policy, dict[str, Any], str]:
+    """A policy; and of one in the folder of a training that has no record yet, how that goes, as JSON and in words."""
+    from tltl_runtime.commands.policy_path import policy_file, progress
+    from tltl_runtime.policies.file import read_policy
     from tltl_runtime.training.record import record_so_far
     from tltl_runtime.training.run import RUN
 
-    return {"training": record_so_far(path)} if not policy.card.training and (path / RUN).exists() else {}
-
-
-def _still_going(path: Path, policy: Policy) -> str:
-    """How far the training in a folder is that has a policy, but no record yet."""
-    from tltl_runtime.commands.policy_path import progress
-    from tltl_runtime.training.run import RUN
-
-    going = not policy.card.training and (path / RUN).exists()
-    return f"  ended    not yet: {progress(path)}\n" if going else ""
+    path = Path(name)
+    policy = read_policy(policy_file(path))
+    if policy.card.training or not (path / RUN).exists():
+        return policy, {}, ""
+    return policy, {"training": record_so_far(path)}, f"  ended    not yet: {progress(path)}\n"
 
 
 def _export(policy: Policy, path: Path) -> None:

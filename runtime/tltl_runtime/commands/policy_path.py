@@ -10,7 +10,7 @@ from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.training.metrics import METRICS, read_metrics
-from tltl_runtime.training.run import POLICY, RUN, named_trainings, read_place
+from tltl_runtime.training.run import POLICY, RUN, named_trainings, read_place, resume_command
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
@@ -68,7 +68,7 @@ def policy_path(path: Path) -> Path:
         return path / POLICY
     if (path / RUN).exists():
         title = f"the training in `{path}` has no policy yet: {progress(path)}"
-        help_ = f"`tltlc train --resume {quote(str(path))}` goes on until it has one; one that is going on has it soon"
+        help_ = f"`{resume_command(path)}` goes on until it has one; one that is going on has it soon"
     elif named := named_trainings(path):
         title, help_ = f"`{path}` holds trainings, and is none itself", named
     else:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
 from tltl_runtime.regression.document import document
 from tltl_runtime.regression.junit import junit
-from tltl_runtime.regression.page.page import ReportedCase, SuiteReport, html_report
+from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
+from tltl_runtime.regression.page.page import html_report
 from tltl_runtime.regression.run import CASES, Done, case_folder
 from tltl_runtime.regression.suite import Suite
 from tltl_runtime.stealth.episodes.episode import Episode
@@ -25,13 +27,14 @@ PAGE: Final = "report.html"
 
 @record
 class Outcome:
-    """What a run of a suite came to; ``left_out`` are the names of cases that no change concerns, ``missing`` of those
-    that were not judged before the run was stopped.
+    """What a run of a suite came to, in its ``folder``; ``left_out`` are the names of cases that no change concerns,
+    ``missing`` of those that were not judged before the run was stopped.
 
     ``complete`` says whether all cases were judged, and trained for, that this was asked for.
     """
 
     suite: Suite
+    folder: Path
     cases: tuple[Done, ...]
     complete: bool
     left_out: tuple[str, ...] = ()
@@ -45,39 +48,51 @@ def json_text(outcome: Outcome) -> str:
     return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
 
 
-def write_reports(outcome: Outcome, json_file: Path | None, junit_file: Path | None) -> None:
-    """Write the reports that were asked for; raises TltlError, TLT0005."""
-    if json_file is not None:
-        write_file(json_file, json_text(outcome), "name another place with --json")
-    if junit_file is not None:
-        text = junit(outcome.suite, [done.report for done in outcome.cases], outcome.missing)
-        write_file(junit_file, text, "name another place with --junit")
+def _junit_text(outcome: Outcome) -> str:
+    return junit(outcome.suite, [done.report for done in outcome.cases], outcome.missing)
 
 
-def write_page(outcome: Outcome, folder: Path, html_file: Path | None) -> Path:
-    """Write the page into the folder of the run, and to where else it was asked for; its path.
-
-    Raises:
-        TltlError: TLT0005, it cannot be written; what drawing it raises.
-    """
+def _page_text(outcome: Outcome) -> str:
+    """The page; raises what drawing it raises."""
     suite = outcome.suite
-    cases = tuple(_reported(done, suite, folder) for done in outcome.cases)
     contents = SuiteReport(
         suite=suite.path.stem,
         seed=suite.seed,
         error=suite.error,
         versions=versions(),
-        cases=cases,
+        cases=tuple(_reported(done, suite, outcome.folder) for done in outcome.cases),
         complete=outcome.complete,
         missing=outcome.missing,
         left_out=outcome.left_out,
     )
-    page = html_report(contents)
-    write_files(folder, {PAGE: page}, "name another folder with --out")
-    if html_file is None:
-        return folder / PAGE
-    write_file(html_file, page, "name another place with --html")
-    return html_file
+    return html_report(contents)
+
+
+REPORTS: Final[Mapping[str, Callable[[Outcome], str]]] = {
+    "--json": json_text,
+    "--junit": _junit_text,
+    "--html": _page_text,
+}
+"""What the files are that can be asked for, by their options; the page, which takes longest, at the end."""
+
+
+def write_reports(outcome: Outcome, files: Mapping[str, Path]) -> Path | None:
+    """Write the reports that are asked for, whose ``files`` are named by their options, and the page into the folder of
+    the run, where it shows anything or is asked for.  Where there is a page to look at; None where there is none.
+
+    Raises:
+        TltlError: TLT0005, a file cannot be written; what drawing the page raises.
+    """
+    texts: dict[str, str] = {}
+    for option, text_of in REPORTS.items():
+        if option in files:
+            texts[option] = text_of(outcome)
+            write_file(files[option], texts[option], f"name another place with {option}")
+    if not outcome.cases and "--html" not in files:
+        return None
+    page = texts.get("--html") or _page_text(outcome)
+    write_files(outcome.folder, {PAGE: page}, "name another folder with --out")
+    return files.get("--html", outcome.folder / PAGE)
 
 
 def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:

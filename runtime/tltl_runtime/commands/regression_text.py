@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 import click
 
 from tltl_runtime.commands.plain import plain
+from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.figures import Figures
 
 _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
 

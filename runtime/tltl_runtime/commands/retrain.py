@@ -14,7 +14,7 @@ from tltl_runtime.commands.shown_training import train_shown
 from tltl_runtime.commands.training_text import minutes as said_minutes
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.baseline import baseline_command
-from tltl_runtime.regression.retrain import forget_training, is_kept, needs_it, retrained, retraining
+from tltl_runtime.regression.retrain import forget_training, is_kept, retrained, retraining
 from tltl_runtime.regression.retrained import Retrained
 from tltl_runtime.regression.run import Done
 from tltl_runtime.regression.suite import SHIPPED, Suite
@@ -37,11 +37,6 @@ class Retraining:
     again: str
 
 
-def wanting(found: list[Done]) -> int:
-    """Of how many cases a training is still to be told."""
-    return sum(needs_it(done) and done.report.retrained is None for done in found)
-
-
 def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> None:
     """Train for each case that needs it, one after the other; what it came to is told at once, and put into ``found``.
 
@@ -49,9 +44,9 @@ def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> N
         TltlError: what training and playing raise.
     """
     runs = {
-        row: retraining(asked.suite, done.ready, asked.folder, asked.minutes, asked.pool)
+        row: retraining(asked.suite, ready, asked.folder, asked.minutes, asked.pool)
         for row, done in enumerate(found)
-        if done.ready is not None and needs_it(done)
+        if (ready := done.to_train)
     }
     for row, run in runs.items():
         done = found[row]

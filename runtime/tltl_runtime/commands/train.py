@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
@@ -15,6 +15,7 @@ from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.senses import senses_options
 from tltl_runtime.commands.workers import WorkersType
 from tltl_runtime.texts import duration, share
+from tltl_runtime.training.choices import Method
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 
@@ -76,7 +77,7 @@ Watching, from another terminal:
 )
 @click.option(
     "--method",
-    type=click.Choice(("automaton", "imitation")),
+    type=click.Choice(get_args(Method)),
     help="What the agent learns from: rewards of the spec's automaton (default), or demonstrations.",
 )
 @click.option(
@@ -126,7 +127,7 @@ def command(
     """Train an agent until it meets a spec.
 
     SPEC is the spec by which it is judged and rewarded; where it is left out, that for which --level is made.
-    The training ends when the spec was met in 100 episodes in a row, and by the policy as it then is in 150 fresh ones;
+    The training ends when the spec was met in 100 episodes in a row, and by the policy as it then is in 300 fresh ones;
     or at a limit.  The folder then holds the policy of the agent (policy.safetensors), the record of the training
     (record.json, curve.png) and what was measured (metrics.jsonl, and event files for TensorBoard).  Ctrl-C keeps what
     was learned, for --resume.
@@ -139,22 +140,33 @@ def command(
         from tltl_runtime.commands.level_argument import check_no_toml
 
         check_no_toml(spec, settings="--config")
-        from tltl_runtime.commands.training_run import Asked, check_limits, new_run, new_settings, resumed_run
+        from tltl_runtime.commands.training_run import (
+            Asked,
+            begins_with,
+            check_limits,
+            new_run,
+            new_settings,
+            resumed_run,
+        )
         from tltl_runtime.training.distributed import peers
+        from tltl_runtime.training.run import resume_command
         from tltl_runtime.training.settings import settings_text
 
         asked = Asked(spec=spec, sensors=sensors, **options)
         if print_config:
-            settings = new_settings(asked) if resume is None else resumed_run(asked, resume).settings
+            settings = (
+                new_settings(asked, begins_with(asked)) if resume is None else resumed_run(asked, resume).settings
+            )
             click.echo(settings_text(settings), nl=False)
             return exits.CLEAN
         run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
+        again = resume_command(run.folder)
         if resume is not None:
             from tltl_runtime.training.record import ended_as
 
             if record := ended_as(run):
                 if peers().rank == 0:
-                    click.echo(_over(run, record))
+                    click.echo(_over(run, record, again))
                 return exits.CLEAN if record["end"] == "met" else exits.FINDINGS
             check_limits(run)
         if peers().rank == 0:
@@ -168,16 +180,16 @@ def command(
 
         report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
         try:
-            last = train_shown(run, resume=resume is not None, again=_resume(run.folder))
+            last = train_shown(run, resume=resume is not None, again=again)
         except KeyboardInterrupt:
-            if stopped := stopped_line(run, _resume(run.folder)):
+            if stopped := stopped_line(run, again):
                 click.echo(stopped, err=True)
             raise
         if peers().rank > 0:
             # torchrun ends all processes as soon as one fails, and the first has a record to write.
             return exits.CLEAN
         write_record(run, last)
-        for line in _ended(run, last):
+        for line in _ended(run, last, again):
             click.echo(line)
         return exits.CLEAN if last.stop == "met" else exits.FINDINGS
     return report.status
@@ -207,8 +219,8 @@ def _begins(run: Run, *, resume: bool) -> Iterator[str]:
     yield f"there is no {CHECKPOINT} in {run.folder}: the training begins anew, {fate}{ways}"
 
 
-def _ended(run: Run, last: Trained) -> Iterator[str]:
-    """How a training ended, what there is now, and what comes next."""
+def _ended(run: Run, last: Trained, again: str) -> Iterator[str]:
+    """How a training ended, what there is now, and what comes next, by the command ``again`` perhaps."""
     window, folder = last.window, quote(str(run.folder))
     ended = "the spec is met" if last.stop == "met" else f"ended by the limit of {last.stop}"
     met = f"met in {window.successes} of the last {window.count} episodes, progress {share(window.progress)}"
@@ -217,11 +229,11 @@ def _ended(run: Run, last: Trained) -> Iterator[str]:
     yield f"{folder}: policy.safetensors, record.json, curve.png"
     yield f"to evaluate it: tltlc evaluate {folder}"
     if last.stop != "met":
-        yield f"to go on, with a higher limit: {_resume(run.folder)} --{last.stop} N"
+        yield f"to go on, with a higher limit: {again} --{last.stop} N"
 
 
-def _over(run: Run, record: Mapping[str, Any]) -> str:
-    """What there is to say of a training that is resumed and has ended."""
+def _over(run: Run, record: Mapping[str, Any], again: str) -> str:
+    """What there is to say of a training that is resumed, by the command ``again``, and has ended."""
     from tltl_runtime.commands.training_text import minutes
 
     over, stop = f"the training in `{run.folder}` is over", run.settings.stop
@@ -231,9 +243,5 @@ def _over(run: Run, record: Mapping[str, Any]) -> str:
         took, limit = f"{record['steps']:,} steps", f"{stop.steps:,}"
     else:
         took, limit = duration(record["seconds"]), minutes(stop.minutes)
-    again = f"{_resume(run.folder)} --{record['end']} N"
-    return f"{over}, and stays as it is: it took {took}, and its limit is {limit}; to go on, with a higher one: {again}"
-
-
-def _resume(folder: Path) -> str:
-    return f"tltlc train --resume {quote(str(folder))}"
+    on = f"{again} --{record['end']} N"
+    return f"{over}, and stays as it is: it took {took}, and its limit is {limit}; to go on, with a higher one: {on}"

@@ -6,7 +6,6 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from shlex import quote
 from typing import Final, Protocol
 
 from rich.console import Console
@@ -26,7 +25,7 @@ from tltl_runtime.commands.training_text import (
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import Run
+from tltl_runtime.training.run import Run, resume_command
 from tltl_runtime.training.search import Searched
 
 _SECONDS_BETWEEN_LINES: Final = 10.0
@@ -105,7 +104,7 @@ class _Lines:
         if first and report.searched:
             self._print(found_line(report.searched), always=True)
         if first:
-            again = f"tltlc train --resume {quote(str(self._run.folder))}"
+            again = resume_command(self._run.folder)
             self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {again}", always=True)
         self._print(line(report, self._run.settings.stop), always=first or report.stop is not None)
 

@@ -16,7 +16,6 @@ from tltl_runtime.commands.initial_policy import (
     check_beginning,
     is_another,
     moved,
-    own_parameters,
     own_place,
 )
 from tltl_runtime.commands.level_argument import check_there, names_level, own_level
@@ -34,12 +33,23 @@ from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task, read_spec
 from tltl_runtime.texts import duration
 from tltl_runtime.training.checkpoint import read_checkpoint
+from tltl_runtime.training.choices import Method
 from tltl_runtime.training.demonstrated import nothing_to_imitate
 from tltl_runtime.training.demonstrations import recordings
 from tltl_runtime.training.distributed import peers
-from tltl_runtime.training.run import CHECKPOINT, MAY_CHANGE, RUN, Run, leaves, read_level_hash, read_run
+from tltl_runtime.training.initial import initial_of
+from tltl_runtime.training.run import (
+    CHECKPOINT,
+    MAY_CHANGE,
+    RUN,
+    Run,
+    leaves,
+    read_level_hash,
+    read_run,
+    resume_command,
+)
 from tltl_runtime.training.settings import Settings, read_settings
-from tltl_runtime.training.settings_file import Method, read_values
+from tltl_runtime.training.settings_file import read_values
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source, reading_error
@@ -74,14 +84,16 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     """
     if asked.level is None and asked.spec is not None and names_level(asked.spec):
         asked = replace(asked, level=asked.spec, spec=None)
-    begun = _begun(asked)
+    begun = begins_with(asked)
     path, variant = _place(asked, begun)
-    settings = new_settings(asked)
+    settings = new_settings(asked, begun)
     _check_demonstrations(asked.demonstrations, settings)
     level = load_level(path, variant)
     offered = params(level)
     spec: str | Fspa = asked.spec or (begun.card.fspa if begun else spec_of(level))
-    own = own_parameters(begun, offered) if begun and asked.spec is None else {}
+    # The policy's own spec has its params, but for those that the level offers.
+    known = begun.card.params if begun and asked.spec is None else {}
+    own = {name: value for name, value in known.items() if name not in offered}
     task = load_task(spec, own, offered=offered)
     check_fit(level, task.fspa, spec)
     check_limit(task.fspa)
@@ -104,15 +116,19 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
         settings=settings,
         seed=seed,
         demonstrations=str(asked.demonstrations) if asked.demonstrations else None,
-        initial=begun.initial if begun else None,
+        initial=initial_of(begun.path, begun.policy) if begun else None,
     )
 
 
-def new_settings(asked: Asked) -> Settings:
-    """The settings that a new training would have; errors as of :func:`read_settings`."""
+def begins_with(asked: Asked) -> Beginning | None:
+    """The policy that a new training is to begin with, None where there is none; errors as of :func:`beginning`."""
+    return None if asked.policy is None else beginning(asked.policy)
+
+
+def new_settings(asked: Asked, begun: Beginning | None) -> Settings:
+    """The settings that a new training would have; errors as of :func:`read_settings` and :func:`as_its_policy`."""
     settings = _with_limits(read_settings(asked.config), asked)
     settings = replace(settings, method=_or(asked.method, settings.method))
-    begun = _begun(asked)
     return settings if begun is None else as_its_policy(settings, begun, asked.config)
 
 
@@ -146,17 +162,12 @@ def check_limits(run: Run) -> None:
     passed: list[tuple[str, str]] = []
     if stop.steps != before.steps and stop.steps <= checkpoint.steps:
         passed.append((f"done {checkpoint.steps:,} steps", f"{stop.steps:,} steps"))
-    if stop.minutes != before.minutes and 0 < stop.minutes * 60 <= checkpoint.seconds:
+    if stop.minutes != before.minutes and stop.is_late(checkpoint.seconds):
         passed.append((f"gone on for {duration(checkpoint.seconds)}", minutes(stop.minutes)))
     if passed:
         help_, where = "give a limit greater than that, or leave it out", f"the training in `{run.folder}`"
         titles = [f"{where} has {done}, and a limit of {limit} would end it at once" for done, limit in passed]
         raise TltlError([Diagnostic("TLT0862", title, help=help_) for title in titles])
-
-
-def _begun(asked: Asked) -> Beginning | None:
-    """The policy to begin with, None where there is none."""
-    return None if asked.policy is None else beginning(asked.policy)
 
 
 def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
@@ -174,7 +185,7 @@ def _place(asked: Asked, begun: Beginning | None) -> tuple[str, str]:
 def _at_its_level(run: Run, asked: Asked) -> Run:
     """The training with the file of its level where it is now."""
     if asked.level is None:
-        check_there(run.level, run.variant, f"tltlc train --resume {quote(str(run.folder))}")
+        check_there(run.level, run.variant, resume_command(run.folder))
         return run
     path, variant = level_place(asked.level)
     if level_hash(load_level(path, variant or "v0")) != read_level_hash(run.folder):

@@ -20,7 +20,8 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
         if path is None or (path.exists() and not path.is_file()):
             continue
         try:
-            with TemporaryFile(dir=path.absolute().parent):
+            # What a link leads to is what is written.
+            with TemporaryFile(dir=path.resolve().parent):
                 pass
         except OSError as error:
             why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)

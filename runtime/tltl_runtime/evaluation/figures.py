@@ -1,8 +1,9 @@
-"""What an evaluation comes to: the figures that are reported, and where failed episodes ended."""
+"""What episodes come to: the figures that are reported of them, and where those ended that failed."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
@@ -28,34 +29,66 @@ class Ended:
 
 @record
 class Figures:
-    """The figures over ``episodes``: ``pass_rate`` with its Wilson interval of 95 %, and the spread of the others.
+    """The figures over so many ``episodes``: ``pass_rate`` with its Wilson interval of 95 %, the spread of the others.
 
     ``progress`` is the best of an episode, in [0, 1], ``reward`` its undiscounted sum, ``steps`` are decisions.
     """
 
+    episodes: int
     pass_rate: float
     pass_interval: tuple[float, float]
     progress: Spread
     reward: Spread
     steps: Spread
+
+
+@record
+class Evaluation:
+    """What an evaluation comes to: figures, how failed episodes ended, and the episodes themselves."""
+
+    figures: Figures
     ended: tuple[Ended, ...]
     episodes: tuple[Played, ...]
 
 
-def figures_of(episodes: Sequence[Played]) -> Figures:
+class Outcome(Protocol):
+    """What figures are made of: how an episode went."""
+
+    @property
+    def success(self) -> bool:
+        """Whether the spec was met."""
+
+    @property
+    def progress(self) -> float:
+        """The best, in [0, 1]."""
+
+    @property
+    def reward(self) -> float:
+        """The sum over the steps."""
+
+    @property
+    def steps(self) -> int:
+        """How many decisions it took."""
+
+
+def figures_of(episodes: Sequence[Outcome]) -> Figures:
     """The figures over episodes; raises ValueError where there are none."""
     passed = sum(each.success for each in episodes)
     # First, since it says in words what is wrong with none.
     interval = wilson(passed, len(episodes))
     return Figures(
+        episodes=len(episodes),
         pass_rate=passed / len(episodes),
         pass_interval=interval,
         progress=spread_of([each.progress for each in episodes]),
         reward=spread_of([each.reward for each in episodes]),
         steps=spread_of([float(each.steps) for each in episodes]),
-        ended=_ended(episodes),
-        episodes=tuple(episodes),
     )
+
+
+def evaluation_of(episodes: Sequence[Played]) -> Evaluation:
+    """What these episodes come to; raises ValueError where there are none."""
+    return Evaluation(figures_of(episodes), _ended(episodes), tuple(episodes))
 
 
 def _ended(episodes: Sequence[Played]) -> tuple[Ended, ...]:

@@ -9,7 +9,7 @@ import gymnasium
 
 from tltl_runtime.evaluation.play import Played, play
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.policies.threads import one_thread
+from tltl_runtime.policies.threads import threads
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.file import to_bytes
 from tltl_runtime.stealth.episodes.trajectory import Trajectory, trajectory
@@ -82,7 +82,8 @@ class Player:
     def play(self, task: Task) -> Result:
         """Play one episode."""
         setup = self._setup
-        with one_thread():
+        # Equal observations give equal logits, on any number of cores.
+        with threads(1):
             played = play(setup.policy, self._env, setup.seed, task.index, task.sampled)
         if self._recorder is None:
             return Result(task, played)

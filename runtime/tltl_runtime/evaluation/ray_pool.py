@@ -12,16 +12,14 @@ from tltl_runtime.evaluation.spread import LostError
 from tltl_runtime.vector.cluster import cluster, free_cores, there
 
 PATIENCE_S: Final = 120.0
-"""How long a cluster whose cores are busy may take to give one."""
+"""How long a cluster whose cores are busy may take to give one, in seconds."""
 
 
 @contextmanager
-def ray_workers(
-    setup: Setup, most: int, waiting: Callable[[float], None], patience: float = PATIENCE_S
-) -> Iterator[list[RayWorker]]:
+def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> Iterator[list[RayWorker]]:
     """A worker on each free core of the cluster, up to ``most``.
 
-    ``waiting`` is told now and then how many seconds of ``patience`` are left for the first of them.
+    ``waiting`` is told now and then for how many more seconds the first of them is waited for.
 
     Raises:
         TltlError: as :func:`cluster`; TLT0852, too, where no core becomes free in time.
@@ -30,7 +28,7 @@ def ray_workers(
         shared = ray.put(setup)
         workers = [RayWorker(ray, shared) for _ in range(min(most, free_cores(ray)))]
         try:
-            came = there(ray, [worker.actor for worker in workers], patience, waiting)
+            came = there(ray, [worker.actor for worker in workers], PATIENCE_S, waiting)
             yield [workers[place] for place in came]
         finally:
             for worker in workers:

@@ -28,14 +28,14 @@ def spread_of(values: Sequence[float]) -> Spread:
     return Spread(fmean(values), stdev(values) if len(values) > 1 else 0.0)
 
 
-def wilson(successes: int, count: int, z: float = Z_95) -> tuple[float, float]:
-    """The score interval of a share, by default that of 95 %: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
+def wilson(successes: int, count: int) -> tuple[float, float]:
+    """The score interval of 95 % of a share: E. B. Wilson, J. Am. Stat. Assoc. 22 (1927), 209-212.
 
     Raises ValueError unless 0 <= ``successes`` <= ``count`` and 0 < ``count``.
     """
     if not 0 <= successes <= count or count == 0:
         raise ValueError(f"{successes} of {count} is no share")
-    share = successes / count
+    share, z = successes / count, Z_95
     middle = share + z * z / (2 * count)
     half = z * sqrt(share * (1 - share) / count + z * z / (4 * count * count))
     scale = 1 + z * z / count

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final
 
-from tltl_runtime.evaluation.figures import Ended, Figures
+from tltl_runtime.evaluation.figures import Ended, Evaluation, Figures
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.stealth.episodes.episode import End
 from tltl_runtime.texts import column, number, share
@@ -19,18 +19,18 @@ _MOST_LISTED: Final = 12
 _ENDS: Final[Mapping[End, str]] = {"violation": "violated", "limit": "out of time"}
 
 
-def report_text(figures: Mapping[str, Figures]) -> str:
+def report_text(evaluations: Mapping[str, Evaluation]) -> str:
     """A table with a column for each way to choose actions, then where failed episodes ended."""
-    every = figures.values()
+    every = [each.figures for each in evaluations.values()]
     lines = [
-        _row("", figures),
-        _row("episodes", [str(len(each.episodes)) for each in every]),
+        _row("", list(evaluations)),
+        _row("episodes", [str(each.episodes) for each in every]),
         _row("pass rate (95 %)", [_rate(each) for each in every]),
         _row("progress", [f"{share(each.progress.mean)} ± {_std(each, each.progress, 2)}" for each in every]),
         _row("reward", [f"{number(each.reward.mean, 2)} ± {_std(each, each.reward, 2)}" for each in every]),
         _row("steps", [f"{each.steps.mean:.0f} ± {_std(each, each.steps, 0)}" for each in every]),
     ]
-    for name, each in figures.items():
+    for name, each in evaluations.items():
         failed = sum(ended.count for ended in each.ended)
         if failed:
             lines += ["", f"{name}: {failed} of {len(each.episodes)} failed"]
@@ -38,7 +38,7 @@ def report_text(figures: Mapping[str, Figures]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _row(name: str, cells: Mapping[str, Figures] | list[str]) -> str:
+def _row(name: str, cells: Sequence[str]) -> str:
     return f"{name:<18}{''.join(f'{cell:<{_WIDTH}}' for cell in cells)}".rstrip()
 
 
@@ -49,7 +49,7 @@ def _rate(each: Figures) -> str:
 
 def _std(each: Figures, spread: Spread, places: int) -> str:
     """A standard deviation, which a single episode does not have."""
-    return number(spread.std, places) if len(each.episodes) > 1 else "-"
+    return number(spread.std, places) if each.episodes > 1 else "-"
 
 
 def _failures(ended: Ended) -> tuple[str, str]:

@@ -10,6 +10,7 @@ from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.signals import readers
 from tltl_runtime.stealth.snapshot import BRANCHES
+from tltl_runtime.texts import listed
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
@@ -34,7 +35,7 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
         raise _unfit(f"the policy chooses among {_sizes(card.branches)} actions, and the game has {_sizes(BRANCHES)}")
     missing = [*_missing(card, level)]
     if missing:
-        title = f"the policy senses {_listed(missing)}, which the level `{level.name}` does not have"
+        title = f"the policy senses {listed(missing, _MOST)}, which the level `{level.name}` does not have"
         raise _unfit(title, f"let it play `{card.level}`, where it was trained, or train one for `{level.name}`")
     if fspa is not None and spec_hash(fspa) != spec_hash(card.fspa):
         title = f"the policy was trained for another spec than `{fspa.name}`: {differences(card.fspa, fspa)}"
@@ -43,7 +44,7 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
 
 def differences(own: Fspa, fspa: Fspa) -> str:
     """In what the spec ``fspa`` differs from ``own``, as which it does not judge; what the designer wrote first."""
-    return _listed([*_differences(own, fspa)])
+    return listed([*_differences(own, fspa)], _MOST)
 
 
 def _missing(card: Card, level: Level) -> Iterator[str]:
@@ -102,11 +103,6 @@ def _limit(fspa: Fspa) -> str:
 
 def _sizes(branches: tuple[int, ...]) -> str:
     return " x ".join(map(str, branches))
-
-
-def _listed(reasons: list[str]) -> str:
-    more = f" and {len(reasons) - _MOST} more" if len(reasons) > _MOST else ""
-    return ", ".join(reasons[:_MOST]) + more
 
 
 def _unfit(title: str, help_: str = "train a policy with this tltlc") -> TltlError:

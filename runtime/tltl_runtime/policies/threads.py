@@ -3,14 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 
 import torch
-
-
-def one_thread() -> AbstractContextManager[None]:
-    """Within, torch computes in one thread, so that equal observations give equal logits on any number of cores."""
-    return threads(1)
 
 
 @contextmanager

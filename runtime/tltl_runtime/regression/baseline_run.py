@@ -9,14 +9,12 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Reference, write_baseline
-from tltl_runtime.regression.kept import identity, kept_text, read_kept
+from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, Told, episodes, ready
 from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict import Verdict, judge
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reason
 from tltlc.record import record
-from tltlc.writing import write_file
+from tltlc.writing import remove_file, write_file
 
 _ADVICE: Final = "name another place with --output"
 
@@ -51,7 +49,7 @@ def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generato
         TltlError: TLT0005, a file cannot be written; what :func:`record_baseline` raises.
     """
     groups, partial = _groups(suite), path.with_name(f"{path.name}.partial")
-    kept, found = read_kept(tuple[Reference, ...], partial, identity([])) or (), list[Reference]()
+    kept, found = read_kept(tuple[Reference, ...], partial, inputs_hash([])) or (), list[Reference]()
     # The place may refuse: better to know before minutes of play.
     _keep(partial, kept)
     for each in _recorded(groups, pool, told, kept):
@@ -59,7 +57,7 @@ def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generato
         _keep(partial, (*found, *(other for other in kept if other not in found)))
         yield each
     write_baseline(path, tuple(found))
-    _remove(partial)
+    remove_file(partial, _ADVICE)
 
 
 def verdict_as_it_is(suite: Suite, case: Case, reference: Reference) -> Verdict:
@@ -103,11 +101,4 @@ def _played(one: Ready, pool: Pool, told: Told) -> Reference:
 
 
 def _keep(path: Path, references: tuple[Reference, ...]) -> None:
-    write_file(path, kept_text(identity([]), references), _ADVICE)
-
-
-def _remove(path: Path) -> None:
-    try:
-        path.unlink(missing_ok=True)
-    except OSError as error:
-        raise TltlError([Diagnostic("TLT0005", f"cannot remove `{path}`: {reason(error)}", help=_ADVICE)]) from None
+    write_file(path, kept_text(inputs_hash([]), references), _ADVICE)

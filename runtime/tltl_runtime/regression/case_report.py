@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Played
 from tltl_runtime.regression.explain import Finding, findings
-from tltl_runtime.regression.figures import Figures, figures
 from tltl_runtime.regression.play import Result
 from tltl_runtime.regression.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.retrained import Retrained
@@ -20,23 +20,25 @@ from tltlc.record import record
 
 @record
 class CaseReport:
-    """What a case came to; of one that cannot be played there are ``reasons`` alone.
+    """What a case came to; of one that cannot be played there are ``causes`` alone.
 
-    ``certain`` and ``rate_interval`` are those of a :class:`~tltl_runtime.regression.verdict.Judgement`, ``baseline``
-    has the figures that it is compared with, ``explanation`` sentences with the episodes that they speak of.
+    ``causes`` are sentences on why it has its verdict, ``explanation`` those with the episodes that they speak of,
+    ``edits`` say what is otherwise than in the baseline.  ``certain`` and ``rate_interval`` are those of a
+    :class:`~tltl_runtime.regression.verdict.Judgement`, ``baseline`` has the figures that it is compared with.
     """
 
     name: str
     level: str
     variant: str
     verdict: Verdict
-    reasons: tuple[str, ...]
+    causes: tuple[str, ...]
     certain: bool = True
     rate_interval: tuple[float, float] = (0.0, 1.0)
     figures: Figures | None = None
     baseline: Figures | None = None
     changes: tuple[Change, ...] = ()
     explanation: tuple[Finding, ...] = ()
+    edits: tuple[str, ...] = ()
     played: Played | None = None
     reference: Played | None = None
     accounts: tuple[Account, ...] = ()
@@ -45,6 +47,11 @@ class CaseReport:
     retrained: Retrained | None = None
     """What a training from its policy came to, None where none was asked for or needed."""
 
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """All that is said of it, the weightiest first."""
+        return (*self.causes, *(finding.text for finding in self.explanation), *self.edits)
+
 
 def report_on(result: Result) -> CaseReport:
     """The report on a case that was played."""
@@ -52,7 +59,6 @@ def report_on(result: Result) -> CaseReport:
     now = [each.account for each in result.episodes]
     before = result.reference.accounts
     level, outdated = result.ready.level, result.ready.outdated
-    told = findings(level, setup.fspa, now, before)
     return CaseReport(
         name=case.name,
         level=level.name,
@@ -61,17 +67,16 @@ def report_on(result: Result) -> CaseReport:
         verdict="review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict,
         certain=result.judgement.certain,
         rate_interval=result.judgement.rate_interval,
-        figures=figures(now),
-        baseline=figures(before),
+        figures=figures_of(now),
+        baseline=figures_of(before),
         changes=result.judgement.changes,
-        reasons=(
+        causes=(
             *([outdated] if outdated else []),
             *reasons(result.judgement, case.thresholds, now, before),
             *obstacles(level, setup.fspa),
-            *(finding.text for finding in told),
-            *edits(result.ready.played, result.reference.played, result.ready.changes),
         ),
-        explanation=told,
+        explanation=findings(level, setup.fspa, now, before),
+        edits=tuple(edits(result.ready.played, result.reference.played, result.ready.changes)),
         played=result.ready.played,
         reference=result.reference.played,
         accounts=tuple(now),

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final
 
+from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.record_json import to_json
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.figures import Figures
 from tltl_runtime.regression.suite import Suite
 
 FORMAT: Final = "tltl-regression"

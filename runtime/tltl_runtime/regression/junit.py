@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 from xml.etree import ElementTree as ET
 
+from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.figures import Figures
 from tltl_runtime.regression.suite import Suite
 
 _NO_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

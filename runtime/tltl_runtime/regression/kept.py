@@ -14,13 +14,13 @@ from tltl_runtime.sources import sources_hash
 T = TypeVar("T")
 
 
-def identity(parts: Sequence[Any]) -> str:
+def inputs_hash(parts: Sequence[Any]) -> str:
     """SHA-256, in hexadecimal, of JSON data and of the code that makes something of it."""
     return hashlib.sha256(json.dumps([*parts, sources_hash()], sort_keys=True).encode()).hexdigest()
 
 
 def kept_text(inputs: str, content: object) -> str:
-    """The text of a file that keeps some content, which depends on what has the identity ``inputs``."""
+    """The text of a file that keeps some content, which depends on what has the hash ``inputs``."""
     return json.dumps({"identity": inputs, "content": to_json(content)}, ensure_ascii=False) + "\n"
 
 

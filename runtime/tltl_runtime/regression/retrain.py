@@ -9,16 +9,15 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.record_json import to_json
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.confidence import rate_interval
-from tltl_runtime.regression.figures import figures
-from tltl_runtime.regression.kept import identity as identity_of
-from tltl_runtime.regression.kept import kept_text, read_kept
+from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, episodes, policy_file
 from tltl_runtime.regression.retrained import Best, Retrained, Trained, outcome_of, sentence
-from tltl_runtime.regression.run import Done, case_folder
+from tltl_runtime.regression.run import WRITABLE, Done, case_folder
 from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.folder import held
@@ -28,9 +27,8 @@ from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, RUN, Ru
 from tltl_runtime.training.settings import read_settings
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reason
 from tltlc.record import replace
-from tltlc.writing import write_files
+from tltlc.writing import remove_file, write_files
 
 FOLDER: Final = "retrained"
 """Below the folder of a run, with a training for each case."""
@@ -39,12 +37,6 @@ EPISODE: Final = "met.episode.npz"
 
 _RESULT: Final = "retrained.json"
 _VERSION: Final = 1
-_WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
-
-
-def needs_it(done: Done) -> bool:
-    """Whether a case asks for a training: it was played, and did not pass."""
-    return done.ready is not None and done.report.verdict != "pass"
 
 
 def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: Pool) -> Run:
@@ -118,11 +110,7 @@ def forget_training(folder: Path) -> None:
     names = (RUN, CHECKPOINT, POLICY, RECORD, CURVE, METRICS, EPISODE, _RESULT)
     with held(folder):
         for path in (*(folder / name for name in names), *folder.glob("events.out.tfevents.*")):
-            try:
-                path.unlink(missing_ok=True)
-            except OSError as error:
-                title = f"cannot remove `{path}`: {reason(error)}"
-                raise TltlError([Diagnostic("TLT0005", title, help=_WRITABLE)]) from None
+            remove_file(path, WRITABLE)
 
 
 def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[int, Account], None]) -> Retrained:
@@ -147,7 +135,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
     thresholds = ready.case.thresholds
     met = sum(each.success for each in (*accounts, *done.report.accounts))
     outcome = outcome_of(trained, interval[0], thresholds, met)
-    of_all, best = figures(accounts), _best(accounts, setup.fspa)
+    of_all, best = figures_of(accounts), _best(accounts, setup.fspa)
     place = f"{FOLDER}/{run.folder.name}"
     found = Retrained(
         outcome=outcome,
@@ -160,7 +148,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
         episode=f"{place}/{EPISODE}" if recording else None,
     )
     files: dict[str, str | bytes] = {EPISODE: recording} if recording else {}
-    write_files(run.folder, {**files, _RESULT: kept_text(inputs, found)}, _WRITABLE)
+    write_files(run.folder, {**files, _RESULT: kept_text(inputs, found)}, WRITABLE)
     return found
 
 
@@ -212,7 +200,7 @@ def _inputs(ready: Ready, weights: str, trained: Trained, error: float, own: Seq
     """The identity of all that the outcome depends on; ``own`` are the episodes by which the case was judged."""
     case = ready.case
     parts = [_VERSION, case.episodes, to_json(case.thresholds), error, to_json(ready.played), weights, to_json(trained)]
-    return identity_of([*parts, sum(each.success for each in own)])
+    return inputs_hash([*parts, sum(each.success for each in own)])
 
 
 def _kept(folder: Path, inputs: str) -> Retrained | None:

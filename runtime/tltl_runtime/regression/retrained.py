@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from tltl_runtime.regression.figures import Figures
+from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.suite import Thresholds
 from tltl_runtime.texts import duration, number, percent
 from tltlc.record import record

@@ -12,22 +12,21 @@ from tltl_runtime.held_folder import held
 from tltl_runtime.record_json import to_json
 from tltl_runtime.regression.baseline import Reference, reference_of
 from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken, report_on_edited
-from tltl_runtime.regression.kept import identity, kept_text, read_kept
+from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, Result, Told, judged, ready
 from tltl_runtime.regression.slugs import slugs
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.episodes.file import SUFFIX
 from tltl_runtime.stealth.world.faults import player_fault
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reason
 from tltlc.record import record, replace
-from tltlc.writing import write_files
+from tltlc.writing import remove_file, write_files
 
 CASES: Final = "cases"
 """In the folder of a run, with a folder for each case."""
 
 _REPORT: Final = "case.json"
-_VERSION: Final = 2
+_VERSION: Final = 3
 _RECORDINGS: Final = 3
 """Of how many episodes of each finding there are recordings."""
 
@@ -35,7 +34,8 @@ _EDITED: Final = "TLT0905"
 _NOT_THE_CASE: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
 """Codes of what is wrong with the workers."""
 
-_WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
+WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
+"""What to do where the folder of a run refuses a file."""
 
 
 @record
@@ -50,6 +50,11 @@ class Done:
     ready: Ready | None = None
     reference: Reference | None = None
 
+    @property
+    def to_train(self) -> Ready | None:
+        """What a training could tell more of: a case that was played and did not pass, unless one has done so."""
+        return self.ready if self.report.verdict != "pass" and self.report.retrained is None else None
+
 
 def check(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
     """Raise TltlError, TLT0903, where the baseline lacks a case that can be played."""
@@ -61,7 +66,7 @@ def owned(folder: Path) -> AbstractContextManager[None]:
     """Within, no other run of a suite uses the folder, which is made where it is missing; raises TLT0904, TLT0005."""
     title = f"another run of `tltlc regress` plays in `{folder}`"
     busy = Diagnostic("TLT0904", title, help="wait for its end, or name another folder with --out")
-    return held(folder, busy, _WRITABLE)
+    return held(folder, busy, WRITABLE)
 
 
 def regress(
@@ -98,12 +103,7 @@ def regress(
 def _forget(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
     """Remove at once what is kept of all of the cases, so that a run that is stopped goes on with fresh ones."""
     for case in cases:
-        path = case_folder(suite, case.name, folder / CASES) / _REPORT
-        try:
-            path.unlink(missing_ok=True)
-        except OSError as error:
-            title = f"cannot remove `{path}`: {reason(error)}"
-            raise TltlError([Diagnostic("TLT0005", title, help=_WRITABLE)]) from None
+        remove_file(case_folder(suite, case.name, folder / CASES) / _REPORT, WRITABLE)
 
 
 def case_folder(suite: Suite, name: str, folder: Path) -> Path:
@@ -165,7 +165,7 @@ def _inputs(one: Ready, reference: Reference, error: float) -> str:
         [each.label.english for each in fspa.states],
         one.outdated,
     ]
-    return identity(parts)
+    return inputs_hash(parts)
 
 
 def _kept(place: Path, inputs: str) -> CaseReport | None:
@@ -183,7 +183,7 @@ def _write(place: Path, inputs: str, result: Result) -> CaseReport:
     named = {index: f"{index}{SUFFIX}" for index in sorted({*spoken_of, *successes[:1]})}
     report = replace(report, recordings=tuple(named.items()))
     recordings = {name: by_index[index] for index, name in named.items()}
-    write_files(place, {**recordings, _REPORT: kept_text(inputs, report)}, _WRITABLE)
+    write_files(place, {**recordings, _REPORT: kept_text(inputs, report)}, WRITABLE)
     for path in place.glob(f"*{SUFFIX}"):
         # Of an earlier run, on another level perhaps.
         if path.name not in recordings:

@@ -12,7 +12,7 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool, evaluate
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash, spec_hash
-from tltl_runtime.regression.kept import identity, kept_text, read_kept
+from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.paper_table import CellFigures, Model
 from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.episodes.outcome import outcome
@@ -70,7 +70,7 @@ def _inputs(level: str, variant: str, policy: Path | None) -> str:
     place = load_level(level, variant)
     spec = load_task(spec_of(place), offered=params(place)).fspa
     played = sha256(policy.read_bytes()).hexdigest() if policy else "expert"
-    return identity([level_hash(place), spec_hash(spec), played, EPISODES, SEED, versions()])
+    return inputs_hash([level_hash(place), spec_hash(spec), played, EPISODES, SEED, versions()])
 
 
 def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[Went]:

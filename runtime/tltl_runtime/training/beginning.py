@@ -1,10 +1,9 @@
-"""What a training begins with: its folder, its environments, and ways that were found by chance."""
+"""What a training begins with: its folder, its environments, and what it knows of how the spec is met."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from shlex import quote
 
 import numpy as np
 from torch import Tensor
@@ -25,18 +24,19 @@ from tltl_runtime.training.run import (
     identity,
     read_level_hash,
     read_run,
+    resume_command,
     write_run,
 )
-from tltl_runtime.training.search import Search, Searched
+from tltl_runtime.training.search import Searched
+from tltl_runtime.training.searching import Searching, searched_first
 from tltl_runtime.training.self_imitation import Lessons
 from tltl_runtime.training.starts import Replayed
 from tltl_runtime.training.streams import Purpose, stream
+from tltl_runtime.training.weighing import dearer
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.env import TLTL_INFO
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.monitor.reward import terminal_penalty
-from tltlc.record import replace
 
 
 def begun(run: Run, resume: bool) -> Checkpoint | None:
@@ -56,7 +56,7 @@ def begun(run: Run, resume: bool) -> Checkpoint | None:
         return checkpoint
     if (run.folder / RUN).exists():
         title = f"`{run.folder}` holds a training already"
-        help_ = f"go on with it by `tltlc train --resume {quote(str(run.folder))}`, or name another place with --out"
+        help_ = f"go on with it by `{resume_command(run.folder)}`, or name another place with --out"
         raise TltlError([Diagnostic("TLT0867", title, help=help_)])
     write_run(run)
     return None
@@ -113,33 +113,23 @@ def prepared(
     device: str,
     played: WorkerVectorEnv,
     checkpoint: Checkpoint | None,
-    searching: Callable[[Searched], None],
-    demonstrated: Demonstrated | None = None,
+    searching: Searching,
+    to_imitate: Demonstrated | None,
 ) -> tuple[TrainingEnv, Searched | None]:
     """What rsl-rl trains with, at the beginning of episodes that no process played before, and what a search found.
 
     This is None where there was no need of one: ways are searched once, unless a limit broke the search off.
     """
-    exploration, searched, restarts, lessons = run.settings.exploration, None, None, None
+    searched, restarts, lessons = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
     if run.settings.searches:
         restarts = _restarts(run, own, checkpoint)
-        if checkpoint is None or _broken_off(run, checkpoint):
-            searched = _searched(run, own, played, checkpoint, restarts, searching)
-        if exploration.imitation:
+        searched = searched_first(run, own, played, restarts, checkpoint, searching)
+        if run.settings.exploration.imitation:
             lessons = Lessons(_env_of(run), restarts)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
     first = [int(each) for each in seeds]
-    return TrainingEnv(played, first, device, restarts, lessons, demonstrated, dearer(run)), searched
-
-
-def dearer(run: Run) -> Callable[[int], float] | None:
-    """How much more the undiscounted terminal penalty is after so many steps; None where it is not to rise to that."""
-    limit, options = run.fspa.limit_steps, run.settings.reward.options
-    if limit is None or run.settings.imitates or not run.settings.reward.rises:
-        return None
-    whole = replace(options, terminal_penalty="undiscounted")
-    return lambda steps: terminal_penalty(limit, steps, whole) - terminal_penalty(limit, steps, options)
+    return TrainingEnv(played, first, device, restarts, lessons, to_imitate, dearer(run)), searched
 
 
 def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:
@@ -152,56 +142,6 @@ def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:
         known = checkpoint.processes[own.rank % len(checkpoint.processes)]
         restarts.load({name: each.numpy() for name, each in known.items()})
     return restarts
-
-
-def _broken_off(run: Run, checkpoint: Checkpoint) -> bool:
-    """Whether a limit broke off the search before the training, and now there is time to make it anew."""
-    limit_s, searched = run.settings.stop.minutes * 60, checkpoint.searched
-    return searched is not None and not searched.complete and not 0 < limit_s <= checkpoint.seconds
-
-
-def _searched(
-    run: Run,
-    own: Peers,
-    played: WorkerVectorEnv,
-    checkpoint: Checkpoint | None,
-    restarts: Restarts,
-    searching: Callable[[Searched], None],
-) -> Searched | None:
-    """Search ways for ``restarts``, until the training's limit of minutes at the latest."""
-    iteration, before_s = (checkpoint.iteration, checkpoint.seconds) if checkpoint else (0, 0.0)
-    search = Search(played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration))
-    return _made(run, search, before_s, restarts, searching)
-
-
-def searched_again(
-    run: Run, own: Peers, env: TrainingEnv, iteration: int, before_s: float, searching: Callable[[Searched], None]
-) -> Searched | None:
-    """Search ways for what the agent fails in, after an iteration and ``before_s`` seconds; its episodes begin anew.
-
-    None where nothing is known of failures.
-    """
-    if env.restarts is None or not env.restarts.failures:
-        return None
-    seed = stream(run, own, Purpose.SEARCH, iteration)
-    search = Search(env.env, run.settings.exploration, seed, env.restarts.failures)
-    searched = _made(run, search, before_s, env.restarts, searching)
-    env.begin_anew()
-    return searched
-
-
-def _made(
-    run: Run, search: Search, before_s: float, restarts: Restarts, searching: Callable[[Searched], None]
-) -> Searched | None:
-    """Make a search, until the training's limit of minutes at the latest; the restarts know its ways then."""
-    limit_s, searched = run.settings.stop.minutes * 60, None
-    for searched in search.run():
-        searching(searched)
-        if 0 < limit_s <= before_s + searched.seconds:
-            break
-    for way in search.ways:
-        restarts.add(way)
-    return searched
 
 
 def _env_of(run: Run) -> Callable[[], TltlEnv]:

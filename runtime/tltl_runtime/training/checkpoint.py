@@ -12,7 +12,10 @@ from typing import Any, Final
 import torch
 from torch import Tensor
 
+from tltl_runtime.training.report import StopReason
+from tltl_runtime.training.run import resume_command
 from tltl_runtime.training.search import Searched
+from tltl_runtime.training.settings import Stop
 from tltl_runtime.training.windows import Score
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reading_error
@@ -58,6 +61,16 @@ class Checkpoint:
     best: Best | None
     met: bool
     standstill: tuple[float, int]
+
+    def reason(self, stop: Stop) -> StopReason | None:
+        """Why a training with these limits is over, if it is."""
+        return "met" if self.met else stop.reached(self.steps, self.seconds)
+
+    @property
+    def weights(self) -> Mapping[str, Tensor]:
+        """Those of the best actor, by name, or of the last one where none is the best yet."""
+        last: Mapping[str, Tensor] = self.algorithm["actor_state_dict"]
+        return self.best.actor if self.best else last
 
 
 _RECORDS: Final[Mapping[str, Any]] = {"best": Best, "searched": Searched}
@@ -145,17 +158,16 @@ def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) 
 
 def level_changed(folder: Path) -> TltlError:
     """TLT0868: the level is another now than the one that the training in ``folder`` began on."""
-    name = quote(str(folder))
     help_ = (
-        f"put it back and go on by `tltlc train --resume {name}`, or train anew on the level as it is now; "
-        f"`tltlc evaluate {name}` plays what was learned"
+        f"put it back and go on by `{resume_command(folder)}`, or train anew on the level as it is now; "
+        f"`tltlc evaluate {quote(str(folder))}` plays what was learned"
     )
     title = f"the level has changed since the training in `{folder}` began"
     return TltlError([Diagnostic("TLT0868", title, help=help_)])
 
 
 def _demonstrations_changed(folder: Path) -> TltlError:
-    again = f"tltlc train --resume {quote(str(folder))}"
+    again = resume_command(folder)
     help_ = f"put them back and go on by `{again}`, or say where they are now: `{again} --demonstrations DIR`"
     title = f"the demonstrations are others than those that the training in `{folder}` began with"
     return TltlError([Diagnostic("TLT0922", title, help=help_)])

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from shlex import quote
 
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.training.run import Initial
+from tltl_runtime.training.run import Initial, resume_command
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
@@ -43,6 +42,6 @@ def read_initial(initial: Initial, folder: Path) -> Policy:
 
 
 def _gone(title: str, folder: Path) -> TltlError:
-    again = f"tltlc train --resume {quote(str(folder))}"
+    again = resume_command(folder)
     help_ = f"put it back and go on by `{again}`, or say where it is now: `{again} --from POLICY`"
     return TltlError([Diagnostic("TLT0940", title, help=help_)])

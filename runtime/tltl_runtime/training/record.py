@@ -125,9 +125,8 @@ def ended_as(run: Run) -> dict[str, Any] | None:
     except (OSError, ValueError, KeyError, TypeError):
         # It is written anew.
         return None
-    if steps >= stop.steps:
-        return {**made, "end": "steps"}
-    return {**made, "end": "minutes"} if 0 < stop.minutes * 60 <= seconds else None
+    limit = stop.reached(steps, seconds)
+    return {**made, "end": limit} if limit else None
 
 
 def _cloned(measured: Sequence[Mapping[str, Any]]) -> int:

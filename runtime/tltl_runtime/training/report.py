@@ -76,6 +76,6 @@ class Report:
     best_steps: int | None
     stop: StopReason | None
     checkpointed: bool
-    searched: Searched | None = None
-    replayed: int = 0
-    imitated: Imitated | None = None
+    searched: Searched | None
+    replayed: int
+    imitated: Imitated | None

@@ -19,6 +19,7 @@ from tltl_runtime.stealth.episodes.file import MAX_BYTES
 from tltl_runtime.stealth.level import Sensors
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.levels.place import absolute_variant
+from tltl_runtime.texts import listed
 from tltl_runtime.training.demonstrations import recordings
 from tltl_runtime.training.settings import Settings, read_settings
 from tltlc.automaton.fspa import Fspa
@@ -216,12 +217,15 @@ def leaves(settings: object, path: str = "") -> Iterator[tuple[str, Any]]:
         yield from leaves(each, f"{path}.{name}".lstrip("."))
 
 
+def resume_command(folder: Path) -> str:
+    """What goes on with the training in a folder, to be pasted."""
+    return f"tltlc train --resume {quote(str(folder))}"
+
+
 def named_trainings(folder: Path) -> str:
     """The trainings that a folder holds, as advice; empty where there is none."""
     found = sorted(path.parent for path in folder.glob(f"*/{RUN}"))
-    named = ", ".join(f"`{each}`" for each in found[:_MOST_NAMED])
-    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
-    return f"name one of them: {named}{more}" if found else ""
+    return f"name one of them: {listed([f'`{each}`' for each in found], _MOST_NAMED)}" if found else ""
 
 
 def _content_hash(folder: Path) -> str:

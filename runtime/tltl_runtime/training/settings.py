@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from tltl_runtime.policies.network import Network, Shapes, model_config
+from tltl_runtime.training.choices import EntropySchedule, Method, PenaltySchedule, Pool
 from tltl_runtime.training.search import Exploration
-from tltl_runtime.training.settings_file import Method, PenaltySchedule, read_values
+from tltl_runtime.training.settings_file import read_values
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source
 from tltlc.monitor import RewardOptions
@@ -37,7 +38,7 @@ class Ppo:
 
     learning_rate: float
     entropy: float
-    entropy_schedule: Literal["fading", "fixed"]
+    entropy_schedule: EntropySchedule
     sharpening: float
     clip: float
     lam: float
@@ -58,7 +59,7 @@ class Rollout:
     envs: int
     steps: int
     workers: int
-    pool: Literal["processes", "ray"]
+    pool: Pool
 
 
 @record
@@ -117,6 +118,16 @@ class Stop:
     confirmation: int
     steps: int
     minutes: float
+
+    def is_late(self, seconds: float) -> bool:
+        """Whether a training of so many seconds has reached the limit of minutes."""
+        return 0 < self.minutes * 60 <= seconds
+
+    def reached(self, steps: int, seconds: float) -> Literal["steps", "minutes"] | None:
+        """The limit that a training of so many steps and seconds has reached, None: neither."""
+        if steps >= self.steps:
+            return "steps"
+        return "minutes" if self.is_late(seconds) else None
 
 
 @record
@@ -244,7 +255,6 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
     return {
         "imitation": settings.exploration.imitation,
         "num_steps_per_env": settings.rollout.steps,
-        "save_interval": 0,
         "threads": settings.threads,
         "obs_groups": {"actor": groups, "critic": groups},
         "actor": model_config(settings.network, shapes, branches),
@@ -262,8 +272,6 @@ def rsl_config(settings: Settings, shapes: Shapes, branches: Sequence[int]) -> d
             "max_grad_norm": ppo.max_gradient,
             # The paper's learning rate stays as it is: `adaptive` would choose another.
             "schedule": "fixed",
-            "desired_kl": None,
-            "rnd_cfg": None,
             **({"gail": gail} if settings.imitates else {}),
         },
     }

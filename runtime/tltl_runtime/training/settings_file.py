@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from math import isfinite
-from typing import Any, Final, Literal, get_args
+from typing import Any, Final, get_args
 
 from tltl_runtime.policies.network import MAX_KERNEL, MAX_LAYERS, MAX_STRIDE, MAX_WIDTH, Activation
 from tltl_runtime.stealth.levels.table import suggestion
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
+from tltl_runtime.training.choices import EntropySchedule, Method, PenaltySchedule, Pool
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.monitor.reward import Mode, TerminalPenalty, Termination
 from tltlc.record import record
@@ -95,12 +96,6 @@ class Text:
         return self.what
 
 
-PenaltySchedule = Literal["rising", "fixed"]
-"""Whether what a violation costs rises as the spec is met."""
-
-Method = Literal["automaton", "imitation"]
-"""What an agent learns from: the rewards of the spec's automaton, or demonstrations."""
-
 Kind = Number | Whole | Wholes | OneOf | Text
 
 _CLASS: Final = Text(r"[A-Za-z_][\w.]*(:[A-Za-z_][\w.]*)?", 'a class, e.g. "package.module:Class"')
@@ -115,7 +110,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
     "ppo": {
         "learning_rate": Number(0.0, 1.0, open=True),
         "entropy": Number(0.0, 10.0),
-        "entropy_schedule": OneOf(("fading", "fixed")),
+        "entropy_schedule": OneOf(get_args(EntropySchedule)),
         "sharpening": Number(1.0, 100.0),
         "clip": Number(0.0, 10.0, open=True),
         "lam": Number(0.0, 1.0),
@@ -130,7 +125,7 @@ KINDS: Final[Mapping[str, Mapping[str, Kind]]] = {
         "envs": Whole(1, 100_000),
         "steps": Whole(2, 100_000),
         "workers": Whole(0, 10_000),
-        "pool": OneOf(("processes", "ray")),
+        "pool": OneOf(get_args(Pool)),
     },
     "network": {
         "hidden": Wholes(Whole(1, MAX_WIDTH), MAX_LAYERS),

@@ -3,43 +3,34 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator
 from contextlib import ExitStack, closing
-from itertools import chain, zip_longest
-from math import isfinite
 
 import torch
 from rsl_rl.algorithms import PPO
-from torch import Tensor
 
-from tltl_runtime.policies.file import check_size, write_policy
-from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.file import check_size
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.available import class_of, device_of
-from tltl_runtime.training.beginning import (
-    begun,
-    demonstrated,
-    environments,
-    initial_weights,
-    prepared,
-    searched_again,
-)
-from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, write_checkpoint
+from tltl_runtime.training.beginning import begun, demonstrated, environments, initial_weights, prepared
+from tltl_runtime.training.checkpoint import Best, Checkpoint, copied
 from tltl_runtime.training.confirmation import confirm
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import Peers, joined
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.gail import Gail
-from tltl_runtime.training.metrics import Metrics
+from tltl_runtime.training.gathered import gathered, own_state, set_generators
+from tltl_runtime.training.keeping import Keeping
 from tltl_runtime.training.policy import card_of, policy_of
-from tltl_runtime.training.report import Confirmation, Report, StopReason
-from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, identity
+from tltl_runtime.training.report import Confirmation, Report
+from tltl_runtime.training.run import Run, identity
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.search import Searched, together
+from tltl_runtime.training.searching import Searching, searched_again
 from tltl_runtime.training.settings import algorithm_name, rsl_config
 from tltl_runtime.training.streams import Purpose, stream
+from tltl_runtime.training.weighing import weighing
 from tltl_runtime.training.windows import Standstill, Windows
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import replace
 
 
@@ -47,7 +38,7 @@ def train(
     run: Run,
     *,
     resume: bool = False,
-    searching: Callable[[Searched], None] = lambda searched: None,
+    searching: Searching = lambda searched: None,
     recording: Callable[[Tried], None] = lambda tried: None,
 ) -> Generator[Report]:
     """Train in ``run.folder``, with a report after each iteration; the last one says why it ends.
@@ -61,8 +52,8 @@ def train(
     demonstrations are named, the recording of the expert's, which tells ``recording`` of each.
 
     Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun each process trains with
-    environments of its own, and all report the same but for losses, times and searches, which are each one's own; the
-    first alone writes.
+    environments of its own, and all report the same but for losses, times and searches, which are each one's own, and
+    for checkpoints, since the first alone writes.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; TLT0854, the environment gave values that are no numbers; TLT0862,
@@ -109,12 +100,10 @@ class _Training:
         runner: Runner,
         begun: Checkpoint | None,
         searched: Searched | None,
-        searching: Callable[[Searched], None],
+        searching: Searching,
     ) -> None:
         self._run, self._own, self._runner, self._searching = run, own, runner, searching
         self._stop = run.settings.stop
-        demonstrated = runner.env.demonstrated
-        self._imitated = demonstrated.about if demonstrated else None
         # As the level is now: what its file holds later was not trained on.
         self._card = card_of(run, runner.env)
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
@@ -123,164 +112,110 @@ class _Training:
             runner.current_learning_iteration = begun.iteration
             self._windows.load(begun.window, begun.unbroken)
             if own.rank < len(begun.processes):
-                _set_own(begun.processes[own.rank], runner)
-        self._sharpness = 1.0
-        self._weigh()
-        self._state = begun or Checkpoint(
-            run=identity(run),
-            iteration=0,
-            losses={},
-            steps=0,
-            seconds=0.0,
-            replayed=0,
-            searched=None,
-            algorithm=copied(runner.alg.save()),
-            processes=(),
-            window=(),
-            unbroken=0,
-            best=None,
-            met=False,
-            standstill=Standstill().state(),
-        )
+                set_generators(begun.processes[own.rank], runner)
+        self._sharpness = self._weigh()
+        self._state = begun or _unbegun(run, runner)
         if searched:
             seconds = own.broadcast(self._state.seconds + searched.seconds)
             if before := self._state.searched:
                 searched = together(before, searched)
             self._state = replace(self._state, searched=searched, seconds=seconds)
         if searched or begun is None:
-            self._state = replace(self._state, processes=tuple(own.gather(_own(runner))))
+            self._state = replace(self._state, processes=tuple(own.gather(own_state(runner))))
         self._seconds_before, self._began = self._state.seconds, time.perf_counter()
         self._replayed_before = self._state.replayed
-        self._saved: Checkpoint | None = begun
-        self._saved_at = self._began
         self._standstill, self._stands_still = Standstill(*self._state.standstill), False
-        self._written: Best | None = None
-        """The best policy of which there is a file."""
+        self._keeping = Keeping(run, self._card, begun) if own.rank == 0 else None
         self._tell_time()
 
     def reports(self) -> Generator[Report]:
         """Train to the end."""
-        metrics = None
         try:
-            if self._own.rank == 0:
-                metrics = self._take_up()
-            if self._state.iteration and (reason := self._reason()):
+            if self._keeping:
+                self._keeping.take_up(self._state)
+            if self._state.iteration and self._state.reason(self._stop):
                 iteration = Iteration(self._state.iteration, 0, (), dict(self._state.losses), 0.0, 0.0)
-                yield self._report(iteration, reason, None, checkpointed=False)
+                yield self._report(self._state, iteration, None, checkpointed=False)
                 return
             for iteration in self._runner.iterations():
-                yield (report := self._after(iteration, metrics))
+                yield (report := self._after(iteration))
                 if report.stop:
                     return
                 if self._stands_still:
                     self._search_again()
         finally:
-            try:
-                self._save()
-            finally:
-                if metrics:
-                    metrics.close()
+            if self._keeping:
+                self._keeping.close(self._state)
 
-    def _take_up(self) -> Metrics:
-        """Bring the folder to where the training is: whoever is killed soon need not search again."""
-        for name in (RECORD, CURVE):
-            (self._run.folder / name).unlink(missing_ok=True)
-        if self._state.iteration and (self._state.best or self._reason()):
-            self._write_policy(self._policy())
-        self._save()
-        return Metrics(self._run.folder, self._run.fspa, after=self._state.iteration, steps=self._state.steps)
-
-    def _after(self, iteration: Iteration, metrics: Metrics | None) -> Report:
+    def _after(self, iteration: Iteration) -> Report:
         """Take up what an iteration gave, and write what is due."""
-        told = self._own.gather((iteration, _own(self._runner), self._runner.env.replayed))
-        for theirs, *_ in told:
-            _check_losses(theirs)
-        # In which order the episodes of different processes ended nobody knows.
-        by_turns = chain.from_iterable(zip_longest(*(theirs.finished for theirs, *_ in told)))
-        finished = tuple(each for each in by_turns if each)
-        iteration = replace(iteration, finished=finished, steps=iteration.steps * self._own.count)
-        self._windows.add(finished)
-        sharpness = self._sharpness
-        self._weigh()
-        self._runner.sharpen(self._sharpness / sharpness)
+        told = gathered(self._own, iteration, self._runner)
+        iteration = told.iteration
+        self._windows.add(iteration.finished)
+        before, self._sharpness = self._sharpness, self._weigh()
+        self._runner.sharpen(self._sharpness / before)
         steps = self._state.steps + iteration.steps
         standstill = self._standstill.state()
         self._stands_still = self._standstill.add(self._windows.window, steps)
-        best = self._best() if finished else self._state.best
+        best = self._best() if iteration.finished else self._state.best
         confirmation = self._confirmation(best, iteration.number) if best and self._windows.met else None
         if confirmation and not confirmation.passed:
             self._windows.refuse()
-        before, self._state = (
+        state = replace(
             self._state,
-            replace(
-                self._state,
-                iteration=iteration.number,
-                losses=iteration.losses,
-                steps=steps,
-                seconds=self._seconds(),
-                replayed=self._replayed_before + sum(replayed for *_, replayed in told),
-                processes=tuple(theirs for _, theirs, _ in told),
-                algorithm=copied(self._runner.alg.save()),
-                window=tuple(self._windows.state()),
-                unbroken=self._windows.unbroken,
-                best=best,
-                met=confirmation is not None and confirmation.passed,
-                # Where it stands still the search is yet to come, of whoever resumes it, too.
-                standstill=standstill if self._stands_still else self._standstill.state(),
-            ),
+            iteration=iteration.number,
+            losses=iteration.losses,
+            steps=steps,
+            seconds=self._seconds(),
+            replayed=self._replayed_before + told.replayed,
+            processes=told.processes,
+            algorithm=copied(self._runner.alg.save()),
+            window=tuple(self._windows.state()),
+            unbroken=self._windows.unbroken,
+            best=best,
+            met=confirmation is not None and confirmation.passed,
+            # Where it stands still the search is yet to come, of whoever resumes it, too.
+            standstill=standstill if self._stands_still else self._standstill.state(),
         )
+        due = self._keeping is not None and (state.reason(self._stop) is not None or self._keeping.is_due)
+        report = self._report(state, iteration, confirmation, checkpointed=due)
+        if self._keeping:
+            self._keeping.measure(report)
+        # An iteration counts once it is measured: of one that is not, no checkpoint may tell.
+        self._state = state
         self._tell_time()
-        reason = self._reason()
-        due = bool(reason) or time.perf_counter() - self._saved_at >= self._run.settings.checkpoint_s
-        report = self._report(iteration, reason, confirmation, checkpointed=due)
-        if metrics:
-            try:
-                metrics.add(report)
-            except BaseException:
-                # An iteration counts once it is measured: of one that is not, no checkpoint may tell.
-                self._state = before
-                raise
-        if due:
-            self._save()
+        if self._keeping and due:
+            self._keeping.save(state)
         return report
 
     def _search_again(self) -> None:
         """Search ways for what the agent fails in; each process does so for its own failures."""
         state = self._state
-        searched = searched_again(
-            self._run, self._own, self._runner.env, state.iteration, state.seconds, self._searching
-        )
-        processes = tuple(self._own.gather(_own(self._runner)))
+        searched = searched_again(self._run, self._own, self._runner.env, state, self._searching)
+        processes = tuple(self._own.gather(own_state(self._runner)))
         seconds = self._seconds()
         if state.searched and searched:
             # Whether it was broken off is asked of the search before the training alone.
             searched = replace(together(state.searched, searched), complete=state.searched.complete)
-            self._state = replace(
-                state,
-                searched=searched,
-                processes=processes,
-                seconds=seconds,
-                standstill=self._standstill.state(),
-            )
-            # Whoever is killed soon need not search again.
-            self._save()
+            standstill = self._standstill.state()
+            self._state = replace(state, searched=searched, processes=processes, seconds=seconds, standstill=standstill)
+            if self._keeping:
+                # Whoever is killed soon need not search again.
+                self._keeping.save(self._state)
 
     def _seconds(self) -> float:
         """How long the training has gone on: what all decide upon must be the same for all, so one has the clock."""
         return self._own.broadcast(self._seconds_before + time.perf_counter() - self._began)
 
-    def _weigh(self) -> None:
-        """Weigh the entropy bonus the less, the more often the spec is met, and failures the more: then there is less
-        to try, and the discounted penalty is less than what a longer way costs that is safe.  What is chosen by chance
-        against what was learned then makes most of the failures, so the likelier choices become likelier.
-        """
-        ppo, stop = self._run.settings.ppo, self._stop
-        met = self._windows.window.successes / (stop.windows * stop.episodes)
-        if ppo.entropy_schedule == "fading":
-            self._runner.alg.entropy_coef = ppo.entropy * (1 - met)
-        rise = max(0.0, 2 * met - 1)
-        self._runner.env.severity = rise
-        self._sharpness = 1 + (ppo.sharpening - 1) * rise
+    def _weigh(self) -> float:
+        """Weigh entropy and failures as the last episodes ask for; how sharp the actor's choices are to be."""
+        # A few successes say little: episodes that have not been played yet count as failures.
+        met = self._windows.window.successes / (self._stop.windows * self._stop.episodes)
+        weights = weighing(self._run.settings.ppo, met)
+        if weights.entropy is not None:
+            self._runner.alg.entropy_coef = weights.entropy
+        self._runner.env.severity = weights.severity
+        return weights.sharpness
 
     def _tell_time(self) -> None:
         """Tell who imitates how long it has trained: it clones for a share of the minutes, where these are limited."""
@@ -305,80 +240,43 @@ class _Training:
         assert found is not None
         return found
 
-    def _reason(self) -> StopReason | None:
-        """Why the training is over, if it is."""
-        if self._state.met:
-            return "met"
-        if self._state.steps >= self._stop.steps:
-            return "steps"
-        return "minutes" if 0 < self._stop.minutes * 60 <= self._state.seconds else None
-
     def _report(
-        self, iteration: Iteration, reason: StopReason | None, confirmation: Confirmation | None, *, checkpointed: bool
+        self, state: Checkpoint, iteration: Iteration, confirmation: Confirmation | None, *, checkpointed: bool
     ) -> Report:
-        best = self._state.best
+        """The report of an iteration that brought the training into this state."""
+        demonstrated = self._runner.env.demonstrated
         return Report(
             iteration=iteration,
-            steps=self._state.steps,
-            seconds=self._state.seconds,
+            steps=state.steps,
+            seconds=state.seconds,
             window=self._windows.window,
-            unbroken=self._windows.unbroken,
+            unbroken=state.unbroken,
             confirmation=confirmation,
-            best_pass_rate=best.score[0] if best else None,
-            best_steps=best.steps if best else None,
-            stop=reason,
+            best_pass_rate=state.best.score[0] if state.best else None,
+            best_steps=state.best.steps if state.best else None,
+            stop=state.reason(self._stop),
             checkpointed=checkpointed,
-            searched=self._state.searched,
-            replayed=self._state.replayed,
-            imitated=self._imitated,
+            searched=state.searched,
+            replayed=state.replayed,
+            imitated=demonstrated.about if demonstrated else None,
         )
 
-    def _save(self) -> None:
-        """Write checkpoint and policy, where there is anything new."""
-        state = self._state
-        if self._own.rank != 0 or state is self._saved:
-            return
-        try:
-            # A policy that cannot be written must not be in a checkpoint.
-            policy = self._policy() if state.best is not self._written or self._reason() else None
-            write_checkpoint(self._run.folder / CHECKPOINT, state)
-            if policy:
-                self._write_policy(policy)
-        except Exception:
-            # It is not tried again at the end; what is broken off by Ctrl-C is.
-            self._saved = state
-            raise
-        self._saved, self._saved_at = state, time.perf_counter()
 
-    def _policy(self) -> Policy:
-        """The best policy, or the last one where none is the best yet."""
-        best = self._state.best
-        return policy_of(self._card, best.actor if best else self._state.algorithm["actor_state_dict"])
-
-    def _write_policy(self, policy: Policy) -> None:
-        write_policy(self._run.folder / POLICY, policy, WRITABLE)
-        self._written = self._state.best
-
-
-def _own(runner: Runner) -> dict[str, Tensor]:
-    """What this process has for itself: see :class:`Checkpoint`."""
-    own = {"cpu": torch.get_rng_state()}
-    if runner.device.startswith("cuda"):
-        own["cuda"] = torch.cuda.get_rng_state(runner.device)
-    if runner.env.restarts:
-        own |= {name: torch.from_numpy(each) for name, each in runner.env.restarts.state().items()}
-    return own
-
-
-def _set_own(own: Mapping[str, Tensor], runner: Runner) -> None:
-    torch.set_rng_state(own["cpu"])
-    if runner.device.startswith("cuda") and "cuda" in own:
-        torch.cuda.set_rng_state(own["cuda"], runner.device)
-
-
-def _check_losses(iteration: Iteration) -> None:
-    wrong = [name for name, loss in iteration.losses.items() if not isfinite(loss)]
-    if wrong:
-        title = f"the training has diverged: in iteration {iteration.number} the loss `{wrong[0]}` is no number"
-        help_ = "train anew with a smaller `learning_rate` or `max_gradient`"
-        raise TltlError([Diagnostic("TLT0866", title, help=help_)])
+def _unbegun(run: Run, runner: Runner) -> Checkpoint:
+    """The state of a training before its first iteration, but for what its processes have for themselves."""
+    return Checkpoint(
+        run=identity(run),
+        iteration=0,
+        losses={},
+        steps=0,
+        seconds=0.0,
+        replayed=0,
+        searched=None,
+        algorithm=copied(runner.alg.save()),
+        processes=(),
+        window=(),
+        unbroken=0,
+        best=None,
+        met=False,
+        standstill=Standstill().state(),
+    )

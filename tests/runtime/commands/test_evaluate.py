@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
 import shutil
 import signal
@@ -143,6 +144,16 @@ def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> No
         f"wrote {folder}: no recordings, ways-sampled.png, ways-arg-max.png, evaluation.json; "
         "look at ways-sampled.png first",
     ]
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
+def test_the_report_for_programs_goes_into_a_pipe(tltlc: Run, policy: Path) -> None:  # noqa: F811
+    there, here = os.pipe()
+    with os.fdopen(there, encoding="utf-8") as pipe:
+        found = tltlc("evaluate", policy, "--episodes", "1", "--json", f"/dev/fd/{here}")
+        os.close(here)
+        assert found.status == 0, found.err
+        assert len(json.load(pipe)["episodes"]) == 1
 
 
 def test_a_recording_names_its_player_once(tltlc: Run, tmp_path: Path) -> None:  # noqa: F811

@@ -134,6 +134,34 @@ def test_how_far_a_training_is(tltlc, tmp_path: Path) -> None:  # type: ignore[n
     assert said["best"]["pass_rate"] == round(last.best_pass_rate, 6)
 
 
+@pytest.mark.parametrize(("broken", "code"), [("checkpoint.pt", "TLT0864"), ("run.json", "TLT0863")])
+def test_a_training_that_is_broken_keeps_no_other_from_being_shown(
+    tltlc,  # type: ignore[no-untyped-def] # noqa: F811
+    policy: Policy,
+    file: Path,
+    tmp_path: Path,
+    broken: str,
+    code: str,
+) -> None:
+    folder = tmp_path / "run"
+    write_run(run_in(folder))
+    write_policy(folder / POLICY, Policy(replace(policy.card, training={}), policy.weights()))
+    (folder / broken).write_text("{}")
+    found: Outcome = tltlc("inspect", str(folder), str(file))
+    assert found.status == 1
+    assert f"error[{code}]: `{folder / broken}` cannot be resumed from" in found.err
+    assert [line for line in found.out.splitlines() if line.endswith(("run", ".safetensors"))] == [str(file)]
+    found = tltlc("inspect", str(folder), str(file), "--format", "json")
+    assert [each["code"] for each in json.loads(found.err)["diagnostics"]] == [code]
+    assert [each["file"] for each in json.loads(found.out)] == [str(file)]
+
+
+def test_a_policy_that_comes_with_a_level(tltlc) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    one, other = (tltlc("inspect", name) for name in ("cover_and_hide", "cover_and_hide:v1"))
+    assert (one.status, one.err) == (other.status, other.err) == (0, "")
+    assert one.out.splitlines()[1:] == other.out.splitlines()[1:]
+
+
 def test_a_stranger_s_file_does_not_command_the_terminal(tltlc, policy: Policy, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     path = tmp_path / "bot.safetensors"
     write_policy(path, Policy(replace(policy.card, level="\x1b[2Jgone\n", versions={"\x07": "\x1b"}), policy.weights()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import signal
@@ -187,6 +188,16 @@ def test_where_nothing_is_concerned(tltlc: Run, game: Path, words: list[str]) ->
     assert ("no case depends on README.md, src/game.py" in found.err) == bool(words)
     (tests,) = ET.parse("report.xml").getroot()
     assert tests.get("tests") == "0"
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
+def test_reports_go_into_pipes(tltlc: Run, game: Path) -> None:  # noqa: F811
+    there, here = os.pipe()
+    with os.fdopen(there, encoding="utf-8") as pipe:
+        found = tltlc("regress", "game.toml", "--json", f"/dev/fd/{here}", *ONE, "--changed", "README.md")
+        os.close(here)
+        assert found.status == 0, found.err
+        assert json.load(pipe)["left_out"] == NAMES
 
 
 def test_a_level_that_does_not_load_fails_with_the_reason(tltlc: Run, game: Path) -> None:  # noqa: F811

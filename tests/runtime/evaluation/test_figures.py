@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.evaluation.figures import Ended, figures_of
+from tltl_runtime.evaluation.figures import Ended, evaluation_of, figures_of
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.text import report_text
 from tltl_runtime.stealth.episodes.episode import End
@@ -37,6 +37,12 @@ def test_figures() -> None:
     assert found.reward.mean == pytest.approx((6 * 0.75 + 1.25 - 4) / 10)
     assert found.steps.mean == pytest.approx(76.0)
     assert found.steps.std == pytest.approx((960 * 9) ** 0.5 / 3)
+    assert found.episodes == 10
+
+
+def test_where_failed_episodes_ended() -> None:
+    found = evaluation_of(EPISODES)
+    assert found.figures == figures_of(EPISODES)
     assert found.ended == (
         Ended(0, "Reach 0.", "violation", 2, 0.2, (2, 4)),
         Ended(0, "Reach 0.", "limit", 1, 0.1, (3,)),
@@ -51,7 +57,7 @@ def test_of_nothing() -> None:
 
 
 def test_text() -> None:
-    found = report_text({"sampled": figures_of(EPISODES), "arg-max": figures_of([PASSED])})
+    found = report_text({"sampled": evaluation_of(EPISODES), "arg-max": evaluation_of([PASSED])})
     assert (
         found
         == """\
@@ -74,5 +80,5 @@ sampled: 4 of 10 failed
 
 
 def test_many_that_ended_alike_are_cut() -> None:
-    found = report_text({"sampled": figures_of([failed(index, 0, "limit", 0.1) for index in range(20)])})
+    found = report_text({"sampled": evaluation_of([failed(index, 0, "limit", 0.1) for index in range(20)])})
     assert "    episodes 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, …\n" in found

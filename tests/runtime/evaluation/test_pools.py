@@ -198,9 +198,12 @@ class Busy:
     """Is there, and does nothing."""
 
 
-def test_a_cluster_without_a_free_core_is_waited_for_and_then_told(policy: Policy, busy: Any) -> None:
+def test_a_cluster_without_a_free_core_is_waited_for_and_then_told(
+    policy: Policy, busy: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     setup = set_up(policy, None, None, None, 3)
-    with pytest.raises(TltlError) as found, ray_pool.ray_workers(setup, 2, lambda left: None, patience=1.0):
+    monkeypatch.setattr(ray_pool, "PATIENCE_S", 1.0)
+    with pytest.raises(TltlError) as found, ray_pool.ray_workers(setup, 2, lambda left: None):
         pass
     (diagnostic,) = found.value.diagnostics
     assert diagnostic.code == "TLT0852"

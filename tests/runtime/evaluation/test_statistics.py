@@ -30,8 +30,8 @@ def test_published_intervals(successes: int, count: int, low: float, high: float
 
 
 def test_by_hand() -> None:
-    # With z = 2 and half of 4: (0.5 + 0.5 ± 2 sqrt(1/16 + 1/16)) / 2.
-    assert wilson(2, 4, z=2.0) == pytest.approx((0.5 - sqrt(1 / 8), 0.5 + sqrt(1 / 8)))
+    # Of half of n the ends lie z / (2 sqrt(n + z²)) off.
+    assert wilson(2, 4) == pytest.approx((0.150039, 0.849961), abs=5e-7)
     assert wilson(100, 100)[1] == 1.0
     assert wilson(0, 100)[0] == 0.0
 

@@ -9,8 +9,8 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from tests.runtime.regression.made import case, several, suite
+from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.figures import figures
 from tltl_runtime.regression.junit import junit
 from tltl_runtime.regression.retrained import Retrained, Trained
 from tltl_runtime.regression.suite import Suite
@@ -42,10 +42,10 @@ RULES: dict[str, tuple[set[str], set[str], set[str]]] = {
 """What the schema says of the elements: its own words are https://github.com/jenkinsci/xunit-plugin's."""
 TEXTS = {"failure", "error", "skipped", "system-out", "system-err"}
 
-GOOD = CaseReport("room:v0", "room", "v0", "pass", ("met in 40 of 40 episodes",), figures=figures(several(40)))
+GOOD = CaseReport("room:v0", "room", "v0", "pass", ("met in 40 of 40 episodes",), figures=figures_of(several(40)))
 DOUBTED = CaseReport("room:v1", "room", "v1", "review", ("reward is lower", "dies `in` the <hall> & more"))
 BAD = CaseReport("room:v2", "room", "v2", "fail", ("it cannot be played any more", "room.toml:3: TLT0803, …"))
-GOOD = replace(GOOD, baseline=figures(several(30, 10)))
+GOOD = replace(GOOD, baseline=figures_of(several(30, 10)))
 SUITE: Suite = suite(case("room:v0"), case("room:v1"), case("room:v2"), path=Path("levels/game.toml"))
 
 
@@ -107,7 +107,7 @@ def test_figures_are_properties() -> None:
 def test_what_a_training_came_to() -> None:
     trained = Trained("met", 4096, 60.0, 200_000, True, 97)
     retrained = Retrained(
-        "learned", "feasible: <after> …", trained, figures(several(3, 1)), (0.2, 0.9), None, "p", None
+        "learned", "feasible: <after> …", trained, figures_of(several(3, 1)), (0.2, 0.9), None, "p", None
     )
     root = read((replace(BAD, retrained=retrained), GOOD))
     bad, _ = root.iter("testcase")
@@ -136,7 +136,7 @@ def test_no_cases() -> None:
 @pytest.mark.parametrize("odd", ["\0", "\x1b[31m", "\x0b", "\ufffe", "]]>", "<![CDATA[", "&#0;", "\U0001f512", "\r"])
 def test_any_text_is_xml(odd: str) -> None:
     text = f"a{odd}b"
-    report = replace(BAD, name=f"room{odd}", reasons=(text, "more"))
+    report = replace(BAD, name=f"room{odd}", causes=(text, "more"))
     root = read((report,))
     (failure,) = root.iter("failure")
     shown = re.sub("[\0\x1b\x0b\ufffe]", "\ufffd", text)
@@ -144,7 +144,7 @@ def test_any_text_is_xml(odd: str) -> None:
 
 
 def test_a_case_without_reasons() -> None:
-    root = read((replace(GOOD, reasons=()), replace(DOUBTED, reasons=())))
+    root = read((replace(GOOD, causes=()), replace(DOUBTED, causes=())))
     good, doubted = root.iter("testcase")
     assert not list(good)
     assert doubted[0].get("message") == "review"

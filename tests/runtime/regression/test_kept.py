@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tltl_runtime.regression.kept import identity, kept_text, read_kept
+from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.table_cells import Went
 
 EPISODES = (Went(True, 1.0, 0.5), Went(False, 0.25, -0.75))
@@ -14,17 +14,17 @@ KIND = tuple[Went, ...]
 
 
 def test_what_was_kept_is_read_again_as_long_as_nothing_has_changed(tmp_path: Path) -> None:
-    path, inputs = tmp_path / "kept.json", identity(["level", 3])
+    path, inputs = tmp_path / "kept.json", inputs_hash(["level", 3])
     path.write_text(kept_text(inputs, EPISODES), encoding="utf-8")
     assert read_kept(KIND, path, inputs) == EPISODES
-    assert read_kept(KIND, path, identity(["level", 4])) is None
+    assert read_kept(KIND, path, inputs_hash(["level", 4])) is None
 
 
 def test_the_code_counts_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = identity([1])
-    assert before == identity([1])
+    before = inputs_hash([1])
+    assert before == inputs_hash([1])
     monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
-    assert identity([1]) != before
+    assert inputs_hash([1]) != before
 
 
 @pytest.mark.parametrize(

@@ -11,12 +11,12 @@ import pytest
 
 from tests.docs.blocks import DOCS, blocks
 from tests.runtime.regression.made import ROOM, case, several, suite
+from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.regression import confidence
 from tltl_runtime.regression import suite as suite_module
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.confidence import rate_interval
 from tltl_runtime.regression.document import FORMAT, VERSION, document
-from tltl_runtime.regression.figures import Figures, figures
 from tltl_runtime.regression.junit import junit
 from tltl_runtime.regression.retrained import Best, Outcome, Retrained, Trained
 from tltl_runtime.regression.suite import LEAST_EPISODES, MOST_EPISODES, Thresholds, read_suite
@@ -66,7 +66,7 @@ def test_the_suites_of_the_page_are_suites(tmp_path: Path) -> None:
 
 
 def test_every_field_of_the_report_is_told_and_no_other() -> None:
-    report = CaseReport("a", "a", "v0", "pass", (), figures=figures(several(2)), accounts=tuple(several(1)))
+    report = CaseReport("a", "a", "v0", "pass", (), figures=figures_of(several(2)), accounts=tuple(several(1)))
     said = document(suite(case("a")), [report], complete=True)
     assert set(rows("field")) - {"tltl"} == set(said)
     (found,) = said["cases"]
@@ -81,8 +81,8 @@ def test_every_field_of_the_report_is_told_and_no_other() -> None:
 
 def test_the_properties_are_those() -> None:
     trained = Trained("met", 1, 1.0, 0, True, None)
-    new = Retrained("learned", "", trained, figures(several(2)), (0.0, 1.0), None, "retrained/a/policy", None)
-    both = figures(several(2))
+    new = Retrained("learned", "", trained, figures_of(several(2)), (0.0, 1.0), None, "retrained/a/policy", None)
+    both = figures_of(several(2))
     report = CaseReport("CASE", "a", "v0", "pass", (), figures=both, baseline=both, retrained=new)
     names = set(re.findall(r'name="(CASE\.\w+)"', junit(suite(case("CASE")), [report])))
     told = set(re.findall(r"`(CASE\.\w+)`", PAGE))

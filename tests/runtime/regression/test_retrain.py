@@ -19,7 +19,6 @@ from tltl_runtime.regression.retrain import (
     forget_training,
     forget_trainings,
     is_kept,
-    needs_it,
     retrained,
     retraining,
 )
@@ -74,10 +73,12 @@ def _game(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
 
 def test_what_needs_it(game: Suite) -> None:
     easy, other, hopeless = judged(game)
-    assert list(map(needs_it, (easy, other, hopeless))) == [False, False, True]
-    assert needs_it(replace(easy, report=replace(easy.report, verdict="review")))
+    assert [done.to_train for done in (easy, other, hopeless)] == [None, None, hopeless.ready]
+    assert replace(easy, report=replace(easy.report, verdict="review")).to_train
     # Of a level that cannot be played nothing can be learned.
-    assert not needs_it(replace(hopeless, ready=None))
+    assert replace(hopeless, ready=None).to_train is None
+    told = retrained(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
+    assert replace(hopeless, report=replace(hopeless.report, retrained=told)).to_train is None
 
 
 def test_the_training_is_the_cases(game: Suite) -> None:

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from tests.runtime.regression.made import several
+from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.record_json import from_json, to_json
-from tltl_runtime.regression.figures import figures
 from tltl_runtime.regression.retrained import Best, Outcome, Retrained, Trained, outcome_of, sentence
 from tltl_runtime.regression.suite import Thresholds
 from tltlc.record import replace
@@ -19,7 +19,7 @@ BEST = Best(0.5, "reach near(exit)")
 
 def told(outcome: Outcome, passed: int, failed: int, **changed: Any) -> str:
     best = BEST if failed else None
-    return sentence(outcome, replace(TRAINED, **changed), figures(several(passed, failed)), Thresholds(), best)
+    return sentence(outcome, replace(TRAINED, **changed), figures_of(several(passed, failed)), Thresholds(), best)
 
 
 @pytest.mark.parametrize(
@@ -63,5 +63,5 @@ def test_a_level_that_is_likely_infeasible() -> None:
 
 
 def test_it_is_read_as_it_was_written() -> None:
-    found = Retrained("no_way", "no", TRAINED, figures(several(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None)
+    found = Retrained("no_way", "no", TRAINED, figures_of(several(0, 2)), (0.0, 0.5), BEST, "retrained/a/p", None)
     assert from_json(Retrained, to_json(found), "retrained") == found

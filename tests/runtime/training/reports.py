@@ -41,6 +41,9 @@ def a_report(
         best_steps=4096 * (number - 1) if count else None,
         stop=stop,
         checkpointed=checkpointed,
+        searched=None,
+        replayed=0,
+        imitated=None,
     )
 
 

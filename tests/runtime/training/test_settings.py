@@ -101,7 +101,7 @@ def test_the_defaults_are_those_of_the_paper() -> None:
     assert settings.network.hidden == (512, 512)
     assert settings.reward.options == RewardOptions(terminal_penalty="discounted", gamma=0.99)
     assert settings.reward.rises
-    assert (settings.stop.windows, settings.stop.episodes, settings.stop.confirmation) == (2, 50, 150)
+    assert (settings.stop.windows, settings.stop.episodes, settings.stop.confirmation) == (2, 50, 300)
 
 
 def test_the_file_of_defaults_has_every_setting_and_no_other() -> None:
@@ -160,6 +160,22 @@ def test_rsl_rl_is_told_all(tmp_path: Path) -> None:
     assert config["actor"]["distribution_cfg"]["branches"] == (3, 2)
     assert config["algorithm"]["clip_param"] == 0.3
     assert rsl_config(read_settings(), {"automaton": (6,)}, (3, 2))["actor"]["class_name"] == "MLPModel"
+
+
+@pytest.mark.parametrize(
+    ("minutes", "steps", "seconds", "limit"),
+    [
+        (0.0, 99, 10.0**6, None),
+        (0.0, 100, 0.0, "steps"),
+        (2.0, 99, 119.0, None),
+        (2.0, 99, 120.0, "minutes"),
+        (2.0, 100, 120.0, "steps"),
+    ],
+)
+def test_the_limit_that_is_reached(minutes: float, steps: int, seconds: float, limit: str | None) -> None:
+    stop = replace(read_settings().stop, steps=100, minutes=minutes)
+    assert stop.reached(steps, seconds) == limit
+    assert stop.is_late(seconds) == (minutes > 0 and seconds == 120.0)
 
 
 @pytest.mark.parametrize("name", WRONG)

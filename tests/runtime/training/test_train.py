@@ -19,7 +19,6 @@ from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
-from tltl_runtime.training.beginning import dearer
 from tltl_runtime.training.checkpoint import Checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.record import write_record
@@ -41,6 +40,7 @@ from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Settings, read_settings
 from tltl_runtime.training.train import train
+from tltl_runtime.training.weighing import dearer
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
 
@@ -150,10 +150,28 @@ def test_a_training_that_is_broken_off_while_it_saves_saves_again(
 
     reports = train(run := run_in(folder / "broken"))
     next(reports)
-    monkeypatch.setattr("tltl_runtime.training.train.write_checkpoint", broken_off)
+    monkeypatch.setattr("tltl_runtime.training.keeping.write_checkpoint", broken_off)
     with pytest.raises(KeyboardInterrupt):
         next(reports)
     assert checkpoint_of(run).iteration == 2
+
+
+@pytest.mark.parametrize("broken", ["train.Report", "metrics.Metrics.add"])
+def test_no_checkpoint_tells_of_an_iteration_that_was_not_measured(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, broken: str
+) -> None:
+    def broken_off(*_: object, **__: object) -> None:
+        monkeypatch.undo()
+        raise KeyboardInterrupt
+
+    reports = train(run := run_in(folder / f"before-{broken}"))
+    next(reports)
+    monkeypatch.setattr(f"tltl_runtime.training.{broken}", broken_off)
+    with pytest.raises(KeyboardInterrupt):
+        next(reports)
+    assert checkpoint_of(run).iteration == 1
+    assert [each.iteration.number for each in train(run, resume=True)] == [2, 3]
+    assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == [1, 2, 3]
 
 
 def test_a_training_goes_on_until_its_policy_is_confirmed(folder: Path) -> None:
@@ -345,7 +363,7 @@ def test_a_search_at_a_standstill_is_in_the_checkpoint_with_its_time(
     first = len(told)
     next(reports)
     # It is killed then.
-    monkeypatch.setattr("tltl_runtime.training.train._Training._save", lambda _: None)
+    monkeypatch.setattr("tltl_runtime.training.keeping.Keeping.save", lambda *_: None)
     reports.close()
     kept = checkpoint_of(run)
     assert before.searched is not None and kept.searched is not None
@@ -415,28 +433,3 @@ def test_a_training_that_is_resumed_weighs_as_it_did(folder: Path) -> None:
     losses = next(train(run, resume=True)).iteration.losses
     assert losses["severity"] == pytest.approx(0.6)
     assert losses["weight"] == pytest.approx(0.002)
-
-
-def test_the_discounted_penalty_rises_to_the_undiscounted_one(folder: Path) -> None:
-    run = run_in(folder / "rising")
-    limit = run.fspa.limit_steps
-    rise = dearer(run)
-    assert limit is not None
-    assert rise is not None
-    assert rise(0) == pytest.approx(1 - (1 - 0.99**limit) / (0.01 * limit))
-    assert rise(limit - 1) == pytest.approx(0.0)
-    assert rise(limit) == 0.0
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"reward__penalty_schedule": "fixed"},
-        {"reward__terminal_penalty": "undiscounted"},
-        {"reward__mode": "sparse"},
-        {"method": "imitation"},
-        {"spec": "import stealth\nspec unlimited { level cover_and_hide\n reach sneaking }\n"},
-    ],
-)
-def test_no_other_penalty_rises(folder: Path, changes: dict[str, str]) -> None:
-    assert dearer(run_in(folder / "other", **changes)) is None

@@ -15,6 +15,9 @@ from tltlc.backends.drawing.folding import folded
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record, replace
 
+_LAYOUT_LIMIT_S: Final = 10.0
+"""For each attempt to lay an automaton out, in seconds."""
+
 _NUMBER: Final = re.compile(r"-?\d+(?:\.\d+)?")
 _TITLE: Final = "{http://www.w3.org/1999/xlink}title"
 _THINNEST, _THICKEST = 0.8, 7.0
@@ -32,12 +35,12 @@ class Drawn:
     notes: tuple[str, ...]
 
 
-def drawn(fspa: Fspa, limit_s: float = 10.0) -> Drawn:
-    """The automaton's picture, laid out in a process of its own; each attempt ends after ``limit_s`` seconds."""
+def drawn(fspa: Fspa) -> Drawn:
+    """The automaton's picture, laid out in a process of its own; each attempt ends after some seconds."""
     found: list[Diagnostic] = []
     try:
         # What the spec is for stands above the picture already.
-        files = emit("svg", replace(fspa, doc=""), Options(layout_limit_s=limit_s, report=found.append))
+        files = emit("svg", replace(fspa, doc=""), Options(layout_limit_s=_LAYOUT_LIMIT_S, report=found.append))
     except TltlError as error:
         return Drawn(None, tuple(_said(each) for each in error.diagnostics))
     ((name, content),) = files.items()

@@ -23,7 +23,6 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
         "slug": slug,
         "map": map_data(level),
         "states": [state.label.english for state in fspa.states],
-        "atoms": [atom.name for atom in fspa.atoms],
         "now": _all_of(level.bounds, case.report.accounts),
         "before": _all_of(level.bounds, case.before),
         "episodes": [recorded(index, case.episodes[index]) for index in sorted(case.episodes)],
@@ -32,7 +31,6 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
 
 def _all_of(bounds: Box, accounts: Sequence[Account]) -> dict[str, Any]:
     return {
-        "count": len(accounts),
         "ways": [_way(bounds, each) for each in accounts],
         "time": _heat(time_spent(bounds, accounts)),
         "failed": _heat(failed_ends(bounds, accounts)),

@@ -67,7 +67,6 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
         data_verdict=report.verdict,
         aria_labelledby=f"title:{slug}",
         data_when="now",
-        data_shown="ways",
     )
 
 
@@ -85,13 +84,9 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
 
 def _why(report: CaseReport, episodes: Mapping[int, Episode], slug: str) -> Iterator[Markup]:
     """The reasons; those that are explanations with links to the episodes that they speak of."""
-    told = list(report.explanation)
-    lines = []
-    for reason in report.reasons:
-        # Reasons tell the findings in their order; equal sentences may speak of other episodes.
-        finding = told.pop(0) if told and told[0].text == reason else None
-        lines.append(element("li", prose(reason), _links(finding, episodes, slug) if finding else None))
-    lines += [element("li", prose(each.text), _links(each, episodes, slug)) for each in told]
+    lines = [element("li", prose(each)) for each in report.causes]
+    lines += [element("li", prose(each.text), _links(each, episodes, slug)) for each in report.explanation]
+    lines += [element("li", prose(each)) for each in report.edits]
     if lines:
         yield element("h3", "Why")
         yield element("ul", *lines, class_="reasons")
@@ -103,7 +98,7 @@ def _retrained(case: ReportedCase) -> Iterator[Markup]:
     if retrained is None:
         return
     yield element("h3", "Trained anew from its policy")
-    yield element("p", prose(retrained.text), class_="retrained")
+    yield element("p", prose(retrained.text))
     yield element("p", f"policy: {retrained.policy}", class_="facts")
     if case.curve:
         source = f"data:image/png;base64,{base64.b64encode(case.curve).decode()}"

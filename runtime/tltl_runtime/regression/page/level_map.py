@@ -77,7 +77,6 @@ def map_data(level: Level) -> dict[str, Any]:
     """
     plan = _Plan(level.bounds)
     return {
-        "size": plan.size,
         "blocks": [_block(plan, solid.box) for solid in level.solids if solid.kind != "floor"],
         "barriers": [{"kind": barrier.kind, "block": _block(plan, barrier.box)} for barrier in level.barriers],
         "movers": [[round(100 * side) for side in mover.size[:2]] for mover in level.movers],
@@ -137,14 +136,14 @@ def _entities(level: Level, plan: _Plan) -> Iterable[Markup]:
     for mover in level.movers:
         title = element("title", f"way of {mover.name}")
         yield element("polyline", title, class_="mover-way", points=plan.line(mover.path))
-    for row, barrier in enumerate(level.barriers):
+    for barrier in level.barriers:
         title = element("title", barrier.name)
-        yield element("rect", title, class_=f"barrier {barrier.kind}", data_row=row, **plan.sides(barrier.box))
-    for row, switch in enumerate(level.switches):
+        yield element("rect", title, class_=f"barrier {barrier.kind}", **plan.sides(barrier.box))
+    for switch in level.switches:
         x, y = plan.at(switch.position)
         radius = round(100 * switch.radius)
         title = element("title", switch.name)
-        yield element("circle", title, class_="switch", data_row=row, cx=x, cy=y, r=radius)
+        yield element("circle", title, class_="switch", cx=x, cy=y, r=radius)
     for way_out in level.exits:
         title = element("title", way_out.name)
         yield element("polygon", title, class_="exit", points=_star(*plan.at(way_out.position)))

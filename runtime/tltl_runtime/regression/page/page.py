@@ -11,15 +11,13 @@ from typing import Any, Final
 from tltl_runtime.regression.page.automaton import Drawn, drawn
 from tltl_runtime.regression.page.case_data import case_data
 from tltl_runtime.regression.page.case_section import case_section
-from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
+from tltl_runtime.regression.page.contents import SuiteReport
 from tltl_runtime.regression.page.markup import as_script, element, joined
 from tltl_runtime.regression.page.style import colours
 from tltl_runtime.regression.page.summary import summary
 from tltl_runtime.regression.slugs import slugs
 from tltl_runtime.stealth.pictures.plan import state_colour
 from tltlc.automaton.fspa import Fspa
-
-__all__ = ["ReportedCase", "SuiteReport", "html_report"]
 
 _FOLDER: Final = Path(__file__).parent
 _SCRIPTS: Final = ("packing.js", "level_map.js", "player.js", "report.js")

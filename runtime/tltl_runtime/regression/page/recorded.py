@@ -23,8 +23,6 @@ def recorded(index: int, episode: Episode) -> dict[str, Any]:
     shots, bounds = episode.snapshots, episode.level.bounds
     return {
         "index": index,
-        "end": episode.end,
-        "success": episode.success,
         "why": cause(episode).text,
         "time": steps((shot.time for shot in shots), 1000),
         "state": runs(episode.states.tolist()),

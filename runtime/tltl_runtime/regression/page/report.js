@@ -31,7 +31,6 @@ class CaseView {
     const when = form.get("when") ?? "now";
     const shown = form.get("shown");
     this.section.dataset.when = when;
-    this.section.dataset.shown = shown;
     this.player.close();
     this.isDrawn = true;
     const all = this.facts[when];

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.figures import Figures
 from tltl_runtime.regression.page.contents import SuiteReport
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose, short
 from tltl_runtime.regression.verdict import Verdict
 
 _VERDICTS: tuple[Verdict, ...] = ("pass", "review", "fail")
-_HEADS = ("Case", "Verdict", "Met", "Progress", "Reward", "Why")
+_HEADS = ("Verdict", "Met", "Progress", "Reward", "Why")
+"""Of the columns behind the name of the case."""
 
 
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
@@ -29,10 +30,10 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
         *(f"{name} {version}" for name, version in suite.versions.items()),
     ]
     rows = [_row(report, slug) for report, slug in zip(reports, slugs, strict=True)]
-    head = element("thead", element("tr", *(element("th", each, scope="col") for each in _HEADS)))
+    head = element("thead", element("tr", *(element("th", each, scope="col") for each in ("Case", *_HEADS))))
     return joined(
         (
-            element("h1", "Regression report: ", element("span", suite.suite, class_="suite")),
+            element("h1", f"Regression report: {suite.suite}"),
             None if suite.complete else least,
             _named("Not judged", suite.missing),
             _named("Left out, since nothing has changed that they depend on", suite.left_out),
@@ -61,16 +62,18 @@ def badge(verdict: Verdict) -> Markup:
 
 def _row(report: CaseReport, slug: str) -> Markup:
     now, before = report.figures, report.baseline
-    reason = prose(report.reasons[0]) if report.reasons else None
     cells = (
-        ("Verdict", badge(report.verdict)),
-        ("Met", _met(now, before) if now else "–"),
-        ("Progress", _against(now.progress.mean, before.progress.mean if before else None) if now else "–"),
-        ("Reward", _against(now.reward.mean, before.reward.mean if before else None) if now else "–"),
-        ("Why", reason),
+        badge(report.verdict),
+        _met(now, before) if now else "–",
+        _against(now.progress.mean, before.progress.mean if before else None) if now else "–",
+        _against(now.reward.mean, before.reward.mean if before else None) if now else "–",
+        prose(report.reasons[0]) if report.reasons else None,
     )
     name = element("th", element("a", report.name, href=f"#{slug}"), scope="row")
-    written = [element("td", inside, data_head=head, class_=f"cell-{head.lower()}") for head, inside in cells]
+    written = [
+        element("td", inside, data_head=head, class_=f"cell-{head.lower()}")
+        for head, inside in zip(_HEADS, cells, strict=True)
+    ]
     return element("tr", name, *written, data_verdict=report.verdict)
 
 

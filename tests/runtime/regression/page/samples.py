@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cache
 
+from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.regression.account import Account, account
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.explain import findings
-from tltl_runtime.regression.figures import figures
-from tltl_runtime.regression.page.page import ReportedCase, SuiteReport
+from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
 from tltl_runtime.regression.verdict import Verdict
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.episode import Episode
@@ -105,9 +105,9 @@ def reported(
         level=level.name,
         variant=level.variant,
         verdict=verdict,
-        reasons=(f"met in {passed} of {len(now)} episodes", *(finding.text for finding in told)),
-        figures=figures(accounts),
-        baseline=figures(used),
+        causes=(f"met in {passed} of {len(now)} episodes",),
+        figures=figures_of(accounts),
+        baseline=figures_of(used),
         explanation=told,
         accounts=tuple(accounts),
     )

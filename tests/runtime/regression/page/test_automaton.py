@@ -108,8 +108,9 @@ def test_runs_of_states_that_count_are_one_group() -> None:
     assert "; now: taken by 4 of 5 episodes" in leaving
 
 
-def test_a_layout_that_takes_too_long_is_said_in_place(fspa: Fspa) -> None:
-    made = drawn(fspa, limit_s=0.0)
+def test_a_layout_that_takes_too_long_is_said_in_place(fspa: Fspa, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.regression.page.automaton._LAYOUT_LIMIT_S", 0.0)
+    made = drawn(fspa)
     assert made.svg is None
     assert made.notes == (f"The automaton of {len(fspa.states)} states is too tangled to be drawn in time.",)
 

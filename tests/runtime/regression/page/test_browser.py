@@ -231,7 +231,7 @@ def test_names_run_nothing(browser: Browser, tmp_path: Path) -> None:
     evil = "</script><b onclick='x'>"
     enemies = tuple(replace(each, name=evil) for each in case.level.enemies)
     level = replace(case.level, name=evil, enemies=enemies)
-    report = replace(case.report, name=evil, level=evil, reasons=(evil, *case.report.reasons))
+    report = replace(case.report, name=evil, level=evil, causes=(evil, *case.report.causes))
     path = tmp_path / "evil.html"
     path.write_text(html_report(replace(suite, cases=(replace(case, level=level, report=report),))), encoding="utf-8")
     with chromium.opened(browser, path, "#script-b-onclick-x/0/3", **WIDE) as tab:

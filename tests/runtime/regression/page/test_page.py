@@ -14,10 +14,11 @@ import pytest
 
 from tests.runtime.regression.made import several
 from tests.runtime.regression.page import samples
+from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.explain import Finding
-from tltl_runtime.regression.figures import figures
-from tltl_runtime.regression.page.page import ReportedCase, SuiteReport, html_report
+from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
+from tltl_runtime.regression.page.page import html_report
 from tltl_runtime.regression.retrained import Retrained, Trained
 from tltlc.record import replace
 
@@ -121,11 +122,10 @@ def test_explanations_link_to_the_recorded_ones_of_their_episodes() -> None:
 def test_equal_sentences_link_to_their_own_episodes() -> None:
     case = samples.suite().cases[1]
     told = (Finding("it fails", (0,)), Finding("it fails", (1,)))
-    report = replace(case.report, reasons=("met in 0", "it fails", "it fails", "changed"), explanation=told)
-    found = Page(html_report(SuiteReport("equal", 0, 0.05, {}, (replace(case, report=report),))))
-    links = [each["href"] or "" for each in found.all("a") if each.get("class") == "episode"]
-    assert [link.split("/")[1] for link in links] == ["0", "1"]
-    assert found.texts.count("it fails") == 2
+    report = replace(case.report, causes=("met in 0", "it fails"), explanation=told, edits=("it fails",))
+    text = html_report(SuiteReport("equal", 0, 0.05, {}, (replace(case, report=report),)))
+    lines = re.findall(r"<li>it fails(.*?)</li>", text)
+    assert [re.findall(r"#cover_and_hide-v0/(\d)/", line) for line in lines] == [[], ["0"], ["1"], []]
 
 
 def test_nothing_is_loaded_from_outside() -> None:
@@ -161,7 +161,7 @@ def test_names_bring_no_markup_into_the_page() -> None:
         atoms=tuple(replace(each, name=EVIL) for each in case.fspa.atoms),
     )
     accounts = tuple(replace(each, by=(EVIL,)) for each in case.report.accounts)
-    report = replace(case.report, name=EVIL, level=EVIL, reasons=(EVIL,), explanation=(), accounts=accounts)
+    report = replace(case.report, name=EVIL, level=EVIL, causes=(EVIL,), explanation=(), accounts=accounts)
     evil = ReportedCase(report, level, fspa, case.episodes, case.before)
     text = html_report(SuiteReport(EVIL, 0, 0.05, {EVIL: EVIL}, (evil,)))
     plain = html_report(SuiteReport("s", 0, 0.05, {"v": "1"}, (case,)))
@@ -177,7 +177,9 @@ def test_names_bring_no_markup_into_the_page() -> None:
 
 def test_a_training_is_told_with_its_curve() -> None:
     trained = Trained("minutes", 4096, 60.0, 200_000, True, None)
-    told = Retrained("no_way", f"no way found: {EVIL}", trained, figures(several(0, 2)), (0.0, 0.5), None, "a/p", None)
+    told = Retrained(
+        "no_way", f"no way found: {EVIL}", trained, figures_of(several(0, 2)), (0.0, 0.5), None, "a/p", None
+    )
     suite = samples.suite()
     case = replace(suite.cases[0], report=replace(suite.cases[0].report, retrained=told), curve=b"a curve")
     shown = Page(html_report(replace(suite, cases=(case, *suite.cases[1:]))))

@@ -1,0 +1,175 @@
+"""What ``tltlc regress`` does: cases are played, trained for where this is asked for, and reported on."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from shlex import join, quote
+from typing import Final
+
+import click
+
+from tltl_runtime.commands.plain import plain
+from tltl_runtime.commands.regression_display import RegressionDisplay
+from tltl_runtime.commands.regression_files import REPORTS, Outcome, json_text, write_reports
+from tltl_runtime.commands.regression_text import case_lines, sum_line
+from tltl_runtime.commands.retrain import Retraining, retrain_cases
+from tltl_runtime.commands.writable import check_writable
+from tltl_runtime.evaluation.evaluate import Pool
+from tltl_runtime.regression.baseline import Reference, baseline_of
+from tltl_runtime.regression.dependencies import select
+from tltl_runtime.regression.github import findings_as_commands
+from tltl_runtime.regression.retrain import forget_trainings
+from tltl_runtime.regression.run import Done, check, owned, regress
+from tltl_runtime.regression.suite import SHIPPED, Case, Suite, read_suite
+from tltl_runtime.texts import listed
+from tltlc.cli import exits
+from tltlc.record import record
+
+_MOST_NAMED: Final = 8
+"""Of the files on which no case depends, as many are named."""
+
+
+@record
+class Wanted:
+    """What was asked for: the suite as it was named, where its files go, and how it is played.
+
+    ``files`` are those of reports, by their options, ``folder`` is that of the run.  Of a training for each case that
+    does not pass, ``minutes`` are the most; None: none is trained.
+    """
+
+    suite: Path | None
+    changed: tuple[str, ...] | None
+    folder: Path
+    files: Mapping[str, Path]
+    github: bool
+    fresh: bool
+    workers: Pool
+    baseline: Path | None
+    minutes: float | None
+
+    @property
+    def is_json(self) -> bool:
+        """Whether standard output is for the report as JSON alone."""
+        return str(self.files.get("--json")) == "-"
+
+    @property
+    def written(self) -> dict[str, Path]:
+        """The files of reports; standard output is none."""
+        return {option: path for option, path in self.files.items() if option != "--json" or not self.is_json}
+
+
+def run(wanted: Wanted) -> int:
+    """Judge the cases that are asked for, and report on them; the exit status.
+
+    Where it is asked to end, it reports on what there is, and KeyboardInterrupt goes on.
+
+    Raises:
+        TltlError: TLT0005, a file cannot be written; what reading the suite, playing and training raise.
+    """
+    check_writable(wanted.written)
+    suite = read_suite(wanted.suite or SHIPPED, wanted.baseline)
+    cases, left_out = _chosen(suite, wanted.changed)
+    references = baseline_of(suite) if cases else ()
+    check(suite, cases, references)
+    found: list[Done] = []
+    with owned(wanted.folder):
+        if wanted.fresh and wanted.minutes is not None:
+            # At once, so that a run that is stopped goes on with fresh ones.
+            forget_trainings(suite, cases, wanted.folder)
+        try:
+            _play(suite, cases, references, wanted, found)
+            _retrain(suite, wanted, found)
+        except KeyboardInterrupt:
+            _stopped(wanted, found, len(cases))
+            raise
+        finally:
+            missing = tuple(case.name for case in cases[len(found) :])
+            complete = not missing and not _untrained(wanted, found)
+            _tell(Outcome(suite, wanted.folder, tuple(found), complete, left_out, missing), wanted)
+    return exits.CLEAN if all(done.report.verdict == "pass" for done in found) else exits.FINDINGS
+
+
+def _chosen(suite: Suite, changed: Sequence[str] | None) -> tuple[tuple[Case, ...], tuple[str, ...]]:
+    """The cases to be judged, and the names of those that are left out, which standard error tells."""
+    if changed is None:
+        return suite.cases, ()
+    found = select(suite, changed)
+    if found.unknown:
+        click.echo(f"no case depends on {plain(listed(found.unknown, _MOST_NAMED))}", err=True)
+    left_out = tuple(case.name for case in found.left_out)
+    if left_out:
+        click.echo(f"left out, since nothing has changed that they depend on: {plain(', '.join(left_out))}", err=True)
+    return found.cases, left_out
+
+
+def _play(
+    suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...], wanted: Wanted, found: list[Done]
+) -> None:
+    """Play the cases; each that is over is told at once, and added to ``found``."""
+    width = max((len(plain(case.name)) for case in cases), default=0)
+    with (
+        RegressionDisplay("at most") as display,
+        closing(
+            regress(suite, cases, references, wanted.folder, wanted.workers, display, fresh=wanted.fresh)
+        ) as running,
+    ):
+        for done in running:
+            found.append(done)
+            display.over()
+            for line in case_lines(done.report, width, kept=done.kept):
+                click.echo(line, err=wanted.is_json)
+
+
+def _retrain(suite: Suite, wanted: Wanted, found: list[Done]) -> None:
+    """Train for the cases in ``found`` that do not pass, where this is asked for."""
+    if wanted.minutes is not None:
+        again = join([*_again(wanted), "--retrain"])
+        asked = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, again)
+        retrain_cases(asked, found, to_stderr=wanted.is_json)
+
+
+def _untrained(wanted: Wanted, found: list[Done]) -> int:
+    """For how many cases a training is asked for that is not over."""
+    return 0 if wanted.minutes is None else sum(done.to_train is not None for done in found)
+
+
+def _again(wanted: Wanted) -> list[str]:
+    """The words of the command that goes on with a run, but for --retrain and its --minutes."""
+    options = {
+        "--out": wanted.folder,
+        "--baseline": wanted.baseline,
+        **{option: wanted.files.get(option) for option in REPORTS},
+        "--workers": wanted.workers or None,
+    }
+    words = ["tltlc", "regress", *([str(wanted.suite)] if wanted.suite else [])]
+    for name, value in options.items():
+        words += [] if value is None else [name, str(value)]
+    words += ["--github"] if wanted.github else []
+    return words if wanted.changed is None else [*words, "--changed", *wanted.changed]
+
+
+def _stopped(wanted: Wanted, found: list[Done], cases: int) -> None:
+    """Say what is left of a run that was ended, and what goes on with it."""
+    words = _again(wanted)
+    if wanted.minutes is not None:
+        words += ["--retrain", "--minutes", f"{wanted.minutes:g}"]
+    done = f"{len(found)} of {cases} cases are judged, and kept"
+    if len(found) == cases and (left := _untrained(wanted, found)):
+        done = f"all cases are judged, and {left} {'are' if left > 1 else 'is'} still to be trained for"
+    click.echo(f"stopped: {done}; to go on: {join(words)}", err=True)
+
+
+def _tell(outcome: Outcome, wanted: Wanted) -> None:
+    """Sum up, and write what was asked for."""
+    reports = [done.report for done in outcome.cases]
+    click.echo(sum_line(reports, outcome.missing), err=wanted.is_json)
+    if wanted.is_json:
+        click.echo(json_text(outcome), nl=False)
+    if wanted.github:
+        for line in findings_as_commands(outcome.suite, reports, Path(os.environ.get("GITHUB_WORKSPACE") or ".")):
+            click.echo(line)
+    if page := write_reports(outcome, wanted.written):
+        click.echo(f"wrote {quote(str(page))}: open it in a browser", err=True)
