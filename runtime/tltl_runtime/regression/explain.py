@@ -15,8 +15,14 @@ from tltl_runtime.stealth.level import Level, Region
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record
 
-_DIFFERENT: Final = 0.2
-"""Shares of episodes that differ by less are told of as alike."""
+_ALIKE: Final = 0.05
+"""Shares of episodes that come to a stage and differ by less are told of as alike."""
+
+_USUAL: Final = 0.8
+"""What more episodes do than this share is told of as what is done."""
+
+_OTHERWISE: Final = 0.4
+"""Shares of the successful episodes that go through a region are told of where they differ by so much."""
 
 _SLOWER: Final = 1.15
 """Mean lengths of successes whose ratio is less are alike."""
@@ -52,8 +58,8 @@ def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> It
     for state in chain(fspa)[:-1]:
         distance = fspa.states[state].distance or 0
         came, used = (_passed(fspa, accounts, distance) for accounts in (now, before))
-        if abs(len(came) / len(now) - len(used) / len(before)) < _DIFFERENT:
-            if len(came) / len(now) > 1 - _DIFFERENT:
+        if abs(len(came) / len(now) - len(used) / len(before)) < _ALIKE:
+            if len(came) / len(now) > _USUAL:
                 done.append(deed(fspa, state))
             continue
         first = f"{together(done)} as before, then " if done else ""
@@ -132,15 +138,18 @@ def _mostly(what: str, named: Sequence[Sequence[str]]) -> str:
 
 
 def _approach(accounts: Sequence[Account]) -> str:
-    """How near the best of the episodes came to what it did not reach."""
+    """How near the episodes came at best to what most of them did not reach."""
     near = [each.nearest for each in accounts if each.nearest]
     if not near:
         return ""
-    best = max(near, key=lambda each: each.robustness)
-    if best.target is None:
-        return f"; the limit is `{best.atom}`, {best.robustness:+.2f} at best"
-    least = min(each.distance for each in near if each.target == best.target and each.distance is not None)
-    return f"; closest approach to `{best.target}`: {least:.1f} m (`{best.atom}` is the limit)"
+    (atom, target), count = Counter((each.atom, each.target) for each in near).most_common(1)[0]
+    limited = [each for each in near if (each.atom, each.target) == (atom, target)]
+    if all(atom in each.broke for each in accounts):
+        return f"; all that {count} of them lacked at the end was `{atom}`"
+    if target is None:
+        return f"; the limit is `{atom}`, {max(each.robustness for each in limited):+.2f} at best"
+    least = min(each.distance for each in limited if each.distance is not None)
+    return f"; closest approach to `{target}`: {least:.1f} m (`{atom}` is the limit)"
 
 
 def _remained(fspa: Fspa, accounts: Sequence[Account]) -> str:
@@ -168,7 +177,7 @@ def _regions(level: Level, now: Sequence[Account], before: Sequence[Account]) ->
     for region in level.regions:
         there, used_to = ([each for each in accounts if _visits(each, region)] for accounts in (new, old))
         share, used = len(there) / len(new), len(used_to) / len(old)
-        if abs(share - used) >= 2 * _DIFFERENT:
+        if abs(share - used) >= _OTHERWISE:
             name = region.name.replace("_", " ")
             text = f"{share:.0%} of the successful episodes pass through the {name}; before: {used:.0%}"
             yield Finding(text, tuple(each.index for each in there))

@@ -60,6 +60,14 @@ def test_all_as_before(level: Level, fspa: Fspa) -> None:
     assert only.episodes == ()
 
 
+@pytest.mark.parametrize(("fewer", "said"), [(1, "`s2`, `exit` as before"), (2, "then reaches `exit` in 38 of 40")])
+def test_one_in_twenty_that_come_no_farther_is_not_as_before(level: Level, fspa: Fspa, fewer: int, said: str) -> None:
+    now = good(fspa, 40)
+    for index in range(fewer):
+        now[index] = made(index, False, states=to(fspa, 2))
+    assert said in told(level, fspa, now, good(fspa, 40))[0]
+
+
 def test_the_first_stage_that_is_not_as_before_is_told_and_where_it_ends(level: Level, fspa: Fspa) -> None:
     near = Nearest("near(exit)", -0.2, NORTH, "exit", 3.2)
     died = {"cause": "killed", "by": ("guard",), "seen_by": ("guard",), "place": NORTH, "nearest": near}
@@ -160,6 +168,23 @@ def test_where_no_distance_is_the_limit_the_atom_is_named(level: Level, fspa: Fs
     near = [Nearest("alive", value, MIDDLE) for value in (-0.75, -0.25, -0.5)]
     now = [made(index, False, states=to(fspa, 0), nearest=near[index % 3]) for index in range(25)]
     assert told(level, fspa, now)[1].partition("; in state")[0].endswith("; the limit is `alive`, -0.25 at best")
+
+
+def test_what_limited_most_episodes_is_told_and_not_what_limited_the_best_one(level: Level, fspa: Fspa) -> None:
+    one, most = Nearest("alive", 0.0, MIDDLE), Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
+    now = [made(index, False, states=to(fspa, 0), nearest=one if index == 7 else most) for index in range(25)]
+    assert "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit); " in told(level, fspa, now)[1]
+
+
+def test_who_dies_at_what_it_was_to_reach_lacked_nothing_else(level: Level, fspa: Fspa) -> None:
+    there, not_yet = Nearest("alive", 0.0, MIDDLE), Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
+    now = [
+        made(
+            index, False, states=to(fspa, 0), nearest=there if index < 14 else not_yet, cause="killed", broke=("alive",)
+        )
+        for index in range(25)
+    ]
+    assert "; all that 14 of them lacked at the end was `alive`; " in told(level, fspa, now)[1]
 
 
 def test_what_is_in_the_way_is_named(level: Level, fspa: Fspa) -> None:

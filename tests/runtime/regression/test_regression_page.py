@@ -54,7 +54,13 @@ def test_the_defaults_are_those() -> None:
 
 
 def test_the_suites_of_the_page_are_suites(tmp_path: Path) -> None:
-    files = ["vault.toml", "vault.tltl", "edits/crates_moved.toml", "training/vault/policy.safetensors"]
+    files = [
+        "vault.toml",
+        "cover_and_hide.toml",
+        "vault.tltl",
+        "edits/crates_moved.toml",
+        "training/vault/policy.safetensors",
+    ]
     for name in files:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(ROOM, encoding="utf-8")
