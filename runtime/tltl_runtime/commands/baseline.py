@@ -19,7 +19,7 @@ from tltlc.cli.report import Report
 
 if TYPE_CHECKING:
     from tltl_runtime.regression.baseline_run import Compared
-    from tltl_runtime.regression.suite import Suite
+    from tltl_runtime.regression.suite import Case, Suite
 
 
 @click.command(
@@ -74,5 +74,14 @@ def _tell(suite: Suite, compared: Compared) -> None:
     for case in compared.cases:
         verdict = verdict_as_it_is(suite, case, reference) if case.variant == case.reference else "pass"
         if verdict != "pass":
-            advice = "train its policy further, lower its `pass_rate`, or give it more `episodes`"
+            advice = _advice(passed / count, case)
             click.echo(plain(f"    `{case.name}` is `{verdict}` even if nothing changes: {advice}"), err=True)
+
+
+def _advice(pass_rate: float, case: Case) -> str:
+    """What makes a case pass of whose baseline's episodes this share met the spec."""
+    if pass_rate == 1.0:
+        return f"give it more `episodes` than {case.episodes}, which are too few to be certain"
+    if pass_rate < case.thresholds.pass_rate:
+        return "train its policy further, or lower its `pass_rate`"
+    return "train its policy further, lower its `pass_rate`, or give it more `episodes`"

@@ -93,6 +93,8 @@ def command(
         raise click.UsageError("--github and `--json -` both need standard output: write the JSON to a file")
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes are those of --retrain")
+    if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
+        raise click.UsageError(f"`{swallowed}` is taken as a word of --changed: put the suite before it")
     with Report() as report, learning_for("`tltlc regress`"), requests_heard():
         from tltl_runtime.commands.regression_run import Wanted, run
 
@@ -109,6 +111,14 @@ def command(
         )
         return run(wanted)
     return report.status
+
+
+def _is_suite(word: str) -> bool:
+    """Whether a word is the file of a suite."""
+    try:
+        return word.endswith(".toml") and "\n[[case]]" in "\n" + Path(word).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 def _default_folder(suite: Path | None) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import ceil
 from pathlib import Path
 from shlex import quote
 
@@ -87,7 +88,8 @@ def _lines(asked: Retraining, name: str, outcome: Retrained) -> Iterator[str]:
     policy = quote(str(asked.folder / outcome.policy))
     if outcome.outcome != "learned":
         if outcome.trained.end == "minutes":
-            longer = 2 * max(asked.minutes, round(outcome.trained.seconds / 60, 2))
+            longer = 2 * max(asked.minutes, outcome.trained.seconds / 60)
+            longer = ceil(longer) if longer > 1 else round(longer, 2)
             yield f"    to train longer: {asked.again} --minutes {longer:g}"
     elif asked.suite.path == SHIPPED:
         yield f"    the new policy: {policy}"

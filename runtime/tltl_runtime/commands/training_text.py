@@ -61,7 +61,7 @@ def search_line(searched: Searched) -> str:
 def search_end(exploration: Exploration) -> str:
     """When a search ends, in a sentence."""
     ways = f"{exploration.ways} way{'s' * (exploration.ways != 1)}"
-    return f"It ends when {ways} are found, at the latest after {exploration.steps:,} steps."
+    return f"The search ends when {ways} are found, at the latest after {exploration.steps:,} steps."
 
 
 def found_line(searched: Searched) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
-from tltl_runtime.stealth.levels.file import level_path, variants
+from tltl_runtime.stealth.levels.file import level_path, shared_names, variants
 from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.levels.place import with_overlays
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
@@ -135,6 +135,11 @@ def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> 
         if given and given not in there:
             title = f"the level `{level}` has no variant `{given}`"
             table.log.append(Diagnostic("TLT0800", title, (table.place(key),), suggestion(given, there)))
+    known = shared_names(level_path(level), "overlays")
+    for each in overlays:
+        if not each.endswith(".toml") and each not in known:
+            title = f"there is no overlay `{each}`"
+            table.log.append(Diagnostic("TLT0805", title, (table.place("overlay"),), suggestion(each, known)))
     base = variant or there[0]
     name = name or f"{Path(level).stem}:{'+'.join((base, *(Path(each).stem for each in overlays)))}"
     played = with_overlays(base, overlays)

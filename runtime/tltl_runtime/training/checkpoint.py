@@ -159,8 +159,8 @@ def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) 
 def level_changed(folder: Path) -> TltlError:
     """TLT0868: the level is another now than the one that the training in ``folder`` began on."""
     help_ = (
-        f"put it back and go on by `{resume_command(folder)}`, or train anew on the level as it is now; "
-        f"`tltlc evaluate {quote(str(folder))}` plays what was learned"
+        f"put it back and go on by `{resume_command(folder)}`, or train on the level as it is now: anew, or by "
+        f"`tltlc train --from {quote(str(folder))}` from what was learned"
     )
     title = f"the level has changed since the training in `{folder}` began"
     return TltlError([Diagnostic("TLT0868", title, help=help_)])

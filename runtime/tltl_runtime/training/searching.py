@@ -27,12 +27,12 @@ def searched_first(
 ) -> Searched | None:
     """Search ways before the training.
 
-    None where that was done before, unless a limit broke it off and now there is time to do it anew.
+    None where that was done before, unless a limit broke it off before it found any, and now there is time for it.
     """
     iteration, seconds = 0, 0.0
     if checkpoint:
         before, iteration, seconds = checkpoint.searched, checkpoint.iteration, checkpoint.seconds
-        if before is None or before.complete or run.settings.stop.is_late(seconds):
+        if before is None or before.complete or before.lengths or run.settings.stop.is_late(seconds):
             return None
     search = Search(played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration))
     return _made(run, search, restarts, seconds, searching)

@@ -17,9 +17,10 @@ import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, write_game
+from tltl_runtime.commands.baseline import _advice
 from tltl_runtime.regression.baseline import read_baseline
 from tltl_runtime.regression.run import CASES, case_folder
-from tltl_runtime.regression.suite import read_suite
+from tltl_runtime.regression.suite import Case, Thresholds, read_suite
 
 Run = Callable[..., Outcome]
 NAMES = ["room:v0", "room:v1", "hopeless"]
@@ -165,6 +166,12 @@ def test_a_run_that_is_stopped_in_its_first_case_reports_that_nothing_is_judged(
     assert (tests.get("tests"), tests.get("errors")) == ("3", "3")
 
 
+def test_a_suite_behind_changed_is_no_word_of_it(tltlc: Run, game: Path) -> None:  # noqa: F811
+    refused = tltlc("regress", "--changed", "guard", "game.toml")
+    assert refused.status == 2
+    assert "`game.toml` is taken as a word of --changed: put the suite before it" in refused.err
+
+
 def test_only_what_a_change_concerns(tltlc: Run, game: Path) -> None:  # noqa: F811
     found = tltlc("regress", "game.toml", *ONE, "--changed", "soon.safetensors", "README.md", "--json", "report.json")
     assert verdicts(found.out) == ["hopeless fail"]
@@ -249,8 +256,7 @@ def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
     told = found.err.splitlines()
     assert "hopeless: 50 of 50 episodes, 0 met the spec" in told
     assert told[-3:] == [
-        "    `hopeless` is `fail` even if nothing changes: "
-        "train its policy further, lower its `pass_rate`, or give it more `episodes`",
+        "    `hopeless` is `fail` even if nothing changes: train its policy further, or lower its `pass_rate`",
         "wrote again.json",
         "to judge by it: tltlc regress game.toml --baseline again.json",
     ]
@@ -259,6 +265,12 @@ def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
     # It is known before anything is played that it cannot be written.
     found = tltlc("baseline", "game.toml", "--output", "nowhere/again.json", *ONE)
     assert (found.status, found.out) == (3, "") and "name another place with --output" in found.err
+
+
+def test_a_case_that_is_always_met_needs_more_episodes_alone() -> None:
+    case = Case("room:v0", "room", "v0", "v0", None, Path("bot"), 25, Thresholds(), "")
+    assert _advice(1.0, case) == "give it more `episodes` than 25, which are too few to be certain"
+    assert _advice(0.9, case) == "train its policy further, lower its `pass_rate`, or give it more `episodes`"
 
 
 @pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])

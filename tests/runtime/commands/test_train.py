@@ -219,7 +219,7 @@ def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noq
     _, searched, lost, *lines = found.err.splitlines()
     assert searched == (
         "ways to meet the spec are searched first, by chance. "
-        "It ends when 2 ways are found, at the latest after 640 steps."
+        "The search ends when 2 ways are found, at the latest after 640 steps."
     )
     assert lost == "Ctrl-C stops it; a search that is not over then begins anew."
     assert "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume it" in lines

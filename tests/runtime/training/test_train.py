@@ -19,7 +19,7 @@ from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
-from tltl_runtime.training.checkpoint import Checkpoint
+from tltl_runtime.training.checkpoint import Checkpoint, write_checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.record import write_record
 from tltl_runtime.training.report import Confirmation, Report
@@ -312,6 +312,18 @@ def test_a_search_that_a_limit_broke_off_is_made_anew(folder: Path) -> None:
     assert last.searched is not None
     assert (last.searched.complete, last.searched.steps, last.stop) == (True, 8000 + report.searched.steps, "steps")
     assert last.searched.lengths[: len(report.searched.lengths)] == report.searched.lengths
+
+
+def test_a_search_that_a_limit_broke_off_with_a_way_is_not_made_anew(folder: Path) -> None:
+    changes = {"exploration__ways": 10, "exploration__steps": 8000}
+    run = run_in(folder / "enough", **changes, stop__minutes=0.005)
+    list(train(run))
+    kept = checkpoint_of(run)
+    assert kept.searched is not None
+    found = replace(kept.searched, lengths=(9,), complete=False)
+    longer = replace(run, settings=run_in(folder, **changes).settings)
+    write_checkpoint(run.folder / CHECKPOINT, replace(kept, searched=found, run=identity(longer)))
+    assert next(train(longer, resume=True)).searched == found
 
 
 def test_a_search_that_was_made_anew_is_in_the_checkpoint(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -27,8 +27,9 @@ _BEFORE_END: Final = round(4.0 / DECISION)
 """Decisions before its end at which a failed episode is opened: what led to it is still to come."""
 
 _KEY: Final = (
-    "In blue how many episodes visited a state, in red how many failed in it; "
-    "the more episodes took an edge, the thicker it is."
+    "In blue how many episodes visited a state, in red how many failed in it; the more episodes took an edge, the "
+    "thicker it is. The figure on a state's upper corner is its distance, the least number of steps to acceptance, and "
+    "not the number of the state."
 )
 _SHOWN: Final = (("ways", "ways"), ("time", "time spent"), ("failed", "failed ends"))
 _WHEN: Final = (("now", "now"), ("before", "baseline"))

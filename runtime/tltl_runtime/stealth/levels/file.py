@@ -89,6 +89,12 @@ def level_path(name_or_path: str) -> Path:
     raise TltlError([Diagnostic("TLT0800", title, help=help_)])
 
 
+def shared_names(level: Path, folder: str) -> tuple[str, ...]:
+    """The names of the ``assets`` or ``overlays`` that the level in a file can use: beside it, or in the package."""
+    places = (level.parent / folder, LEVELS / folder)
+    return tuple(sorted({path.stem for place in places for path in place.glob("*.toml")}))
+
+
 class _Loading:
     """A level file on its way to a :class:`Level`: the files read so far, and what is wrong with them."""
 
@@ -237,7 +243,7 @@ class _Loading:
         for place in (self.path.parent / folder, LEVELS / folder):
             if (path := place / f"{name}.toml").is_file() and path.parent == place:
                 return path
-        known = sorted({path.stem for place in (self.path.parent, LEVELS) for path in (place / folder).glob("*.toml")})
+        known = shared_names(self.path, folder)
         title = f"there is no {folder[:-1]} `{name}`"
         self.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, known)))
         return None
