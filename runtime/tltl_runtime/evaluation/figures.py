@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
+from tltl_runtime.evaluation.outcome import TimedOutcome
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.statistics import Spread, spread_of, wilson
 from tltl_runtime.stealth.episodes.episode import End
@@ -51,27 +51,7 @@ class Evaluation:
     episodes: tuple[Played, ...]
 
 
-class Outcome(Protocol):
-    """What figures are made of: how an episode went."""
-
-    @property
-    def success(self) -> bool:
-        """Whether the spec was met."""
-
-    @property
-    def progress(self) -> float:
-        """The best, in [0, 1]."""
-
-    @property
-    def reward(self) -> float:
-        """The sum over the steps."""
-
-    @property
-    def steps(self) -> int:
-        """How many decisions it took."""
-
-
-def figures_of(episodes: Sequence[Outcome]) -> Figures:
+def figures_of(episodes: Sequence[TimedOutcome]) -> Figures:
     """The figures over episodes; raises ValueError where there are none."""
     passed = sum(each.success for each in episodes)
     # First, since it says in words what is wrong with none.

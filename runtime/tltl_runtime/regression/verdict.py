@@ -24,8 +24,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from operator import attrgetter
 from statistics import fmean
-from typing import Final, Literal, Protocol
+from typing import Final, Literal
 
+from tltl_runtime.evaluation.outcome import Outcome
 from tltl_runtime.regression.confidence import mean_p_value, rate_interval
 from tltl_runtime.regression.suite import LEAST_EPISODES, Thresholds
 from tltlc.record import record
@@ -40,22 +41,6 @@ A reward is progress less the share of the limit that it took, the rest of which
 
 _ALIKE: Final = 0.5
 """Means are alike that differ by this share of the threshold at most."""
-
-
-class Outcome(Protocol):
-    """What a verdict looks at in an episode, an :class:`~tltl_runtime.regression.account.Account` as a rule."""
-
-    @property
-    def success(self) -> bool:
-        """Whether the spec was met."""
-
-    @property
-    def progress(self) -> float:
-        """The best, in [0, 1]."""
-
-    @property
-    def reward(self) -> float:
-        """The sum over the steps."""
 
 
 @record

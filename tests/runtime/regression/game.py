@@ -7,9 +7,10 @@ from pathlib import Path
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.file import write_policy
+from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import write_baseline
 from tltl_runtime.regression.baseline_run import record_baseline
-from tltl_runtime.regression.suite import Suite, baseline_path, read_suite
+from tltl_runtime.regression.suite import Case, Suite, baseline_path, read_suite
 
 EASY = """\
 import stealth
@@ -56,3 +57,22 @@ def with_baseline(path: Path) -> Suite:
     suite = read_suite(path)
     write_baseline(baseline_path(path), tuple(each.reference for each in record_baseline(suite, 1, lambda *_: None)))
     return suite
+
+
+class Played:
+    """How many episodes of which cases were played."""
+
+    def __init__(self) -> None:
+        self.counts: dict[str, int] = {}
+
+    def __call__(self, case: Case, count: int, last: Account) -> None:
+        assert count == self.counts.get(case.name, 0) + 1
+        assert last.index == count - 1
+        self.counts[case.name] = count
+
+
+def edit(name: str, old: str, new: str) -> None:
+    """Change a text in a file, once."""
+    text = Path(name).read_text(encoding="utf-8")
+    assert old in text
+    Path(name).write_text(text.replace(old, new, 1), encoding="utf-8")

@@ -13,14 +13,14 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.evaluation.untrained import SOON, untrained
-from tests.runtime.regression.game import EASY, SUITE, with_baseline, write_game
+from tests.runtime.regression.game import EASY, SUITE, Played, edit, with_baseline
 from tests.runtime.regression.made import ROOM
+from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.policies.policy import Policy
 from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import baseline_of, read_baseline
-from tltl_runtime.regression.baseline_run import record_baseline, verdict_as_it_is, write_recorded
+from tltl_runtime.regression.baseline import baseline_of
 from tltl_runtime.regression.dependencies import dependencies
 from tltl_runtime.regression.play import Ready, episodes, ready
 from tltl_runtime.regression.run import CASES, Done, _inputs, case_folder, check, owned, regress
@@ -33,34 +33,6 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
 
 GUARD = (LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8")
-
-
-class Played:
-    """How many episodes of which cases were played."""
-
-    def __init__(self) -> None:
-        self.counts: dict[str, int] = {}
-
-    def __call__(self, case: Case, count: int, last: Account) -> None:
-        assert count == self.counts.get(case.name, 0) + 1
-        assert last.index == count - 1
-        self.counts[case.name] = count
-
-
-@pytest.fixture(name="recorded", scope="module")
-def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A game with its baseline and what a first run of its suite has left in ``run``."""
-    folder = tmp_path_factory.mktemp("recorded")
-    suite = with_baseline(write_game(folder))
-    list(regress(suite, suite.cases, baseline_of(suite), folder / "run", 1, Played()))
-    return folder
-
-
-@pytest.fixture(name="game")
-def _game(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    shutil.copytree(recorded, tmp_path / "game")
-    monkeypatch.chdir(tmp_path / "game")
-    return tmp_path / "game"
 
 
 def running(suite: Suite, folder: str = "run", told: Played | None = None) -> Iterator[Done]:
@@ -108,12 +80,6 @@ def test_a_kept_case_is_not_played_again(game: Path) -> None:
     assert [done.report for done in kept] == [done.report for done in new]
 
 
-def _edit(name: str, old: str, new: str) -> None:
-    text = Path(name).read_text(encoding="utf-8")
-    assert old in text
-    Path(name).write_text(text.replace(old, new, 1), encoding="utf-8")
-
-
 def _write(name: str, text: str) -> None:
     Path(name).parent.mkdir()
     Path(name).write_text(text, encoding="utf-8")
@@ -125,20 +91,20 @@ def _trained_again(name: str, spec: str) -> None:
 
 
 def _seeded(seed: int) -> None:
-    _edit("game.toml", "seed = 3", f"seed = {seed}")
+    edit("game.toml", "seed = 3", f"seed = {seed}")
     with_baseline(Path("game.toml"))
 
 
 def _last(line: str) -> Callable[[], None]:
     """Add a line to the suite's last case."""
-    return lambda: _edit("game.toml", 'name = "hopeless"', f'name = "hopeless"\n{line}')
+    return lambda: edit("game.toml", 'name = "hopeless"', f'name = "hopeless"\n{line}')
 
 
 CHANGES: dict[str, tuple[Callable[[], None], list[str]]] = {
     "threshold": (_last("thresholds = { fail_rate = 0.45 }"), ["hopeless"]),
     "episodes": (_last("episodes = 40"), ["hopeless"]),
-    "error": (lambda: _edit("game.toml", "seed = 3", "seed = 3\nerror = 0.04"), ["room:v0", "room:v1", "hopeless"]),
-    "level": (lambda: _edit("room.toml", "8.0, 8.0", "8.0, 8.5"), ["room:v0", "room:v1", "hopeless"]),
+    "error": (lambda: edit("game.toml", "seed = 3", "seed = 3\nerror = 0.04"), ["room:v0", "room:v1", "hopeless"]),
+    "level": (lambda: edit("room.toml", "8.0, 8.0", "8.0, 8.5"), ["room:v0", "room:v1", "hopeless"]),
     "overlay": (lambda: _write("overlays/guard_alert.toml", 'doc = "None."\n'), ["room:v1"]),
     "asset": (lambda: _write("assets/guard.toml", GUARD + "# As before.\n"), ["room:v0", "room:v1", "hopeless"]),
     "policy": (lambda: _trained_again("soon", SOON), ["hopeless"]),
@@ -190,7 +156,7 @@ def test_a_level_that_is_edited_between_cases_is_played_as_it_is_then(game: Path
         def __call__(self, case: Case, count: int, last: Account) -> None:
             super().__call__(case, count, last)
             if (case.name, count) == ("room:v0", 25):
-                _edit("room.toml", "8.0, 8.0", "8.0, 7.5")
+                edit("room.toml", "8.0, 8.0", "8.0, 7.5")
 
     found = list(running(suite, "new", Edits()))
     assert [done.kept for done in found] == [False] * 3
@@ -217,7 +183,7 @@ def test_a_level_that_is_edited_while_it_is_played_is_reviewed_and_not_kept(
     game: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = Path("room.toml").read_text(encoding="utf-8")
-    _edited_after("room:v1", lambda: _edit("room.toml", "8.0, 8.0", "8.0, 7.5"), monkeypatch)
+    _edited_after("room:v1", lambda: edit("room.toml", "8.0, 8.0", "8.0, 7.5"), monkeypatch)
     found, played = run("new")
     report = found[1].report
     assert (report.verdict, report.certain, report.figures) == ("review", False, None)
@@ -233,9 +199,9 @@ def test_a_level_that_breaks_while_it_is_played_fails_and_the_others_go_on(
     game: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path("hall.toml").write_text(ROOM, encoding="utf-8")
-    _edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
+    edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
     suite = with_baseline(Path("game.toml"))
-    _edited_after("room:v1", lambda: _edit("room.toml", "size = [10.0", "siez = [10.0"), monkeypatch)
+    _edited_after("room:v1", lambda: edit("room.toml", "size = [10.0", "siez = [10.0"), monkeypatch)
     found, played = run("new", suite)
     assert [done.report.verdict for done in found] == ["pass", "fail", "fail", "pass"]
     assert "TLT0802" in found[1].report.reasons[2]
@@ -268,7 +234,7 @@ def test_what_is_wrong_with_the_workers_ends_the_run(game: Path, monkeypatch: py
 
 def test_a_level_that_is_edited_while_its_baseline_is_recorded(game: Path) -> None:
     made = ready(read_suite(Path("game.toml")).cases[0], 3)
-    _edit("room.toml", "8.0, 8.0", "8.0, 7.5")
+    edit("room.toml", "8.0, 8.0", "8.0, 7.5")
     with pytest.raises(TltlError, match="TLT0905") as error:
         next(episodes(made, 1))
     (found,) = error.value.diagnostics
@@ -281,13 +247,13 @@ def test_a_spec_that_has_changed_since_the_training_is_told_and_nothing_passes_b
     Path("room.toml").write_text(f'spec = "plan.tltl:easy"\n{text}', encoding="utf-8")
     found, _ = run()
     assert [done.report.verdict for done in found] == ["pass", "pass", "fail"], "it is the policy's"
-    _edit("plan.tltl", "limit 20 steps", "limit 30 steps")
+    edit("plan.tltl", "limit 20 steps", "limit 30 steps")
     found, played = run()
     assert list(played) == ["room:v0", "room:v1"], "the third has a spec of its own"
     for done in found[:2]:
         assert done.report.verdict == "review"
         assert done.report.reasons[0].startswith("the spec `easy` has changed since the policy was trained")
-    _edit("plan.tltl", "reach alive", "reach alve")
+    edit("plan.tltl", "reach alive", "reach alve")
     found, _ = run()
     assert [done.report.verdict for done in found] == ["fail", "fail", "fail"]
     assert found[0].report.reasons[1].startswith("plan.tltl:2: TLT0")
@@ -297,7 +263,7 @@ def test_a_folder_may_have_a_plus_in_its_name(game: Path, tmp_path: Path, monkey
     shutil.copytree(game, tmp_path / "c++")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "c++" / "edit.toml").write_text("[change.guard]\nsight_range = 9.0\n", encoding="utf-8")
-    _edit("c++/game.toml", 'variant = "v1"', 'overlay = ["edit.toml", "guard_alert"]')
+    edit("c++/game.toml", 'variant = "v1"', 'overlay = ["edit.toml", "guard_alert"]')
     suite = read_suite(Path("c++/game.toml"))
     found, played = run("new", suite)
     assert list(played) == ["room:v0", "room:v0+edit+guard_alert", "hopeless"]
@@ -361,7 +327,7 @@ def test_what_is_asked_for_afresh_is_played_again_and_nothing_else(game: Path) -
 
 
 def test_a_level_that_does_not_load_fails_its_cases_and_the_others_go_on(game: Path) -> None:
-    _edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
+    edit("game.toml", SUITE, SUITE + '[[case]]\nlevel = "hall.toml"\npolicy = "easy.safetensors"\n')
     Path("hall.toml").write_text(ROOM, encoding="utf-8")
     suite = with_baseline(Path("game.toml"))
     Path("room.toml").write_text(ROOM.replace("size = [10.0", "siez = [10.0"), encoding="utf-8")
@@ -381,8 +347,8 @@ def test_a_policy_that_does_not_fit_fails_its_case(game: Path) -> None:
     Path("hall.toml").write_text(
         ROOM.replace('[[exit]]\nname = "exit"', '[[exit]]\nname = "way_out"'), encoding="utf-8"
     )
-    _edit("game.toml", 'variant = "v1"', "")
-    _edit("game.toml", 'level = "room.toml"\n\npolicy', 'level = "hall.toml"\npolicy')
+    edit("game.toml", 'variant = "v1"', "")
+    edit("game.toml", 'level = "room.toml"\n\npolicy', 'level = "hall.toml"\npolicy')
     found, played = run("new")
     assert list(played) == ["room:v0", "hopeless"]
     (report,) = (done.report for done in found if done.report.name == "hall:v0")
@@ -391,7 +357,7 @@ def test_a_policy_that_does_not_fit_fails_its_case(game: Path) -> None:
 
 
 def test_a_level_that_a_player_leaves_fails_its_case_and_the_others_go_on(game: Path) -> None:
-    _edit("room.toml", "size = [10.0, 10.0, 4.5]", "size = [10.0, 10.0, 1.2]")
+    edit("room.toml", "size = [10.0, 10.0, 4.5]", "size = [10.0, 10.0, 1.2]")
     found, _ = run("new")
     assert [done.report.name for done in found] == ["room:v0", "room:v1", "hopeless"]
     report = found[2].report
@@ -439,97 +405,21 @@ def test_a_case_may_be_called_anything(game: Path) -> None:
     assert all(folder.parent == Path("new") and folder.name.strip(".") for folder in folders)
 
 
-def test_a_baseline_plays_each_place_once_and_all_of_its_episodes(game: Path) -> None:
-    suite, played = read_suite(Path("game.toml")), Played()
-    found = [each.reference for each in record_baseline(suite, 1, played)]
-    assert [(each.played.spec, each.played.variant, len(each.accounts)) for each in found] == [
-        ("easy", "v0", 50),
-        ("soon", "v0", 50),
-    ]
-    assert played.counts == {"room:v0": 50, "hopeless": 50}
-    assert tuple(found) == baseline_of(suite)
-
-
-def test_a_baseline_has_the_episodes_of_the_case_that_asks_for_most(game: Path) -> None:
-    _edit("game.toml", 'level = "room.toml"\nvariant = "v1"', 'level = "room.toml"\nepisodes = 30\nvariant = "v1"')
-    _edit("game.toml", "episodes = 50", "episodes = 25")
-    found = [each.reference for each in record_baseline(read_suite(Path("game.toml")), 1, Played())]
-    assert [(each.played.spec, len(each.accounts)) for each in found] == [("easy", 30), ("soon", 25)]
-
-
-def test_levels_of_one_name_have_a_baseline_each(game: Path) -> None:
-    Path("other").mkdir()
-    shutil.copy("room.toml", "other/room.toml")
-    again = '[[case]]\nname = "other"\nlevel = "./other//room.toml"\npolicy = "easy.safetensors"\n'
-    _edit("game.toml", SUITE, SUITE.replace("episodes = 50", "episodes = 25") + again)
-    suite = read_suite(Path("game.toml"))
-    found = [each.reference for each in record_baseline(suite, 1, Played())]
-    assert [(each.played.spec, each.played.place) for each in found] == [
-        ("easy", "room.toml"),
-        ("soon", "room.toml"),
-        ("easy", "other/room.toml"),
-    ]
-
-
 def test_a_report_does_not_say_where_an_overlay_lies(game: Path) -> None:
     Path("edits").mkdir()
     Path("edits/wide.toml").write_text("[start]\nat = [2.5, 2.0, 0.0]\n", encoding="utf-8")
-    _edit("game.toml", 'variant = "v1"', 'overlay = "edits/wide.toml"')
+    edit("game.toml", 'variant = "v1"', 'overlay = "edits/wide.toml"')
     Path("room.toml").write_text(ROOM.replace("size = [10.0", "siez = [10.0"), encoding="utf-8")
     suite = read_suite((game / "game.toml").absolute())
     found = list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 1, Played()))
     assert [done.report.variant for done in found] == ["v0", "v0+wide", "v0"]
 
 
-def test_a_baseline_of_what_cannot_be_played_is_refused_before_anything_is_played(game: Path) -> None:
-    Path("soon.safetensors").write_bytes(b"no policy")
-    played = Played()
-    with pytest.raises(TltlError, match="TLT0840"):
-        list(write_recorded(read_suite(Path("game.toml")), Path("new.json"), 1, played))
-    assert played.counts == {} and not list(Path().glob("new.json*"))
-
-
-def test_what_a_case_comes_to_where_nothing_changes(game: Path) -> None:
-    suite = read_suite(Path("game.toml"))
-    easy, _, hopeless = suite.cases
-    good, bad = baseline_of(suite)
-    assert verdict_as_it_is(suite, easy, good) == "pass"
-    assert verdict_as_it_is(suite, hopeless, bad) == "fail"
-    some = replace(good, accounts=tuple(replace(each, success=each.index % 10 > 0) for each in good.accounts))
-    assert verdict_as_it_is(suite, easy, some) == "review", "nine of ten are too few to be certain"
-    assert verdict_as_it_is(suite, replace(easy, episodes=25), good) == "review", "so are 25 episodes"
-
-
 def test_recordings_of_an_earlier_run_do_not_stay(game: Path) -> None:
     suite = read_suite(Path("game.toml"))
     folder = case_folder(suite, "room:v0", Path("run") / CASES)
     (folder / "49.episode.npz").write_bytes(b"old")
-    _edit("room.toml", "8.0, 8.0", "8.0, 8.5")
+    edit("room.toml", "8.0, 8.0", "8.0, 8.5")
     found, _ = run()
     names = {path.name for path in folder.glob("*.episode.npz")}
     assert names == set(dict(found[0].report.recordings).values())
-
-
-def test_a_baseline_that_was_stopped_goes_on(game: Path) -> None:
-    suite, path = read_suite(Path("game.toml")), Path("new.json")
-    with closing(write_recorded(suite, path, 1, Played())) as stopped:
-        first = next(stopped)
-    assert ([case.name for case in first.cases], len(first.reference.accounts)) == (["room:v0", "room:v1"], 50)
-    assert not path.exists()
-    played = Played()
-    found = [each.reference for each in write_recorded(suite, path, 1, played)]
-    assert played.counts == {"hopeless": 50}
-    assert tuple(found) == read_baseline(path) == baseline_of(suite)
-    assert sorted(place.name for place in Path().glob("new.json*")) == ["new.json"]
-    # What is over is recorded anew, since levels may play otherwise.
-    list(write_recorded(suite, path, 1, again := Played()))
-    assert again.counts == {"room:v0": 50, "hopeless": 50}
-
-
-def test_what_was_kept_of_a_baseline_by_other_code_is_played_again(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    suite, path = read_suite(Path("game.toml")), Path("new.json")
-    with closing(write_recorded(suite, path, 1, Played())) as stopped:
-        next(stopped)
-    monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
-    list(write_recorded(suite, path, 1, played := Played()))
-    assert played.counts == {"room:v0": 50, "hopeless": 50}

@@ -1,0 +1,28 @@
+"""The small game with its baseline, and what a first run of its suite has left, for tests that go on from there."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.regression.game import Played, with_baseline, write_game
+from tltl_runtime.regression.baseline import baseline_of
+from tltl_runtime.regression.run import regress
+
+
+@pytest.fixture(name="recorded", scope="module")
+def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A game with its baseline and what a first run of its suite has left in ``run``."""
+    folder = tmp_path_factory.mktemp("recorded")
+    suite = with_baseline(write_game(folder))
+    list(regress(suite, suite.cases, baseline_of(suite), folder / "run", 1, Played()))
+    return folder
+
+
+@pytest.fixture(name="game")
+def _game(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    shutil.copytree(recorded, tmp_path / "game")
+    monkeypatch.chdir(tmp_path / "game")
+    return tmp_path / "game"
