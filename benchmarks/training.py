@@ -40,7 +40,7 @@ OTHERS = "other_cores.txt"
 SOURCE = ".source.json"
 """Behind the name of a training's folder, beside it: the code with which it was begun, or resumed for the last time."""
 
-Settings = Mapping[str, Mapping[str, str | int]]
+Settings = Mapping[str, Mapping[str, str | int | list[int]]]
 """Settings of a training that differ from the defaults, by table and key; those of no table are under ""."""
 
 
@@ -61,6 +61,7 @@ ABLATIONS: Mapping[str, Ablation] = {
     "terminal penalty that stays discounted": Ablation({"reward": {"penalty_schedule": "fixed"}}),
     "no sharpening": Ablation({"ppo": {"sharpening": 1}}),
     "no semantic map": Ablation(options=("--no-map",)),
+    "one convolution": Ablation({"network": {"channels": [32]}}),
     "no imitation of ways": Ablation({"exploration": {"imitation": 0}}),
     "no search for ways": Ablation({"exploration": {"ways": 0}}),
     "two threads that learn": Ablation({"": {"threads": 2}}),
@@ -246,7 +247,7 @@ class Cell:
 
 def settings_text(*settings: Settings) -> str:
     """The TOML text of settings together, of which later ones go before earlier ones."""
-    merged: dict[str, dict[str, str | int]] = {}
+    merged: dict[str, dict[str, str | int | list[int]]] = {}
     for each in settings:
         for table, values in each.items():
             merged.setdefault(table, {}).update(values)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import ceil, floor
 from textwrap import wrap
 from typing import Final
 
@@ -21,6 +22,12 @@ def share(value: float, places: int = 2) -> str:
 def percent(value: float) -> str:
     """A number in [0, 1] in percent; 0% and 100% are written for nothing but themselves."""
     return f"{100.0 * float(share(value)):.0f}%"
+
+
+def between(interval: tuple[float, float]) -> str:
+    """An interval of shares in percent, rounded outwards: what is certain of the one is certain of the other."""
+    low, high = floor(100.0 * interval[0] + 1e-9), ceil(100.0 * interval[1] - 1e-9)
+    return f"{low}% to {high}%"
 
 
 def number(value: float, places: int) -> str:

@@ -34,8 +34,12 @@ def prime_robustness(prime: Implicant, values: Sequence[float]) -> float:
 
 
 def bounding_atom(guards: Sequence[Guard], values: Sequence[float]) -> int:
-    """The atom that bounds the most robust of the guards: the first least literal of the first best prime."""
+    """The atom of :func:`bounding_literal`."""
+    return bounding_literal(guards, values)[0]
+
+
+def bounding_literal(guards: Sequence[Guard], values: Sequence[float]) -> tuple[int, bool]:
+    """What bounds the most robust of the guards: the first least literal of the first best prime."""
     primes = (prime for guard in guards for prime in guard.primes)
     best = max(primes, key=lambda prime: prime_robustness(prime, values))
-    atom, _ = min(best, key=lambda literal: values[literal[0]] if literal[1] else -values[literal[0]])
-    return atom
+    return min(best, key=lambda literal: values[literal[0]] if literal[1] else -values[literal[0]])

@@ -71,6 +71,8 @@ def _tell(suite: Suite, compared: Compared) -> None:
     reference = compared.reference
     played, passed, count = reference.played, sum(each.success for each in reference.accounts), len(reference.accounts)
     click.echo(plain(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes"))
+    if compared.outdated:
+        click.echo(plain(f"    {compared.outdated}"), err=True)
     for case in compared.cases:
         verdict = verdict_as_it_is(suite, case, reference) if case.variant == case.reference else "pass"
         if verdict != "pass":

@@ -18,6 +18,7 @@ from tltl_runtime.stealth.episodes.file import SUFFIX, from_bytes, new_path, rea
 from tltl_runtime.stealth.episodes.trajectory import Trajectory
 from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.pictures.plan import draw_episode
 from tltl_runtime.stealth.pictures.trajectories import draw_trajectories
 from tltl_runtime.stealth.recording import writable_folder
@@ -90,7 +91,9 @@ class EvaluationFiles:
     def text(self) -> str:
         """The report for people."""
         setup = self._setup
-        head = f"{self._level.name} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
+        # A level of one's own may be called like one that comes with tltlc.
+        level = shown(Path(setup.level)) if setup.level.endswith(".toml") else self._level.name
+        head = f"{level} {self._level.variant}, spec {setup.fspa.name}, seed {setup.seed}: {self._path}"
         found = {CHOICES[sampled]: each for sampled, each in self._evaluations().items()}
         text = f"{head}\n{self._note()}\n{report_text(found)}"
         failed = [each.index for episodes in self._played.values() for each in episodes if not each.success]

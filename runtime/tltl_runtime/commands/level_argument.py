@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from difflib import get_close_matches
 from pathlib import Path
 from shlex import quote
 
@@ -17,6 +19,15 @@ from tltlc.spec_file import split
 def names_level(text: str) -> bool:
     """Whether a text that could be a path is ``LEVEL`` or ``LEVEL:VARIANT`` of a level that comes with the package."""
     return not Path(text).exists() and level_place(text)[0] in level_names()
+
+
+def check_spelling(text: str) -> None:
+    """Raise TltlError, TLT0001, where a name without a folder or a suffix is no path, and nearly that of a level."""
+    name = level_place(text)[0]
+    close = get_close_matches(name, level_names(), n=1)
+    if close and re.fullmatch(r"[\w-]+", name) and not Path(text).exists():
+        title = f"there is neither a file nor a level `{text}`"
+        raise TltlError([Diagnostic("TLT0001", title, help=f"did you mean the level `{close[0]}`?")])
 
 
 def check_no_toml(spec: str | None, settings: str = "") -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from shlex import quote
 
-from tltl_runtime.commands.level_argument import check_there, names_level
+from tltl_runtime.commands.level_argument import check_spelling, check_there, names_level
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.levels.place import level_place
@@ -56,12 +56,17 @@ def policy_path(path: Path) -> Path:
     """The file of a policy: ``path``, or the one in this folder, which is there.
 
     Raises:
-        TltlError: TLT0840, it is an ONNX model; TLT0872, there is no policy in the folder; TLT0001, what a training
-            there measured cannot be read.
+        TltlError: TLT0840, it is an ONNX model or a level; TLT0872, there is no policy in the folder; TLT0001, what a
+            training there measured cannot be read, or it is not there, and a level's name is like it.
     """
+    check_spelling(str(path))
     if path.suffix.lower() == ".onnx" and path.is_file():
         title = f"`{path}` is the model for other engines, which `tltlc inspect -o` wrote"
         raise TltlError([Diagnostic("TLT0840", title, help="name the .safetensors file that it was made of")])
+    if path.suffix.lower() == ".toml" and path.is_file():
+        title = f"`{path}` is a TOML file, e.g. a level, and no policy"
+        help_ = "a policy is a .safetensors file, or the folder of a training; a level is named with --level"
+        raise TltlError([Diagnostic("TLT0840", title, help=help_)])
     if not path.is_dir():
         return path
     if (path / POLICY).exists():

@@ -78,7 +78,8 @@ REPORTS: Final[Mapping[str, Callable[[Outcome], str]]] = {
 
 def write_reports(outcome: Outcome, files: Mapping[str, Path]) -> Path | None:
     """Write the reports that are asked for, whose ``files`` are named by their options, and the page into the folder of
-    the run, where it shows anything or is asked for.  Where there is a page to look at; None where there is none.
+    the run, unless the run was stopped before any case and none is asked for.  Where there is a page to look at, or
+    None.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; what drawing the page raises.
@@ -88,7 +89,7 @@ def write_reports(outcome: Outcome, files: Mapping[str, Path]) -> Path | None:
         if option in files:
             texts[option] = text_of(outcome)
             write_file(files[option], texts[option], f"name another place with {option}")
-    if not outcome.cases and "--html" not in files:
+    if not outcome.cases and outcome.missing and "--html" not in files:
         return None
     page = texts.get("--html") or _page_text(outcome)
     write_files(outcome.folder, {PAGE: page}, "name another folder with --out")

@@ -44,6 +44,10 @@ def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> N
     Raises:
         TltlError: what training and playing raise.
     """
+    for done in found:
+        if done.report.verdict != "pass" and done.ready and done.ready.outdated:
+            name = plain(done.report.name)
+            click.echo(f"{name}: its policy is not trained further, since it was trained for another spec", err=True)
     runs = {
         row: retraining(asked.suite, ready, asked.folder, asked.minutes, asked.pool)
         for row, done in enumerate(found)

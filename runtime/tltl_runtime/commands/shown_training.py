@@ -19,7 +19,7 @@ def train_shown(run: Run, *, resume: bool, again: str) -> Report:
     Raises:
         TltlError: TLT0871, a worker was lost; what training raises.
     """
-    with _broken_off(again), display(run) as shown:
+    with _broken_off(again), display(run, again) as shown:
         training = train(run, resume=resume, searching=shown.searched, recording=shown.recorded)
         with closing(training) as reports:
             for last in reports:

@@ -79,13 +79,16 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
 def _table(wanted: _Wanted) -> str:
     """The table over the paper's number of episodes, and over all of them, cell by cell."""
     from tltl_runtime.regression.paper_table import LEVELS, MODELS, RUNS, VARIANTS, Row, markdown
-    from tltl_runtime.regression.table_cells import EPISODES, figures, measured
+    from tltl_runtime.regression.table_cells import EPISODES, SEED, figures, measured
+    from tltl_runtime.training.versions import versions
 
+    seeds = []
     rows: dict[int, dict[tuple[str, Model], Row]] = {RUNS: {}, EPISODES: {}}
     for level in LEVELS:
         for model in MODELS:
             made = _trained(wanted, level, model)
             policy, hours, cloned = (made.policy, made.hours, made.cloned) if made else (None, None, None)
+            seeds += [f"{level} {model} {made.seed}"] if made else []
             found = {}
             for variant in VARIANTS:
                 click.echo(f"{level}:{variant}, {model}", err=True)
@@ -93,9 +96,12 @@ def _table(wanted: _Wanted) -> str:
             for runs, table in rows.items():
                 shown = {name: figures(cell, runs) for name, cell in found.items()}
                 table[level, model] = Row(shown, hours, cloned)
-    return "\n".join(
+    tables = [
         f"{runs} episodes each of ours, {RUNS} of the paper's:\n\n{markdown(table)}" for runs, table in rows.items()
-    )
+    ]
+    made_by = ", ".join(f"{name} {version}" for name, version in versions().items())
+    how = f"Episodes of seed {SEED}, with sampled actions. Seeds of trainings: {', '.join(seeds)}. Made by {made_by}.\n"
+    return "\n".join((*tables, how))
 
 
 def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
@@ -112,7 +118,7 @@ def _trained(wanted: _Wanted, level: str, model: Model) -> Trained | None:
         path = shipped_policies()[level]
         card = read_policy(path).card
         if model == "ours":
-            return Trained(path, float(card.training["seconds"]) / 3600, None)
+            return Trained(path, card.training["seed"], float(card.training["seconds"]) / 3600, None)
         limits = table_trainings.limits_as_of(card, wanted.minutes)
     training = table_training(wanted.folder, level, model, limits)
     made = trained(training)

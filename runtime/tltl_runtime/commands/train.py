@@ -160,16 +160,16 @@ def command(
             click.echo(settings_text(settings), nl=False)
             return exits.CLEAN
         run = new_run(asked, folder) if resume is None else resumed_run(asked, resume)
-        again = resume_command(run.folder)
+        again, first = resume_command(run.folder), peers().rank == 0
         if resume is not None:
             from tltl_runtime.training.record import ended_as
 
             if record := ended_as(run):
-                if peers().rank == 0:
+                if first:
                     click.echo(_over(run, record, again))
                 return exits.CLEAN if record["end"] == "met" else exits.FINDINGS
             check_limits(run)
-        if peers().rank == 0:
+        if first:
             for line in _begins(run, resume=resume is not None):
                 click.echo(line, err=True)
         # What comes now takes seconds, these imports among it.
@@ -178,14 +178,15 @@ def command(
         from tltl_runtime.stealth.supply.feasible import reach_warnings
         from tltl_runtime.training.record import write_record
 
-        report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
+        if first:
+            report.add(reach_warnings(load_level(run.level, run.variant), run.fspa))
         try:
             last = train_shown(run, resume=resume is not None, again=again)
         except KeyboardInterrupt:
-            if stopped := stopped_line(run, again):
+            if first and (stopped := stopped_line(run, again)):
                 click.echo(stopped, err=True)
             raise
-        if peers().rank > 0:
+        if not first:
             # torchrun ends all processes as soon as one fails, and the first has a record to write.
             return exits.CLEAN
         write_record(run, last)

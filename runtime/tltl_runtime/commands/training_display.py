@@ -25,7 +25,7 @@ from tltl_runtime.commands.training_text import (
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import peers
 from tltl_runtime.training.report import Report
-from tltl_runtime.training.run import Run, resume_command
+from tltl_runtime.training.run import CHECKPOINT, Run
 from tltl_runtime.training.search import Searched
 
 _SECONDS_BETWEEN_LINES: Final = 10.0
@@ -45,8 +45,8 @@ class Display(Protocol):
 
 
 @contextmanager
-def display(run: Run) -> Iterator[Display]:
-    """Within, all that is given to what this yields is shown on standard error.
+def display(run: Run, again: str) -> Iterator[Display]:
+    """Within, all that is given to what this yields is shown on standard error; ``again`` goes on after a stop.
 
     Of the processes that torchrun started, the first one speaks.
     """
@@ -55,7 +55,7 @@ def display(run: Run) -> Iterator[Display]:
         return
     console = Console(stderr=True, highlight=False)
     if not console.is_terminal or console.is_dumb_terminal:
-        yield _Lines(run)
+        yield _Lines(run, again)
         return
     picture = Picture(run, console)
     with Live(get_renderable=picture.drawn, console=console, refresh_per_second=2) as live:
@@ -77,8 +77,8 @@ class _Nothing:
 class _Lines:
     """A line at the first report, every ten seconds, and at the last."""
 
-    def __init__(self, run: Run) -> None:
-        self._run = run
+    def __init__(self, run: Run, again: str) -> None:
+        self._run, self._again = run, again
         self._next = 0.0
         self._has_searched = self._has_trained = False
 
@@ -86,8 +86,10 @@ class _Lines:
         if not self._has_searched and self._has_trained:
             self._print(SEARCHED_AGAIN, always=True)
         elif not self._has_searched:
-            exploration = self._run.settings.exploration
-            self._print(f"ways to meet the spec are searched first, by chance. {search_end(exploration)}", always=True)
+            begins = self._run.initial and not (self._run.folder / CHECKPOINT).exists()
+            how = "the policy plays, and then chance" if begins else "by chance"
+            ends = search_end(self._run.settings.exploration)
+            self._print(f"ways to meet the spec are searched first: {how}. {ends}", always=True)
             self._print(SEARCH_IS_LOST, always=True)
             self._next = 0.0
         self._has_searched = True
@@ -104,8 +106,7 @@ class _Lines:
         if first and report.searched:
             self._print(found_line(report.searched), always=True)
         if first:
-            again = resume_command(self._run.folder)
-            self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {again}", always=True)
+            self._print(f"Ctrl-C stops it and keeps what was learned; to go on: {self._again}", always=True)
         self._print(line(report, self._run.settings.stop), always=first or report.stop is not None)
 
     def _print(self, text: str, *, always: bool = False) -> None:

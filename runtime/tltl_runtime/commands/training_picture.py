@@ -128,7 +128,7 @@ class Picture:
             kept = f"last checkpoint {duration(now - self._checkpoint)} ago"
         else:
             kept = "resumed from its checkpoint" if self._resumed else "no checkpoint yet"
-        return kept if report.stop else f"{kept}; Ctrl-C writes one, and --resume goes on"
+        return kept if report.stop else f"{kept}; Ctrl-C writes one to go on from"
 
 
 def _success(report: Report, stop: Stop, bar: int) -> Table:

@@ -18,7 +18,7 @@ from tltl_runtime.commands.initial_policy import (
     moved,
     own_place,
 )
-from tltl_runtime.commands.level_argument import check_there, names_level, own_level
+from tltl_runtime.commands.level_argument import check_spelling, check_there, names_level, own_level
 from tltl_runtime.commands.senses import option_of
 from tltl_runtime.commands.training_text import minutes
 from tltl_runtime.evaluation.evaluate import check_limit
@@ -54,6 +54,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_source, reading_error
 from tltlc.record import record, replace
+from tltlc.spec_file import split
 
 T = TypeVar("T")
 
@@ -82,8 +83,12 @@ def new_run(asked: Asked, folder: Path | None) -> Run:
     Raises TltlError for all that is wrong with its spec, level, senses and settings, and for a policy to begin with
     that does not fit these, TLT0873 for a folder that has files of something else.
     """
-    if asked.level is None and asked.spec is not None and names_level(asked.spec):
+    if asked.spec is not None and names_level(asked.spec):
+        if asked.level is not None:
+            raise _usage(f"`{asked.spec}` is a level, and so is `{asked.level}`: name a spec, or one of them alone")
         asked = replace(asked, level=asked.spec, spec=None)
+    elif asked.spec is not None:
+        check_spelling(split(asked.spec)[0])
     begun = begins_with(asked)
     path, variant = _place(asked, begun)
     settings = new_settings(asked, begun)

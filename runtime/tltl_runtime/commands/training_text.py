@@ -55,7 +55,7 @@ def search_line(searched: Searched) -> str:
     else:
         ways = "no way to meet the spec yet"
     took = f"{searched.steps:,} steps in {duration(searched.seconds)}"
-    return f"searching by chance: {took}, {searched.places:,} places, {ways}"
+    return f"searching: {took}, {searched.places:,} places, {ways}"
 
 
 def search_end(exploration: Exploration) -> str:

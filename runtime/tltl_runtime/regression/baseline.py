@@ -19,7 +19,7 @@ from tltlc.record import record
 from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-baseline"
-VERSION: Final = 1
+VERSION: Final = 2
 MAX_BYTES: Final = 1 << 28
 
 _REFUSALS: Final = Refusals(

@@ -13,7 +13,8 @@ from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, Told, episodes, ready
 from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict import Verdict, judge
-from tltlc.record import record
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import record, replace
 from tltlc.writing import remove_file, write_file
 
 _ADVICE: Final = "name another place with --output"
@@ -21,10 +22,11 @@ _ADVICE: Final = "name another place with --output"
 
 @record
 class Compared:
-    """What was recorded, and the cases that are compared with it."""
+    """What was recorded, the cases that are compared with it, and why none of them passes whose spec is another now."""
 
     reference: Reference
     cases: tuple[Case, ...]
+    outdated: str | None = None
 
 
 def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference, ...] = ()) -> Generator[Compared]:
@@ -73,13 +75,22 @@ def _groups(suite: Suite) -> list[list[Ready]]:
     """Cases that are compared with the same, made ready to play that."""
     groups: list[list[Ready]] = []
     for case in suite.cases:
-        one = ready(case, suite.seed, case.reference)
+        one = _ready(case, suite.seed)
         same = [group for group in groups if group[0].played == one.played]
         if same:
             same[0].append(one)
         else:
             groups.append([one])
     return groups
+
+
+def _ready(case: Case, seed: int) -> Ready:
+    """A case's reference made ready to play; what does not fit is said with the case's name."""
+    try:
+        return ready(case, seed, case.reference)
+    except TltlError as error:
+        named = [replace(each, title=f"case `{case.name}`: {each.title}") for each in error.diagnostics]
+        raise TltlError(named) from None
 
 
 def _recorded(
@@ -89,7 +100,8 @@ def _recorded(
         one = max(group, key=lambda each: each.case.episodes)
         there = [each for each in kept if each.played == one.played and len(each.accounts) == one.case.episodes]
         reference = there[0] if there else _played(one, pool, told)
-        yield Compared(reference, tuple(each.case for each in group))
+        outdated = next((each.outdated for each in group if each.outdated), None)
+        yield Compared(reference, tuple(each.case for each in group), outdated)
 
 
 def _played(one: Ready, pool: Pool, told: Told) -> Reference:

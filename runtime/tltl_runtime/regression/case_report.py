@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Played
-from tltl_runtime.regression.explain import Finding, findings
+from tltl_runtime.regression.explain import Finding, ends, findings
 from tltl_runtime.regression.play import Result
 from tltl_runtime.regression.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.retrained import Retrained
-from tltl_runtime.regression.suite import Case
-from tltl_runtime.regression.verdict import Change, Verdict
+from tltl_runtime.regression.suite import Case, Thresholds
+from tltl_runtime.regression.verdict import Change, Judgement, Verdict
 from tltl_runtime.stealth.levels.place import shown_variant
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record
@@ -46,6 +47,13 @@ class CaseReport:
     """Of which episodes there are recordings, and the names of their files."""
     retrained: Retrained | None = None
     """What a training from its policy came to, None where none was asked for or needed."""
+    told: str = ""
+    """The headline where it is none of the reasons as they stand; empty: the first of them."""
+
+    @property
+    def headline(self) -> str:
+        """What says most where there is room for one sentence."""
+        return self.told or next(iter(self.reasons), "")
 
     @property
     def reasons(self) -> tuple[str, ...]:
@@ -59,6 +67,9 @@ def report_on(result: Result) -> CaseReport:
     now = [each.account for each in result.episodes]
     before = result.reference.accounts
     level, outdated = result.ready.level, result.ready.outdated
+    said = tuple(reasons(result.judgement, case.thresholds, now, before))
+    blocked = tuple(obstacles(level, setup.fspa))
+    failed = next(ends(level, setup.fspa, now, before), None)
     return CaseReport(
         name=case.name,
         level=level.name,
@@ -70,11 +81,8 @@ def report_on(result: Result) -> CaseReport:
         figures=figures_of(now),
         baseline=figures_of(before),
         changes=result.judgement.changes,
-        causes=(
-            *([outdated] if outdated else []),
-            *reasons(result.judgement, case.thresholds, now, before),
-            *obstacles(level, setup.fspa),
-        ),
+        causes=(*([outdated] if outdated else []), *said, *blocked),
+        told=outdated or next(iter(blocked), None) or _headline(result.judgement, case.thresholds, said, failed),
         explanation=findings(level, setup.fspa, now, before),
         edits=tuple(edits(result.ready.played, result.reference.played, result.ready.changes)),
         played=result.ready.played,
@@ -83,12 +91,19 @@ def report_on(result: Result) -> CaseReport:
     )
 
 
+def _headline(judgement: Judgement, thresholds: Thresholds, said: Sequence[str], failed: Finding | None) -> str:
+    """Of a case that may meet its spec too rarely how it fails, of one whose figures changed that, else how often."""
+    if failed and judgement.rate_interval[0] < thresholds.pass_rate:
+        return failed.text.partition("; closest")[0].partition("; in state")[0]
+    return said[1] if len(said) > 1 else said[0]
+
+
 def report_on_broken(case: Case, error: TltlError) -> CaseReport:
-    """The report on a case that cannot be played any more, which is a failure of the level and not of the suite."""
-    said = ("it cannot be played any more", *map(_said, error.diagnostics))
+    """The report on a case that cannot be played, which is a failure of the level and not of the suite."""
+    said = ("it cannot be played", *map(_said, error.diagnostics))
     # As a level that loads calls it: the place of an overlay's file is no part of a report.
     variant = shown_variant(case.variant)
-    return CaseReport(case.name, Path(case.level).stem, variant, "fail", said)
+    return CaseReport(case.name, Path(case.level).stem, variant, "fail", said, told=": ".join(said[:2]))
 
 
 def report_on_edited(case: Case, error: TltlError) -> CaseReport:

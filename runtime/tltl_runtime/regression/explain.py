@@ -7,11 +7,13 @@ from collections.abc import Iterator, Sequence
 from statistics import fmean
 from typing import Final
 
-from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.places import obstacle, place_name
-from tltl_runtime.regression.stages import chain, deed, together
+from tltl_runtime.regression.account import Account, Nearest
+from tltl_runtime.regression.places import in_the_way, place_name
+from tltl_runtime.regression.stages import REACHES, chain, deed, together
+from tltl_runtime.regression.way import places_along
 from tltl_runtime.stealth.episodes.cause import Kind
 from tltl_runtime.stealth.level import Level, Region
+from tltl_runtime.texts import number
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record
 
@@ -28,7 +30,8 @@ _SLOWER: Final = 1.15
 """Mean lengths of successes whose ratio is less are alike."""
 
 _FEW: Final = 3
-"""Ends are told of that so many episodes have, or one in ten; of more kinds than that, the most frequent."""
+"""Ends are told of that so many episodes have, or one in ten; of more kinds than that, the most frequent.  Of fewer
+successes nothing is told."""
 
 
 @record
@@ -46,7 +49,7 @@ def findings(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[
     """
     return (
         *_stages(fspa, now, before),
-        *_ends(level, fspa, now, before),
+        *ends(level, fspa, now, before),
         *_lengths(now, before),
         *_regions(level, now, before),
     )
@@ -81,23 +84,27 @@ def _distances(fspa: Fspa, account: Account) -> list[int]:
     return [distance for distance in found if distance is not None] or [fspa.spec_size]
 
 
-def _ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
+def ends(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
     """How the failed episodes end, the most frequent first; no two sentences are equal."""
     groups: dict[tuple[_End, str], list[Account]] = {}
     for each in now:
         if not each.success:
             groups.setdefault(_kind(level, fspa, each), []).append(each)
-    often = sorted(groups.items(), key=lambda item: -len(item[1]))
+    often = sorted(groups.items(), key=lambda item: -len(item[1]))[:_FEW]
+    frequent = {kind: each for kind, each in often if len(each) >= _FEW or 10 * len(each) >= len(now)}
     stages = Counter(end for end, _ in groups)
-    for (end, undone), accounts in often[:_FEW]:
-        if len(accounts) < _FEW and 10 * len(accounts) < len(now):
-            continue
-        used = sum(not each.success and _kind(level, fspa, each) == (end, undone) for each in before)
+    failed_before = Counter(_kind(level, fspa, each) for each in before if not each.success)
+    for (end, undone), accounts in frequent.items():
+        used = failed_before.pop((end, undone), 0)
         # Where one end comes in several stages, the sentences must tell them apart.
         stage = f" before it {undone}" if stages[end] > 1 else ""
         text = f"{_told(level, end, accounts)}{stage} in {_of(len(accounts), now)}; before: in {_of(used, before)}"
-        ended = f"{text}{_approach(accounts)}; {_remained(fspa, accounts)}"
+        ended = f"{text}{_approach(undone, accounts)}; {_remained(fspa, accounts)}"
         yield Finding(ended, tuple(each.index for each in accounts))
+    if rest := sorted(each.index for kind, accounts in groups.items() if kind not in frequent for each in accounts):
+        otherwise = "otherwise " if frequent else ""
+        used = sum(failed_before.values())
+        yield Finding(f"fails {otherwise}in {_of(len(rest), now)}; before: in {_of(used, before)}", tuple(rest))
 
 
 @record
@@ -111,7 +118,8 @@ class _End:
 
 def _kind(level: Level, fspa: Fspa, account: Account) -> tuple[_End, str]:
     """How an episode failed, and what it would have had to do next."""
-    return _End(account.cause, account.by, place_name(level, account.place)), deed(fspa, account.unmet)
+    by = tuple(sorted(account.by))
+    return _End(account.cause, by, place_name(level, account.place)), deed(fspa, account.unmet)
 
 
 def _told(level: Level, end: _End, accounts: Sequence[Account]) -> str:
@@ -123,8 +131,8 @@ def _told(level: Level, end: _End, accounts: Sequence[Account]) -> str:
         return f"dies {end.where}{by}{broke}{saw}" + "," * bool(broke or saw)
     if end.cause == "violated":
         return f"breaks the spec {end.where} ({_names(end.by)}){saw}" + "," * bool(saw)
-    solid = obstacle(level, [each.place for each in accounts])
-    return f"is {end.where} when time is up" + (f", at `{solid}`," if solid else "")
+    stopped = in_the_way(level, [(each.place, each.shut) for each in accounts])
+    return f"is {end.where} when time is up" + (f", at {_names(stopped)}," if stopped else "")
 
 
 def _mostly(what: str, named: Sequence[Sequence[str]]) -> str:
@@ -137,19 +145,30 @@ def _mostly(what: str, named: Sequence[Sequence[str]]) -> str:
     return f", {'mostly ' if rarely else ''}{what} {_names(often)}"
 
 
-def _approach(accounts: Sequence[Account]) -> str:
-    """How near the episodes came at best to what most of them did not reach."""
-    near = [each.nearest for each in accounts if each.nearest]
-    if not near:
-        return ""
-    (atom, target), count = Counter((each.atom, each.target) for each in near).most_common(1)[0]
-    limited = [each for each in near if (each.atom, each.target) == (atom, target)]
-    if all(atom in each.broke for each in accounts):
-        return f"; all that {count} of them lacked at the end was `{atom}`"
-    if target is None:
-        return f"; the limit is `{atom}`, {max(each.robustness for each in limited):+.2f} at best"
-    least = min(each.distance for each in limited if each.distance is not None)
-    return f"; closest approach to `{target}`: {least:.1f} m (`{atom}` is the limit)"
+def _approach(undone: str, accounts: Sequence[Account]) -> str:
+    """What most of the episodes lacked of what was to be done next, behind a semicolon; where they had come to it, and
+    something else broke the spec then, that.
+    """
+    said = ""
+    if arrived := sum(each.arrived for each in accounts):
+        was = "was" if arrived == 1 else "were"
+        there = f"{was} at {undone.removeprefix(REACHES)}" if undone.startswith(REACHES) else "lacked nothing else"
+        said = f"; {arrived} of them {there} when it broke"
+    near = [each.nearest for each in accounts if each.nearest and not each.arrived]
+    return f"{said}; {_limit(near)}" if 2 * len(near) > len(accounts) else said
+
+
+def _limit(near: Sequence[Nearest]) -> str:
+    """What was the limit in most of the episodes, and how near they came at best."""
+    ((atom, wanted), _), *_ = Counter((each.atom, each.wanted) for each in near).most_common(1)
+    limited = [each for each in near if (each.atom, each.wanted) == (atom, wanted)]
+    if not wanted:
+        return f"the limit is that `{atom}` holds"
+    if distances := [each.distance for each in limited if each.distance is not None]:
+        return f"closest approach to `{limited[0].target}`: {min(distances):.1f} m (`{atom}` is the limit)"
+    best = max(each.robustness for each in limited)
+    # Of what is either true or false there is no better or worse.
+    return f"the limit is `{atom}`" + (f", {number(best, 2)} at best" if best > -1.0 else "")
 
 
 def _remained(fspa: Fspa, accounts: Sequence[Account]) -> str:
@@ -161,7 +180,7 @@ def _remained(fspa: Fspa, accounts: Sequence[Account]) -> str:
 
 def _lengths(now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
     new, old = ([each.steps for each in accounts if each.success] for accounts in (now, before))
-    if new and old:
+    if min(len(new), len(old)) >= _FEW:
         ratio = fmean(new) / fmean(old)
         if not 1 / _SLOWER < ratio < _SLOWER:
             how = "longer" if ratio > 1 else "shorter"
@@ -185,7 +204,7 @@ def _regions(level: Level, now: Sequence[Account], before: Sequence[Account]) ->
 
 def _visits(account: Account, region: Region) -> bool:
     (x0, y0, _), (x1, y1, _) = region.box.low, region.box.high
-    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y, _ in account.way)
+    return any(x0 <= x <= x1 and y0 <= y <= y1 for x, y in (*places_along(account.way), account.place[:2]))
 
 
 def _of(count: int, accounts: Sequence[Account]) -> str:
@@ -193,4 +212,5 @@ def _of(count: int, accounts: Sequence[Account]) -> str:
 
 
 def _names(names: Sequence[str]) -> str:
-    return " and ".join(f"`{name}`" for name in names)
+    *before, last = (f"`{name}`" for name in names)
+    return f"{', '.join(before)} and {last}" if before else last

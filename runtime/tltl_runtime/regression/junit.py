@@ -48,7 +48,7 @@ def _testcase(suite: Suite, report: CaseReport) -> ET.Element:
     test = ET.Element("testcase", {"name": _legal(report.name), "classname": _legal(suite.path.stem)})
     text = _legal("\n".join(report.reasons))
     if report.verdict in _ELEMENTS:
-        message = _legal(f"{report.verdict}: {report.reasons[0]}" if report.reasons else report.verdict)
+        message = _legal(f"{report.verdict}: {report.headline}")
         ET.SubElement(test, _ELEMENTS[report.verdict], {"type": report.verdict, "message": message}).text = text
     elif text:
         ET.SubElement(test, "system-out").text = text

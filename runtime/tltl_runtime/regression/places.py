@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import hypot
+from statistics import fmean
 from typing import Final
 
 from tltl_runtime.stealth.level import Box, Level, Point, fixed_places
@@ -32,18 +33,26 @@ def nearest_entity(level: Level, point: Point) -> str | None:
     return name if distance <= _NEAR else None
 
 
-def obstacle(level: Level, points: Sequence[Point]) -> str | None:
-    """The solid that most of the points, those of players' feet, touch; the floor is none."""
-    counts: dict[str, int] = {}
-    solids = [solid for solid in level.solids if solid.kind != "floor"]
-    for point in points:
-        above = [solid for solid in solids if solid.box.high[2] > point[2] + 0.1]
-        near = [(_distance((*point[:2], max(point[2], s.box.low[2])), s.box), s.name) for s in above]
-        distance, name = min(near, default=(2 * _TOUCHING, ""))
-        if distance <= _TOUCHING:
-            counts[name] = counts.get(name, 0) + 1
-    name = max(counts, key=lambda each: counts[each], default="")
-    return name if name and 2 * counts[name] > len(points) else None
+def in_the_way(level: Level, ends: Sequence[tuple[Point, Sequence[str]]]) -> list[str]:
+    """The solids and the shut barriers that most players touch, the most frequent and nearest first; the floor is none.
+
+    ``ends`` are where the players' feet are, each with the names of the barriers that are shut then.
+    """
+    solids = {each.name: each.box for each in level.solids if each.kind != "floor"}
+    barriers = {each.name: each.box for each in level.barriers}
+    touched: dict[str, list[float]] = {}
+    for feet, shut in ends:
+        for name, box in (solids | {name: barriers[name] for name in shut if name in barriers}).items():
+            if (away := _beside(feet, box)) <= _TOUCHING:
+                touched.setdefault(name, []).append(away)
+    often = [name for name, each in touched.items() if 2 * len(each) > len(ends)]
+    return sorted(often, key=lambda name: (-len(touched[name]), fmean(touched[name])))
+
+
+def _beside(feet: Point, box: Box) -> float:
+    """From a player to a box beside it, on the plan; far from what is below the feet, such as a box to stand on."""
+    body = (*feet[:2], max(feet[2], box.low[2]))
+    return _distance(body, box) if box.high[2] > feet[2] + 0.1 else float("inf")
 
 
 def _distance(point: Point, box: Box) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from statistics import fmean
 
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Played
@@ -10,6 +11,7 @@ from tltl_runtime.regression.suite import Thresholds
 from tltl_runtime.regression.verdict import Judgement, beyond
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.supply.feasible import reach_warnings
+from tltl_runtime.texts import between
 from tltlc.automaton.fspa import Fspa
 
 
@@ -18,7 +20,6 @@ def reasons(
 ) -> Iterator[str]:
     """What the statistics say."""
     passed, used = (sum(each.success for each in accounts) for accounts in (now, before))
-    low, high = (f"{end:.0%}" for end in judgement.rate_interval)
     good, bad = f"{thresholds.pass_rate:.0%}", f"{thresholds.fail_rate:.0%}"
     met = f"met in {passed} of {len(now)} episodes, before in {used} of {len(before)}"
     if judgement.verdict == "fail":
@@ -28,14 +29,25 @@ def reasons(
     elif judgement.certain and judgement.rate_interval[1] < thresholds.pass_rate:
         yield f"{met}: certainly in {bad} to {good}"
     else:
-        yield f"{met}: {low} to {high} can be said for certain, and {good} are asked for"
+        yield f"{met}: {between(judgement.rate_interval)} can be said for certain, and {good} are asked for"
     for change in judgement.changes:
-        how = "lower" if change.now < change.before else "higher"
-        yield f"{change.figure} is {how}, {change.now:.2f} on average; before: {change.before:.2f}"
+        yield _moved(change.figure, change.now, change.before)
     if judgement.verdict == "review" and not judgement.certain:
         certain = {change.figure for change in judgement.changes}
         for figure in (each for each in beyond(now, before, thresholds) if each not in certain):
-            yield f"{figure} seems to have changed by {getattr(thresholds, figure):g} or more, which is not certain"
+            means = [fmean(getattr(each, figure) for each in accounts) for accounts in _of_equal_seeds(now, before)]
+            yield f"{_moved(figure, *means)}; that is {getattr(thresholds, figure):g} or more, but not certain"
+
+
+def _moved(figure: str, now: float, before: float) -> str:
+    """That the mean of a figure is another one."""
+    how = "lower" if now < before else "higher"
+    return f"{figure} is {how}, {now:.2f} on average; before: {before:.2f}"
+
+
+def _of_equal_seeds(now: Sequence[Account], before: Sequence[Account]) -> tuple[Sequence[Account], Sequence[Account]]:
+    count = min(len(now), len(before))
+    return now[:count], before[:count]
 
 
 def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:

@@ -139,7 +139,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
     place = f"{FOLDER}/{run.folder.name}"
     found = Retrained(
         outcome=outcome,
-        text=sentence(outcome, trained, of_all, thresholds, best),
+        text=sentence(outcome, trained, of_all, interval, thresholds, best),
         trained=trained,
         figures=of_all,
         rate_interval=interval,

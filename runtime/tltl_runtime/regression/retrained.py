@@ -7,7 +7,7 @@ from typing import Literal
 
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.suite import Thresholds
-from tltl_runtime.texts import duration, number, percent
+from tltl_runtime.texts import between, duration, number
 from tltlc.record import record
 
 Outcome = Literal["learned", "feasible", "no_way"]
@@ -68,18 +68,29 @@ def outcome_of(trained: Trained, low: float, thresholds: Thresholds, met: int) -
     return "feasible" if met or trained.shortest is not None else "no_way"
 
 
-def sentence(outcome: Outcome, trained: Trained, figures: Figures, thresholds: Thresholds, best: Best | None) -> str:
+def sentence(
+    outcome: Outcome,
+    trained: Trained,
+    figures: Figures,
+    rate_interval: tuple[float, float],
+    thresholds: Thresholds,
+    best: Best | None,
+) -> str:
     """What is told of the outcome."""
-    return "; ".join(_clauses(outcome, trained, figures, thresholds, best))
+    return "; ".join(_clauses(outcome, trained, figures, rate_interval, thresholds, best))
 
 
 def _clauses(
-    outcome: Outcome, trained: Trained, figures: Figures, thresholds: Thresholds, best: Best | None
+    outcome: Outcome,
+    trained: Trained,
+    figures: Figures,
+    rate_interval: tuple[float, float],
+    thresholds: Thresholds,
+    best: Best | None,
 ) -> Iterator[str]:
     took = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
     count, passed = figures.episodes, round(figures.pass_rate * figures.episodes)
-    low, high = (percent(end) for end in figures.pass_interval)
-    now = f"the policy meets the spec in {passed} of {count} fresh episodes ({low} to {high})"
+    now = f"the policy meets the spec in {passed} of {count} fresh episodes ({between(rate_interval)} for certain)"
     if outcome == "learned":
         yield f"feasible: after {took} {now}"
     elif outcome == "feasible":

@@ -10,7 +10,7 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.held_folder import held
 from tltl_runtime.record_json import to_json
-from tltl_runtime.regression.baseline import Reference, reference_of
+from tltl_runtime.regression.baseline import Reference, baseline_command, reference_of
 from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken, report_on_edited
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, Result, Told, judged, ready
@@ -52,8 +52,12 @@ class Done:
 
     @property
     def to_train(self) -> Ready | None:
-        """What a training could tell more of: a case that was played and did not pass, unless one has done so."""
-        return self.ready if self.report.verdict != "pass" and self.report.retrained is None else None
+        """What a training could tell more of: a case that was played and did not pass, unless one has done so, or its
+        policy is judged by a spec that nobody asks for any more.
+        """
+        if self.report.verdict == "pass" or self.report.retrained or (self.ready and self.ready.outdated):
+            return None
+        return self.ready
 
 
 def check(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
@@ -119,7 +123,13 @@ def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tu
     except TltlError as error:
         return error
     wanted = replace(one.played, variant=case.reference)
-    return one, reference_of(references, wanted, suite)
+    reference = reference_of(references, wanted, suite)
+    if len(reference.accounts) < case.episodes:
+        title = (
+            f"the baseline of `{case.name}` has {len(reference.accounts)} episodes, and {case.episodes} are asked for"
+        )
+        raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
+    return one, reference
 
 
 def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Pool, told: Told) -> Done:

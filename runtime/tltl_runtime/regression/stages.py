@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from typing import Final
 
 from tltl_runtime.stealth.expert.goals import distant_entity
-from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.expression import Signal, nodes
 from tltlc.monitor.tables import tables
 from tltlc.resolve.spec import Atom
 
-_REACHES: Final = "reaches "
+REACHES: Final = "reaches "
+"""How a deed begins that is to be somewhere."""
 
 
 def target_of(atom: Atom) -> str | None:
@@ -23,23 +24,25 @@ def target_of(atom: Atom) -> str | None:
 def deed(fspa: Fspa, state: int) -> str:
     """What leads from a state nearer to acceptance: ``reaches `s1```, ``reaches `a` or `b```, ``makes `open` true``."""
     found = [
-        words
-        for edge in tables(fspa).improving[state]
-        for prime in edge.guard.primes
-        if (words := _deed(fspa, [fspa.atoms[atom] for atom, holds in prime if holds]))
+        words for edge in tables(fspa).improving[state] for prime in edge.guard.primes if (words := _deed(fspa, prime))
     ]
     distinct = list(dict.fromkeys(found))
-    if distinct and all(each.startswith(_REACHES) for each in distinct):
-        return _REACHES + " or ".join(each.removeprefix(_REACHES) for each in distinct)
+    if distinct and all(each.startswith(REACHES) for each in distinct):
+        return REACHES + " or ".join(each.removeprefix(REACHES) for each in distinct)
     return " or ".join(distinct) or "meets the spec"
 
 
-def _deed(fspa: Fspa, wanted: list[Atom]) -> str:
-    """What makes these atoms true at once: where one is to go somewhere, that alone; of what is kept, nothing."""
-    if targets := [f"`{target}`" for atom in wanted if (target := target_of(atom))]:
-        return f"{_REACHES}{' and '.join(targets)}"
-    others = [f"`{atom.name}`" for atom in wanted if not _is_kept(fspa, atom)]
-    return f"makes {' and '.join(others)} true" if others else ""
+def _deed(fspa: Fspa, prime: Implicant) -> str:
+    """What makes a prime implicant true: where one is to go somewhere, that alone; what is to hold before what is not
+    to; of what is kept, nothing.
+    """
+    if targets := [f"`{target}`" for atom, holds in prime if holds and (target := target_of(fspa.atoms[atom]))]:
+        return f"{REACHES}{' and '.join(targets)}"
+    for truth in (True, False):
+        wanted = [atom for atom, holds in prime if holds == truth and not _is_kept(fspa, atom, truth)]
+        if wanted:
+            return f"makes {' and '.join(f'`{fspa.atoms[atom].name}`' for atom in wanted)} {str(truth).lower()}"
+    return ""
 
 
 def chain(fspa: Fspa) -> tuple[int, ...]:
@@ -51,15 +54,17 @@ def chain(fspa: Fspa) -> tuple[int, ...]:
     return tuple(found)
 
 
-def _is_kept(fspa: Fspa, atom: Atom) -> bool:
-    """Whether all accepting runs need the atom all the time: every edge to no trap has it."""
-    index = fspa.atoms.index(atom)
+def _is_kept(fspa: Fspa, atom: int, truth: bool) -> bool:
+    """Whether all accepting runs need that an atom holds, or does not, all the time: every edge to no trap asks it."""
     kept = [edge for edge in fspa.edges if fspa.states[edge.target].distance is not None]
-    return all((index, True) in prime for edge in kept for prime in edge.guard.primes)
+    return all((atom, truth) in prime for edge in kept for prime in edge.guard.primes)
 
 
 def together(deeds: Sequence[str]) -> str:
-    """Several deeds, one after the other: ``reaches `s1`, `s2```."""
-    if deeds and all(each.startswith(_REACHES) for each in deeds):
-        return _REACHES + ", ".join(each.removeprefix(_REACHES) for each in deeds)
-    return ", ".join(deeds)
+    """Several deeds, one after the other: ``reaches `s1`, `s2```; with a choice among them ``reaches `s1`, then `a` or
+    `b```.
+    """
+    between = ", then " if any(" or " in each for each in deeds) else ", "
+    if deeds and all(each.startswith(REACHES) for each in deeds):
+        return REACHES + between.join(each.removeprefix(REACHES) for each in deeds)
+    return between.join(deeds)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from os.path import normpath
 from pathlib import Path
 from typing import Final
 
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
-from tltl_runtime.stealth.levels.file import level_path, shared_names, variants
+from tltl_runtime.stealth.levels.file import level_names, level_path, shared_names, variants
 from tltl_runtime.stealth.levels.made_for import shown
-from tltl_runtime.stealth.levels.place import with_overlays
+from tltl_runtime.stealth.levels.place import level_place, overlays_of, with_overlays
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
@@ -28,6 +29,8 @@ MOST_EPISODES: Final = 300
 """Are played of a case at the most, where its suite says nothing else."""
 
 _LIMIT: Final = 10_000
+_MOST: Final = {"pass_rate": 0.999}
+"""Of thresholds; no number of episodes makes certain that all meet the spec."""
 _HELP: Final = 'values are written as in `episodes = 100`, texts as in `level = "navigation"`'
 
 
@@ -98,6 +101,9 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     source = read_source(path, shown(path))
     log: list[Diagnostic] = []
     table = Table(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
+    if "case" not in table.entries and {"bounds", "start"} & set(table.entries):
+        help_ = "a suite lists cases that name levels, each under `[[case]]`"
+        raise TltlError([Diagnostic("TLT0803", "this is a level, and no suite", (table.label,), help_)])
     seed = table.whole("seed", 0, low=0, high=2**31 - 1)
     error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
     episodes = _episodes(table, MOST_EPISODES)
@@ -168,8 +174,18 @@ def _level(table: Table, folder: Path) -> tuple[str, str]:
         level_path(level)
     except TltlError as error:
         (found,) = error.diagnostics
-        table.log.append(Diagnostic(found.code, found.title, (table.place("level"),), found.help))
+        name, variant = level_place(level)
+        is_there = name in level_names() or (folder / name).is_file()
+        help_ = _apart(name, variant) if variant and is_there else found.help
+        table.log.append(Diagnostic(found.code, found.title, (table.place("level"),), help_))
     return level, ""
+
+
+def _apart(level: str, variant: str) -> str:
+    """How a suite writes what commands write as ``LEVEL:VARIANT+OVERLAY``."""
+    base, added = overlays_of(variant)
+    lines = [f'`level = "{level}"`', f'`variant = "{base}"`', *([f"`overlay = {json.dumps(added)}`"] if added else [])]
+    return f"write {', '.join(lines)}"
 
 
 def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
@@ -221,7 +237,10 @@ def _thresholds(table: Table, defaults: Thresholds) -> Thresholds:
     if found is None:
         return defaults
     before = len(table.log)
-    values = [found.number(key, getattr(defaults, key), low=0.0, high=1.0, unit="") for key in defaults.__match_args__]
+    values = [
+        found.number(key, getattr(defaults, key), low=0.0, high=_MOST.get(key, 1.0), unit="")
+        for key in defaults.__match_args__
+    ]
     found.done()
     made = Thresholds(*values)
     if made.fail_rate > made.pass_rate and len(table.log) == before:

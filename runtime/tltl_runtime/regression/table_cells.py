@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, evaluate
+from tltl_runtime.evaluation.play import episode_seed
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
@@ -80,11 +81,13 @@ def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[W
 
 
 def _by_expert(level: str, variant: str, pool: Pool) -> Sequence[Went]:
-    """The careful expert's episodes, whose seeds follow each other; in this process, or in several."""
+    """The careful expert's episodes; in this process, or in several."""
     from tltl_runtime.vector.cores import cores
 
     workers = cores() if pool == "ray" or pool == 0 else pool
-    parts = [(level, variant, tuple(range(SEED + first, SEED + EPISODES, workers))) for first in range(workers)]
+    # Those of the policies' episodes, so that all play the same.
+    seeds = tuple(episode_seed(SEED, index) for index in range(EPISODES))
+    parts = [(level, variant, seeds[first::workers]) for first in range(workers)]
     if workers == 1:
         return _expert_part(*parts[0])
     with ProcessPoolExecutor(workers, get_context("spawn")) as executor:

@@ -44,11 +44,12 @@ class TableTraining:
 
 @record
 class Trained:
-    """What a training came to: its policy, the hours it took, and the share of its steps in which it was cloned, None
-    of a model that does not imitate.
+    """What a training of a ``seed`` came to: its policy, the hours it took, and the share of its steps in which it was
+    cloned, None of a model that does not imitate.
     """
 
     policy: Path
+    seed: int
     hours: float
     cloned: float | None
 
@@ -120,4 +121,4 @@ def trained(training: TableTraining) -> Trained | None:
     if made is None:
         return None
     cloned = made["imitated"]["cloned"] / made["steps"] if training.imitates else None
-    return Trained(training.folder / POLICY, made["seconds"] / 3600, cloned)
+    return Trained(training.folder / POLICY, run.seed, made["seconds"] / 3600, cloned)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
 import numpy as np
-from torch import Tensor
+from numpy.typing import NDArray
 
+from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.checkpoint import Checkpoint, level_changed, read_checkpoint
 from tltl_runtime.training.demonstrated import Demonstrated, read_demonstrations, record_expert
@@ -27,7 +29,7 @@ from tltl_runtime.training.run import (
     resume_command,
     write_run,
 )
-from tltl_runtime.training.search import Searched
+from tltl_runtime.training.search import Player, Searched
 from tltl_runtime.training.searching import Searching, searched_first
 from tltl_runtime.training.self_imitation import Lessons
 from tltl_runtime.training.starts import Replayed
@@ -96,15 +98,15 @@ def demonstrated(run: Run, own: Peers, recording: Callable[[Tried], None]) -> De
     return own.broadcast(found)
 
 
-def initial_weights(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Mapping[str, Tensor] | None:
-    """The weights that the actor begins with, by name; None where they are drawn, or a checkpoint has them.
+def initial_policy(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Policy | None:
+    """The policy that the training begins with; None where weights are drawn, or a checkpoint has them.
 
     Raises:
         TltlError: TLT0940, their policy is another one now; what is wrong with its file.
     """
     if run.initial is None or checkpoint is not None:
         return None
-    return own.broadcast(read_initial(run.initial, run.folder).weights() if own.rank == 0 else None)
+    return own.broadcast(read_initial(run.initial, run.folder) if own.rank == 0 else None)
 
 
 def prepared(
@@ -115,21 +117,40 @@ def prepared(
     checkpoint: Checkpoint | None,
     searching: Searching,
     to_imitate: Demonstrated | None,
+    initial: Policy | None,
 ) -> tuple[TrainingEnv, Searched | None]:
     """What rsl-rl trains with, at the beginning of episodes that no process played before, and what a search found.
 
-    This is None where there was no need of one: ways are searched once, unless a limit broke the search off.
+    This is None where there was no need of one: ways are searched once, unless a limit broke the search off.  The
+    policy that the training begins with, ``initial``, plays first there.
     """
     searched, restarts, lessons = None, None, None
     iteration = checkpoint.iteration if checkpoint else 0
     if run.settings.searches:
         restarts = _restarts(run, own, checkpoint)
-        searched = searched_first(run, own, played, restarts, checkpoint, searching)
+        searched = searched_first(run, own, played, restarts, checkpoint, searching, _player(run, own, initial))
         if run.settings.exploration.imitation:
             lessons = Lessons(_env_of(run), restarts)
     seeds = stream(run, own, Purpose.ENVIRONMENTS, iteration).generate_state(played.num_envs) >> 1
     first = [int(each) for each in seeds]
     return TrainingEnv(played, first, device, restarts, lessons, to_imitate, dearer(run)), searched
+
+
+def _player(run: Run, own: Peers, policy: Policy | None) -> Player | None:
+    """A policy that plays with sampled actions; TLT0854 where it chooses by what is no number."""
+    if policy is None:
+        return None
+    generator = np.random.default_rng(stream(run, own, Purpose.INITIAL))
+
+    def play(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
+        try:
+            return policy.choose(observation, generator)
+        except NoNumbersError as error:
+            title = f"the policy that the training in `{run.folder}` begins with: {error}"
+            help_ = "begin with another one, or train without --from"
+            raise TltlError([Diagnostic("TLT0854", title, help=help_)]) from None
+
+    return play
 
 
 def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:

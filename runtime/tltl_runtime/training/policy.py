@@ -25,7 +25,7 @@ def card_of(run: Run, env: TrainingEnv) -> Card:
         level_hash=level_hash(level),
         fspa=run.fspa,
         params=run.params,
-        reward=run.settings.reward.options,
+        reward=run.settings.rewards,
         sensors=run.sensors,
         shapes=tuple(env.shapes.items()),
         branches=env.branches,

@@ -9,13 +9,13 @@ What goes on from a place has the seed of the episode that found it, and whateve
 door that opens, stays as it is.  So the places of a seed are forgotten as soon as a way was found with it.
 
 Where the learning comes to a standstill, ways are searched for what the agent fails in: from places to which its failed
-episodes led.
+episodes led.  Where a training begins with a policy, this one plays first, since it may meet the spec already.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -34,6 +34,10 @@ _FRESH = 0.05
 _FAILED = 0.3
 """How many begin where failed episodes led, if there are any."""
 _TOLD_EVERY_S = 0.5
+
+
+Player = Callable[[Mapping[str, NDArray[Any]]], NDArray[np.int64]]
+"""What plays: the actions [branches] that it chooses where an environment gives this observation."""
 
 
 @record
@@ -110,7 +114,8 @@ class Search:
     """A search in ``env``, whose environments are :class:`~tltl_runtime.training.starts.Replayed`.
 
     ``ways`` are what was found.  Equal seeds give equal searches, whatever the workers.  With ``failures`` it goes on
-    from these, in the states in which they failed; without, from the level's start.
+    from these, in the states in which they failed; without, from the level's start.  A ``player`` plays the first
+    episode of each environment, and chance goes on from the places that it reached.
     """
 
     def __init__(
@@ -119,8 +124,10 @@ class Search:
         exploration: Exploration,
         seed: np.random.SeedSequence,
         failures: Sequence[Failure] = (),
+        player: Player | None = None,
     ) -> None:
         self._env = env
+        self._player = player
         self._exploration = exploration
         self._failures = list(failures)
         self._states = {failure.state for failure in failures}
@@ -137,13 +144,18 @@ class Search:
         shape = self._env.num_envs, len(choices)
         action = self._random.integers(0, choices, size=shape)
         left = np.full(self._env.num_envs, _BURST)
-        steps = 0
+        played = np.full(self._env.num_envs, self._player is not None)
+        observation, steps = episodes.observation, 0
         while steps < self._exploration.steps and len(self.ways) < self._exploration.ways:
             kept = self._random.random(shape) < _KEPT
             action = np.where(kept, action, self._random.integers(0, choices, size=shape))
-            _, _, terminated, truncated, infos = episodes.step(action)
+            if self._player:
+                for row in np.flatnonzero(played).tolist():
+                    action[row] = self._player({name: each[row] for name, each in observation.items()})
+            observation, _, terminated, truncated, infos = episodes.step(action)
             steps += self._env.num_envs
             over = terminated | truncated
+            played &= ~over
             left -= 1
             for row in range(self._env.num_envs):
                 if not over[row]:
@@ -151,7 +163,7 @@ class Search:
                         left[row] = max(left[row], _BURST // 2)
                 elif infos["final_info"]["success"][row]:
                     self._found(Way(episodes.starts[row].seed, episodes.actions[row], end_of(infos["final_info"], row)))
-            spent = ~over & (left <= 0)
+            spent = ~over & ~played & (left <= 0)
             episodes.turn(over)
             if spent.any():
                 episodes.cut(spent)

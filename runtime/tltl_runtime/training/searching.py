@@ -9,7 +9,7 @@ from tltl_runtime.training.distributed import Peers
 from tltl_runtime.training.environment import TrainingEnv
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.run import Run
-from tltl_runtime.training.search import Search, Searched
+from tltl_runtime.training.search import Player, Search, Searched
 from tltl_runtime.training.streams import Purpose, stream
 from tltl_runtime.vector import WorkerVectorEnv
 
@@ -24,8 +24,9 @@ def searched_first(
     restarts: Restarts,
     checkpoint: Checkpoint | None,
     searching: Searching,
+    player: Player | None,
 ) -> Searched | None:
-    """Search ways before the training.
+    """Search ways before the training; a ``player`` plays first.
 
     None where that was done before, unless a limit broke it off before it found any, and now there is time for it.
     """
@@ -34,7 +35,7 @@ def searched_first(
         before, iteration, seconds = checkpoint.searched, checkpoint.iteration, checkpoint.seconds
         if before is None or before.complete or before.lengths or run.settings.stop.is_late(seconds):
             return None
-    search = Search(played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration))
+    search = Search(played, run.settings.exploration, stream(run, own, Purpose.SEARCH, iteration), player=player)
     return _made(run, search, restarts, seconds, searching)
 
 

@@ -18,6 +18,7 @@ class Purpose(IntEnum):
     SEARCH = 2
     STARTS = 3
     CONFIRMATION = 4
+    INITIAL = 5
 
 
 def stream(run: Run, own: Peers, purpose: Purpose, iteration: int = 0) -> np.random.SeedSequence:

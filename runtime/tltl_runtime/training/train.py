@@ -12,7 +12,7 @@ from rsl_rl.algorithms import PPO
 from tltl_runtime.policies.file import check_size
 from tltl_runtime.policies.threads import threads
 from tltl_runtime.training.available import class_of, device_of
-from tltl_runtime.training.beginning import begun, demonstrated, environments, initial_weights, prepared
+from tltl_runtime.training.beginning import begun, demonstrated, environments, initial_policy, prepared
 from tltl_runtime.training.checkpoint import Best, Checkpoint, copied
 from tltl_runtime.training.confirmation import confirm
 from tltl_runtime.training.demonstrations import Tried
@@ -48,8 +48,9 @@ def train(
     and closing the iterator too, leaves a checkpoint of the last whole iteration; a process that is killed loses what
     came after the last one.  With ``resume`` the training goes on from there; one that is over gives its last report.
 
-    A search for ways to meet the spec comes first, which tells ``searching`` how far it is; by imitation, where no
-    demonstrations are named, the recording of the expert's, which tells ``recording`` of each.
+    A search for ways to meet the spec comes first, which tells ``searching`` how far it is: the policy that the
+    training begins with plays, if there is one, and then chance.  By imitation, where no demonstrations are named, the
+    recording of the expert's comes first, which tells ``recording`` of each.
 
     Equal runs give equal numbers, and so do equal checkpoints that are resumed.  With torchrun each process trains with
     environments of its own, and all report the same but for losses, times and searches, which are each one's own, and
@@ -76,16 +77,16 @@ def train(
         checkpoint = own.broadcast(checkpoint)
         stack.enter_context(threads(1))
         to_imitate = demonstrated(run, own, recording)
-        weights = initial_weights(run, own, checkpoint)
+        initial = initial_policy(run, own, checkpoint)
         played = stack.enter_context(closing(environments(run)))
-        env, searched = prepared(run, own, device, played, checkpoint, searching, to_imitate)
+        env, searched = prepared(run, own, device, played, checkpoint, searching, to_imitate, initial)
         if env.lessons:
             stack.callback(env.lessons.close)
         torch.manual_seed(int(stream(run, own, Purpose.TORCH).generate_state(1)[0]))
         config = rsl_config(run.settings, env.shapes, env.branches)
         made = runner(env, config | {"warm_up": run.settings.ppo.warm_up if run.initial else 0}, None, device)
-        if weights:
-            made.begin_with(weights)
+        if initial:
+            made.begin_with(initial.weights())
         training = _Training(run, own, made, checkpoint, searched, searching)
         yield from training.reports()
 

@@ -65,3 +65,28 @@ def test_a_folder_of_trainings(tltlc, here: Path) -> None:  # type: ignore[no-un
 def test_a_folder_of_something_else(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     Path("empty").mkdir()
     assert "there is neither a training nor a policy in `empty`" in tltlc("inspect", "empty").err
+
+
+@pytest.mark.parametrize("words", [("evaluate",), ("inspect",), ("train", "--from"), ("train",)], ids=" ".join)
+def test_a_level_whose_name_is_misspelt(tltlc, here: Path, words: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found = tltlc(*words, "cover_and_hid:v1")
+    assert found.err.startswith("error[TLT0001]: there is neither a file nor a level `cover_and_hid")
+    assert "did you mean the level `cover_and_hide`?" in found.err
+    assert found.status == 3
+
+
+@pytest.mark.parametrize("path", ["training/navigation", "navigation.safetensors"])
+def test_a_path_that_is_not_there_is_no_misspelt_level(tltlc, here: Path, path: str) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    assert tltlc("evaluate", path).err.startswith(f"error[TLT0001]: cannot read `{path}`: ")
+
+
+def test_two_levels_are_no_spec(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    found = tltlc("train", "cover_and_hide", "--level", "navigation")
+    assert "`cover_and_hide` is a level, and so is `navigation`" in found.err
+    assert found.status == 2
+
+
+def test_a_level_is_no_policy(tltlc, here: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    Path("vault.toml").write_text("", encoding="utf-8")
+    found = tltlc("evaluate", "vault.toml")
+    assert found.err.startswith("error[TLT0840]: `vault.toml` is a TOML file, e.g. a level, and no policy")

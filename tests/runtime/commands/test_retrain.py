@@ -106,7 +106,7 @@ def test_asked_to_end_it_keeps_what_there_is(tltlc: Run, game: Path) -> None:  #
     with subprocess.Popen([*words, "--json", "report.json"], stderr=subprocess.PIPE, text=True) as training:
         assert training.stderr is not None
         for line in training.stderr:
-            if line.startswith("searching by chance"):
+            if line.startswith("searching: "):
                 break
         training.send_signal(signal.SIGINT)
         _, err = training.communicate(timeout=300)

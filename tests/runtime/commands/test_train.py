@@ -218,7 +218,7 @@ def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noq
     assert found.status in (0, 1), found.err
     _, searched, lost, *lines = found.err.splitlines()
     assert searched == (
-        "ways to meet the spec are searched first, by chance. "
+        "ways to meet the spec are searched first: by chance. "
         "The search ends when 2 ways are found, at the latest after 640 steps."
     )
     assert lost == "Ctrl-C stops it; a search that is not over then begins anew."

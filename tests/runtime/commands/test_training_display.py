@@ -47,7 +47,7 @@ def test_a_line(stop: Stop) -> None:
 )
 def test_a_line_of_the_search(lengths: tuple[int, ...], said: str) -> None:
     searched = Searched(steps=6400, replayed=3200, seconds=61.0, places=1200, lengths=lengths, complete=False)
-    assert search_line(searched) == f"searching by chance: 6,400 steps in 1 min 1 s, 1,200 places, {said}"
+    assert search_line(searched) == f"searching: 6,400 steps in 1 min 1 s, 1,200 places, {said}"
 
 
 def test_a_line_of_what_was_found() -> None:

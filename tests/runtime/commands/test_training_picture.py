@@ -50,7 +50,7 @@ def test_it_fits_and_no_figure_is_cut(tmp_path: Path, report: Report, columns: i
         "8,192,000 of at most 12,000,000 steps, 2,048 a second (25% learning)",
         "1 h 6 min so far, at most 3",
         "search: 2 ways found in 1 min 20 s, the shortest of 80 steps",
-        "last checkpoint 0 s ago; Ctrl-C writes one, and --resume goes on",
+        "last checkpoint 0 s ago; Ctrl-C writes one to go on from",
         "state 0",
     ):
         assert said in text
@@ -77,7 +77,7 @@ def test_before_the_first_iteration(tmp_path: Path) -> None:
 
 def test_before_the_first_checkpoint_it_says_that_ctrl_c_writes_one(tmp_path: Path, report: Report) -> None:
     text = "\n".join(_lines(tmp_path, 80, 24, replace(report, checkpointed=False)))
-    assert "no checkpoint yet; Ctrl-C writes one, and --resume goes on" in text
+    assert "no checkpoint yet; Ctrl-C writes one to go on from" in text
 
 
 def test_it_says_that_nothing_was_found(tmp_path: Path, report: Report) -> None:

@@ -9,10 +9,12 @@ import onnx
 import pytest
 
 from tests.runtime.policies.examples import card_of, observation_of, policy_of
+from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.network import Network
 from tltl_runtime.policies.onnx import to_onnx
 from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.shipped import shipped_policies
 from tltlc.pipeline import read_artefact
 from tltlc.source import SourceFile
 
@@ -41,12 +43,18 @@ def check_alike(policy: Policy, model: bytes, seeds: int) -> None:
             assert (logits.dtype, action.dtype, action.shape) == (np.float32, np.int64, (size, 5))
             for row in range(size):
                 one = {key: each[row] for key, each in seen.items()}
-                np.testing.assert_allclose(logits[row], policy.logits(one), rtol=0, atol=1e-5)
+                np.testing.assert_allclose(logits[row], policy.logits(one), rtol=2e-6, atol=1e-5)
                 assert action[row].tolist() == policy.choose(one).tolist()
 
 
 def test_it_plays_as_the_policy_does(policy: Policy, model: bytes) -> None:
     check_alike(policy, model, 100)
+
+
+@pytest.mark.parametrize("level", sorted(shipped_policies()))
+def test_a_trained_policy_plays_there_as_it_does_here(level: str) -> None:
+    policy = read_policy(shipped_policies()[level])
+    check_alike(policy, to_onnx(policy), 10)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,8 @@ from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.stealth.env import spec_of
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.task import load_task
+
+RECORD = Path(__file__).parents[3] / "docs" / "training.md"
 
 
 def test_they_are_found_by_the_names_of_levels() -> None:
@@ -35,4 +38,9 @@ def test_a_shipped_policy_fits_its_level_as_it_is_now(name: str) -> None:
         check_policy(policy.card, load_level(name, variant), fspa)
     assert to_bytes(policy) == Path(path).read_bytes()
     assert path.stat().st_size < 2_000_000
-    assert policy.card.training and policy.card.versions
+    assert policy.card.versions
+    section = RECORD.read_text(encoding="utf-8").partition("## The record\n")[2].partition("\n## ")[0]
+    documented = re.findall(r"^\| (`.*?`) \|", section, re.M)
+    keys = {key for line in documented for key in re.findall(r"`(\w+)`", line)}
+    assert set(policy.card.training) <= keys
+    assert keys - set(policy.card.training) <= {"format", "version"}

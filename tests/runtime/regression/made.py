@@ -8,6 +8,7 @@ from pathlib import Path
 from tltl_runtime.regression.account import Account, Arrival, Nearest
 from tltl_runtime.regression.baseline import Played, Reference
 from tltl_runtime.regression.suite import Case, Suite, Thresholds, baseline_path
+from tltl_runtime.regression.way import Way
 from tltl_runtime.stealth.episodes.cause import Kind
 from tltl_runtime.stealth.level import Point
 from tltlc.record import replace
@@ -46,9 +47,10 @@ def made(
     by: tuple[str, ...] = (),
     seen_by: tuple[str, ...] = (),
     broke: tuple[str, ...] = (),
+    arrived: bool = False,
     place: Point = (5.0, 5.0, 0.0),
     nearest: Nearest | None = None,
-    way: tuple[tuple[float, float, int], ...] = ((2.0, 2.0, 0),),
+    way: Way = ((2.0, 2.0, 0, 0.0), (2.0, 2.0, 0, 1.0)),
 ) -> Account:
     """The account of an episode, by default of one that met its spec."""
     return Account(
@@ -68,6 +70,7 @@ def made(
         nearest=nearest,
         way=way,
         broke=broke,
+        arrived=arrived,
     )
 
 

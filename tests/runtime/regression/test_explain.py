@@ -139,13 +139,19 @@ def test_ends_of_two_stages_are_told_apart(level: Level, fspa: Fspa) -> None:
     ]
 
 
-def test_an_end_of_few_episodes_is_not_told(level: Level, fspa: Fspa) -> None:
+def test_ends_of_few_episodes_are_told_together(level: Level, fspa: Fspa) -> None:
     now = good(fspa, 40)
     for index in range(3):
         now[index] = made(index, False, states=to(fspa, 1))
-    assert any("when time is up" in text for text in told(level, fspa, now, good(fspa, 40)))
-    now[0] = good(fspa)[0]
-    assert not any("when time is up" in text for text in told(level, fspa, now, good(fspa, 40)))
+    (_, end) = findings(level, fspa, now, good(fspa, 40))
+    assert "when time is up" in end.text
+    now[0] = made(0, False, states=to(fspa, 0))
+    (_, rest) = findings(level, fspa, now, good(fspa, 40))
+    assert (rest.text, rest.episodes) == ("fails in 3 of 40 episodes; before: in 0 of 40 episodes", (0, 1, 2))
+    now[3:7] = [made(index, False, states=to(fspa, 2)) for index in range(3, 7)]
+    assert findings(level, fspa, now, now)[-1] == replace(
+        rest, text="fails otherwise in 3 of 40 episodes; before: in 3 of 40 episodes"
+    )
 
 
 def test_ends_as_before_say_so(level: Level, fspa: Fspa) -> None:
@@ -176,15 +182,30 @@ def test_what_limited_most_episodes_is_told_and_not_what_limited_the_best_one(le
     assert "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit); " in told(level, fspa, now)[1]
 
 
-def test_who_dies_at_what_it_was_to_reach_lacked_nothing_else(level: Level, fspa: Fspa) -> None:
-    there, not_yet = Nearest("alive", 0.0, MIDDLE), Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
-    now = [
-        made(
-            index, False, states=to(fspa, 0), nearest=there if index < 14 else not_yet, cause="killed", broke=("alive",)
-        )
-        for index in range(25)
-    ]
-    assert "; all that 14 of them lacked at the end was `alive`; " in told(level, fspa, now)[1]
+def test_who_was_there_when_the_spec_broke_lacked_nothing_else(level: Level, fspa: Fspa) -> None:
+    not_yet = Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
+    there = {"cause": "killed", "broke": ("alive",), "nearest": not_yet}
+    now = [made(index, False, states=to(fspa, 0), arrived=index < 14, **there) for index in range(25)]  # type: ignore[arg-type]
+    end = told(level, fspa, now)[1]
+    assert (
+        "; 14 of them were at `s1` when it broke; mostly" in end or "; 14 of them were at `s1` when it broke; in" in end
+    )
+    few = [replace(each, arrived=each.index < 3) for each in now]
+    assert "; 3 of them were at `s1` when it broke; closest approach to `s1`: 2.5 m (" in told(level, fspa, few)[1]
+
+
+def test_an_atom_that_should_not_hold_is_told_as_such(level: Level, fspa: Fspa) -> None:
+    near = Nearest("visible", -1.0, MIDDLE, wanted=False)
+    now = [made(index, False, states=to(fspa, 0), nearest=near) for index in range(25)]
+    assert "; the limit is that `visible` holds; " in told(level, fspa, now)[1]
+    open_ = [replace(each, nearest=Nearest("open", -1.0, MIDDLE)) for each in now]
+    assert "; the limit is `open`; " in told(level, fspa, open_)[1]
+
+
+def test_killers_are_the_same_in_any_order(level: Level, fspa: Fspa) -> None:
+    now = deaths(fspa, 14)
+    now[:14] = [replace(each, by=("b", "a") if each.index % 2 else ("a", "b")) for each in now[:14]]
+    assert told(level, fspa, now)[1].startswith("dies in the north hall by `a` and `b` in 14 of 25")
 
 
 def test_what_is_in_the_way_is_named(level: Level, fspa: Fspa) -> None:
@@ -206,7 +227,7 @@ def test_how_long_successes_take(level: Level, fspa: Fspa, steps: int, text: str
 
 
 def test_another_way(level: Level, fspa: Fspa) -> None:
-    through = ((2.0, 2.0, 0), (5.0, 9.0, 1), (8.0, 8.0, 2))
+    through = ((2.0, 2.0, 0, 0.0), (5.0, 9.0, 1, 2.0), (8.0, 8.0, 2, 4.0))
     now = [replace(each, way=through) if each.index < 20 else each for each in good(fspa)]
     text = "80% of the successful episodes pass through the north hall; before: 0%"
     assert told(level, fspa, now)[1:] == [text]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.runtime.regression.made import ROOM
-from tltl_runtime.regression.places import nearest_entity, obstacle, place_name
+from tltl_runtime.regression.places import in_the_way, nearest_entity, place_name
 from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.levels.file import load_level
 
@@ -25,6 +25,11 @@ name = "pillar"
 at = [7.0, 5.0, 0.0]
 size = [1.0, 1.0, 3.0]
 """
+
+
+def ends(*feet: Point) -> list[tuple[Point, tuple[str, ...]]]:
+    """Where players are; no barrier is shut."""
+    return [(each, ()) for each in feet]
 
 
 @pytest.fixture(name="level", scope="module")
@@ -58,8 +63,26 @@ def test_what_is_near(level: Level) -> None:
 
 def test_what_is_in_the_way(level: Level) -> None:
     at_pillar = [(6.2, 4.8 + row / 10, 0.0) for row in range(5)]
-    assert obstacle(level, at_pillar) == "pillar"
-    assert obstacle(level, [(4.0, 5.0, 0.0)] * 3) is None
+    assert in_the_way(level, ends(*at_pillar)) == ["pillar"]
+    assert in_the_way(level, ends((4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
     # Half of them are elsewhere: nothing stopped most.
-    assert obstacle(level, at_pillar[:2] + [(4.0, 5.0, 0.0)] * 2) is None
-    assert obstacle(level, []) is None
+    assert in_the_way(level, ends(*at_pillar[:2], (4.0, 5.0, 0.0), (4.0, 5.0, 0.0))) == []
+    assert in_the_way(level, []) == []
+
+
+def test_in_a_corner_all_that_is_touched_is_named_the_most_frequent_first(level: Level) -> None:
+    corner, wall = (9.6, 0.4, 0.0), (9.6, 4.0, 0.0)
+    assert in_the_way(level, ends(corner, corner, wall)) == ["outer_east", "outer_south"]
+    assert in_the_way(level, ends(corner, wall, wall)) == ["outer_east"]
+
+
+def test_what_one_stands_on_is_not_in_the_way(level: Level) -> None:
+    assert in_the_way(level, ends((7.0, 5.0, 3.0))) == []
+
+
+def test_a_gate_is_in_the_way_while_it_is_shut() -> None:
+    level = load_level("navigation")
+    (gate, *_) = (each for each in level.barriers if each.kind == "solid")
+    at_gate = gate.box.low[0] - 0.4, (gate.box.low[1] + gate.box.high[1]) / 2, gate.box.low[2]
+    assert gate.name in in_the_way(level, [(at_gate, (gate.name,))])
+    assert gate.name not in in_the_way(level, [(at_gate, ())])

@@ -50,7 +50,7 @@ def test_what_has_changed() -> None:
 def test_what_may_have_changed() -> None:
     (rate, figure) = said(40, 0, -0.06)
     assert rate == "met in 40 of 40 episodes, before in 40 of 40: certainly in 85% or more"
-    assert figure == "reward seems to have changed by 0.05 or more, which is not certain"
+    assert figure == "reward is lower, 0.64 on average; before: 0.70; that is 0.05 or more, but not certain"
     assert len(said(40, 0, -0.04)) == 1
 
 

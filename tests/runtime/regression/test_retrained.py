@@ -9,6 +9,7 @@ import pytest
 from tests.runtime.regression.made import several
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.record_json import from_json, to_json
+from tltl_runtime.regression.confidence import rate_interval
 from tltl_runtime.regression.retrained import Best, Outcome, Retrained, Trained, outcome_of, sentence
 from tltl_runtime.regression.suite import Thresholds
 from tltlc.record import replace
@@ -19,7 +20,9 @@ BEST = Best(0.5, "reach near(exit)")
 
 def told(outcome: Outcome, passed: int, failed: int, **changed: Any) -> str:
     best = BEST if failed else None
-    return sentence(outcome, replace(TRAINED, **changed), figures_of(several(passed, failed)), Thresholds(), best)
+    figures = figures_of(several(passed, failed))
+    interval = rate_interval(passed, failed, 0.05)
+    return sentence(outcome, replace(TRAINED, **changed), figures, interval, Thresholds(), best)
 
 
 @pytest.mark.parametrize(
@@ -39,7 +42,7 @@ def test_outcomes(low: float, met: int, shortest: int | None, outcome: str) -> N
 def test_a_level_that_is_feasible() -> None:
     assert told("learned", 43, 0, shortest=97) == (
         "feasible: after 5 min 3 s of training (212,992 steps) the policy meets the spec in 43 of 43 fresh episodes "
-        "(92% to 100%)"
+        "(89% to 100% for certain)"
     )
     assert "came to progress" not in told("learned", 43, 1)
 
@@ -47,8 +50,8 @@ def test_a_level_that_is_feasible() -> None:
 def test_a_level_that_was_not_learned() -> None:
     assert told("feasible", 5, 20, shortest=1_213) == (
         "feasible, but not learned; there are ways, the shortest that is known takes 1,213 steps; after 5 min 3 s of "
-        "training (212,992 steps) the policy meets the spec in 5 of 25 fresh episodes (9% to 39%), and 85% are asked "
-        "for; the best of the failed ones came to progress 0.50, where this remained: reach near(exit)"
+        "training (212,992 steps) the policy meets the spec in 5 of 25 fresh episodes (3% to 51% for certain), and "
+        "85% are asked for; the best of the failed ones came to progress 0.50, where this remained: reach near(exit)"
     )
     assert "there are ways" not in told("feasible", 0, 25)
 

@@ -253,10 +253,19 @@ def test_a_spec_that_has_changed_since_the_training_is_told_and_nothing_passes_b
     for done in found[:2]:
         assert done.report.verdict == "review"
         assert done.report.reasons[0].startswith("the spec `easy` has changed since the policy was trained")
+        assert done.report.headline == done.report.reasons[0]
+        assert done.to_train is None, "a training would be for the old spec"
+    assert found[2].to_train is not None
     edit("plan.tltl", "reach alive", "reach alve")
     found, _ = run()
     assert [done.report.verdict for done in found] == ["fail", "fail", "fail"]
     assert found[0].report.reasons[1].startswith("plan.tltl:2: TLT0")
+
+
+def test_a_baseline_of_fewer_episodes_is_refused(game: Path) -> None:
+    edit("game.toml", "episodes = 50", "episodes = 60")
+    with pytest.raises(TltlError, match="TLT0903: the baseline of `room:v0` has 50 episodes, and 60 are asked for"):
+        run()
 
 
 def test_a_folder_may_have_a_plus_in_its_name(game: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -335,7 +344,7 @@ def test_a_level_that_does_not_load_fails_its_cases_and_the_others_go_on(game: P
     assert list(played) == ["hall:v0"]
     assert [done.report.verdict for done in found] == ["fail", "fail", "fail", "pass"]
     assert found[0].report.reasons[::2] == (
-        "it cannot be played any more",
+        "it cannot be played",
         "room.toml:5: TLT0802, `[bounds]` has no key `siez` (did you mean `size`?)",
     )
     assert found[0].report.figures is None and not found[0].kept

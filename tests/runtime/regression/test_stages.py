@@ -39,13 +39,18 @@ def test_whichever_way_is_open_is_told() -> None:
 
 
 def test_deeds_together_say_once_that_they_are_reached() -> None:
-    assert together(["reaches `s1`", "reaches `s2` or `s3`"]) == "reaches `s1`, `s2` or `s3`"
+    assert together(["reaches `s1`", "reaches `s2` or `s3`"]) == "reaches `s1`, then `s2` or `s3`"
     assert together(["reaches `s1`", "makes `open` true"]) == "reaches `s1`, makes `open` true"
 
 
 def test_what_is_no_place_is_made_true() -> None:
     fspa = spec("reach open_door\n keep alive", "signal open_door: bool\n")
     assert deeds(fspa) == ["makes `open_door` true", "meets the spec"]
+
+
+def test_what_is_not_to_hold_is_made_false() -> None:
+    fspa = spec("reach not loud\n keep alive\n keep not seen", "signal loud: bool\n")
+    assert deeds(fspa) == ["makes `loud` false", "meets the spec"]
 
 
 def test_what_is_kept_all_the_time_is_no_deed() -> None:

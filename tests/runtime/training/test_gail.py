@@ -61,7 +61,7 @@ def algorithm_of(run: Run) -> Gail:
     own = peers()
     played = environments(run)
     torch.manual_seed(0)
-    env, _ = prepared(run, own, "cpu", played, None, print, demonstrated(run, own, print))
+    env, _ = prepared(run, own, "cpu", played, None, print, demonstrated(run, own, print), None)
     made = Runner(env, rsl_config(run.settings, env.shapes, env.branches)).alg
     played.close()
     assert isinstance(made, Gail)

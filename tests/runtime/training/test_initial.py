@@ -15,7 +15,7 @@ from torch import nn
 from tests.runtime.training.runs import checkpoint_of, run_in
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.policies.file import read_policy, write_policy
-from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.policies.summary import summary, summary_text
 from tltl_runtime.training.checkpoint import copied
 from tltl_runtime.training.initial import initial_of, weights_hash
@@ -23,6 +23,7 @@ from tltl_runtime.training.record import record_so_far, write_record
 from tltl_runtime.training.report import Report
 from tltl_runtime.training.run import CHECKPOINT, POLICY, Run, identity, read_run
 from tltl_runtime.training.runner import Runner
+from tltl_runtime.training.search import Searched
 from tltl_runtime.training.train import train
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
@@ -84,6 +85,28 @@ def test_a_new_actor_does_not_wait(tmp_path: Path) -> None:
     list(train(waiting))
     list(train(other))
     assert not differ(weights(waiting), weights(other))
+
+
+def test_it_plays_first_in_the_search(tmp_path: Path) -> None:
+    met = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+    old = run_in(tmp_path / "old", met, stop__steps=64)
+    list(train(old))
+    run = run_in(tmp_path / "run", met, exploration__ways=4, exploration__steps=400, stop__steps=64)
+    path = old.folder / POLICY
+    searches: list[Searched] = []
+    list(train(replace(run, initial=initial_of(path, read_policy(path))), searching=searches.append))
+    # Each of the four environments: one episode of eight steps, and none from a place that was reached.
+    assert (searches[-1].lengths, searches[-1].steps, searches[-1].replayed) == ((8, 8, 8, 8), 32, 0)
+
+
+def test_one_that_gives_no_numbers_is_refused(tmp_path: Path, policy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise NoNumbersError("it gives no numbers")
+
+    run = tuned(tmp_path / "run", policy, exploration__ways=4, exploration__steps=400)
+    monkeypatch.setattr(Policy, "choose", refuse)
+    with pytest.raises(TltlError, match=r"TLT0854: the policy that the training in `.*run` begins with: it gives no n"):
+        list(train(run))
 
 
 def test_with_a_checkpoint_it_goes_on_without_its_policy(tmp_path: Path, policy: Path) -> None:

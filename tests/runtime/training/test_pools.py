@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 
 from tests.runtime.training.runs import run_in
+from tltl_runtime.policies.file import read_policy
 from tltl_runtime.task import load_task
+from tltl_runtime.training.initial import initial_of
 from tltl_runtime.training.run import POLICY
 from tltl_runtime.training.train import train
 from tltlc.record import replace
@@ -20,13 +22,15 @@ SPEC = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep 
 """A spec that who does anything at all meets, after eight steps, so that there are ways to begin on."""
 
 
-def _trained(folder: Path, **settings: Any) -> bytes:
-    """The policy of two iterations after a search that finds ways."""
+def _trained(folder: Path, initial: Path | None = None, **settings: Any) -> bytes:
+    """The policy of two iterations after a search that finds ways, from that in a file perhaps."""
     spec = folder.with_suffix(".tltl")
     spec.write_text(SPEC, encoding="utf-8")
     task = load_task(spec)
     limits = {"exploration__ways": 2, "exploration__steps": 400, "stop__steps": 128}
     run = replace(run_in(folder, **limits, **settings), fspa=task.fspa, params=task.params)
+    if initial:
+        run = replace(run, initial=initial_of(initial, read_policy(initial)))
     reports = list(train(run))
     assert reports[-1].searched is not None
     assert reports[-1].searched.lengths
@@ -42,6 +46,15 @@ def _alone(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 def test_with_two_processes(alone: bytes, tmp_path: Path) -> None:
     assert _trained(tmp_path / "two", rollout__workers=2) == alone
+
+
+def test_from_a_policy_with_two_processes(alone: bytes, tmp_path: Path) -> None:
+    (tmp_path / "old.safetensors").write_bytes(alone)
+    one, two = (
+        _trained(tmp_path / str(workers), tmp_path / "old.safetensors", rollout__workers=workers, ppo__warm_up=0)
+        for workers in (1, 2)
+    )
+    assert one == two != alone
 
 
 @needs_ray

@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -21,7 +22,7 @@ from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
-from tltl_runtime.training.run import CHECKPOINT, POLICY, identity
+from tltl_runtime.training.run import CHECKPOINT, POLICY, RUN, identity
 
 pytestmark = pytest.mark.slow
 
@@ -72,7 +73,7 @@ def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoin
         with _started(*PROGRAM, str(run.folder), *resume, f"stop__steps={steps}") as process:
             assert process.stdout is not None
             first = json.loads(process.stdout.readline())
-            assert first["number"] >= told
+            assert first["number"] == told + 1
             time.sleep(random.uniform(0.0, 1.0))
             workers = _children(process.pid)
             process.send_signal(signal.SIGKILL)
@@ -100,6 +101,43 @@ def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoin
     assert [line["number"] for line in lines] == [told + 1, told + 2, told + 3]
     assert [line["iteration"] for line in read_metrics(run.folder / METRICS)] == list(range(1, last + 1))
     assert read_policy(run.folder / POLICY).card.level == "cover_and_hide"
+
+
+def test_a_training_that_is_killed_loses_what_came_after_its_last_checkpoint(tmp_path: Path) -> None:
+    run = run_in(tmp_path / "run", checkpoint_s=1.0, stop__steps=10**6)
+    with _started(*PROGRAM, str(run.folder), "checkpoint_s=1.0", "stop__steps=1000000") as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        time.sleep(3.0)
+        process.send_signal(signal.SIGKILL)
+    checkpoint, measured = read_checkpoint(run.folder / CHECKPOINT, identity(run)), read_metrics(run.folder / METRICS)
+    assert checkpoint is not None
+    assert checkpoint.iteration > 1
+    seconds = [0.0, *(line["seconds"] for line in measured)]
+    longest = max(later - before for before, later in pairwise(seconds))
+    assert 0.0 <= seconds[-1] - checkpoint.seconds <= 1.0 + longest
+    resumed = [f"stop__steps={checkpoint.steps + 64}", "checkpoint_s=1.0", "--resume"]
+    with _started(*PROGRAM, str(run.folder), *resumed) as process:
+        (line,) = _lines(process)
+    assert line["number"] == checkpoint.iteration + 1
+
+
+def test_a_training_that_is_killed_in_its_search_begins_it_anew(tmp_path: Path) -> None:
+    spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
+    given = [f"spec={json.dumps(spec)}", "exploration__ways=100000", "exploration__steps=20000", "stop__steps=64"]
+    folder = tmp_path / "run"
+    with _started(*PROGRAM, str(folder), *given) as process:
+        deadline = time.monotonic() + 60
+        while not (folder / RUN).exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.5)
+        assert process.poll() is None
+        process.send_signal(signal.SIGKILL)
+    assert (folder / RUN).exists()
+    assert not (folder / CHECKPOINT).exists()
+    with _started(*PROGRAM, str(folder), *given, "--resume") as process:
+        (line,) = _lines(process)
+    assert (line["number"], line["stop"]) == (1, "steps")
 
 
 def _together(folder: Path, *arguments: str) -> list[dict[str, Any]]:

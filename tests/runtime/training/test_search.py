@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -57,6 +57,59 @@ def test_ways_meet_the_spec_when_they_are_played_again(env: WorkerVectorEnv) -> 
         infos = [alone.step(action)[4] for action in way.actions]
         assert [info["success"] for info in infos] == [False] * (len(infos) - 1) + [True]
     alone.close()
+
+
+def test_a_player_plays_first(env: WorkerVectorEnv) -> None:
+    exploration = Exploration(ways=4, steps=20_000, parts=4, imitation=0)
+    ways, told = search(env, exploration)
+    alone = make_env("navigation", "v0", NEAR)
+    ahead = []
+    for way in ways:
+        first, _ = alone.reset(seed=way.seed)
+        seen = [first, *(alone.step(action)[0] for action in way.actions[:-1])]
+        ahead.append(list(zip(seen, way.actions, strict=True)))
+    alone.close()
+
+    def follow(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
+        """The next decision on the way where this is seen next, else none."""
+        for way in filter(None, ahead):
+            if all(np.array_equal(seen, observation[name]) for name, seen in way[0][0].items()):
+                return np.array(way.pop(0)[1])
+        return np.zeros(5, np.int64)
+
+    # Its first episodes have the seeds of the first search's.
+    found = Search(env, replace(exploration, ways=1), np.random.SeedSequence(7), player=follow)
+    (*_, last) = found.run()
+    assert found.ways[0] in ways
+    assert (last.steps, last.replayed) == (env.num_envs * len(found.ways[0].actions), 0)
+    assert last.steps < told[-1].steps
+
+
+def test_where_a_player_fails_chance_goes_on_from_its_places(
+    env: WorkerVectorEnv, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decisions: list[list[int]] = []
+    starts: list[Start] = []
+
+    def walk(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
+        """First one way and then another, by turns of all environments."""
+        decisions.append([1, 2, 0, 0, 0] if len(decisions) < 20 * env.num_envs else [0, 0, 0, 0, 0])
+        return np.array(decisions[-1])
+
+    def drawn(search: Search) -> Start:
+        starts.append(draw(search))
+        return starts[-1]
+
+    draw = Search._draw
+    monkeypatch.setattr(Search, "_draw", drawn)
+    exploration = Exploration(ways=2, steps=20_000, parts=4, imitation=0)
+    found = Search(env, exploration, np.random.SeedSequence(7), player=walk)
+    list(found.run())
+    assert len(found.ways) >= 2
+    # Its episodes end at the limit of 300 decisions.
+    assert len(decisions) == env.num_envs * 300
+    from_its_places = [start for start in starts if 0 < len(start.actions) <= 20]
+    assert any([*start.actions] == decisions[:: env.num_envs][: len(start.actions)] for start in from_its_places)
 
 
 def test_ways_are_found_from_where_episodes_failed(env: WorkerVectorEnv) -> None:

@@ -51,7 +51,7 @@ def drawn(fspa: Fspa) -> Drawn:
 
 
 def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
-    """The picture with a badge on each state for the episodes that visited it, one for those that failed in it.
+    """The picture with badges on each state: its number, how many episodes visited it, and how many failed in it.
 
     Edges are the thicker the more episodes took them.  Both are there twice, for ``now`` and ``before``: what is shown
     is for the style sheet.  Groups of states have ``data-states``, the numbers of the states that they stand for.
@@ -94,8 +94,10 @@ def _mark_state(
     group: ElementTree.Element, title: ElementTree.Element, states: tuple[int, ...], now: Traffic, before: Traffic
 ) -> None:
     group.set("data-states", " ".join(map(str, states)))
-    left, _, right, bottom = _extent(group)
+    left, top, right, bottom = _extent(group)
     name = f"State {states[0]}" if len(states) == 1 else f"States {states[0]} to {states[-1]}"
+    # In its other corner stands its distance.
+    _badge(group, "name", name.lower(), left + 6, top, grows=1)
     said = []
     for when, seen in (("now", now), ("before", before)):
         visited = max(seen.visited.get(state, 0) for state in states)
@@ -133,7 +135,7 @@ def _mark_edge(
 
 
 def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float, grows: int) -> None:
-    """A pill on the lower outline of a state, which begins or ends at ``x``."""
+    """A pill on the outline of a state, which begins or ends at ``x``."""
     width = len(text) * _LETTER + 9
     left = x if grows > 0 else x - width
     group = ElementTree.SubElement(parent, "g", {"class": f"badge {kind}"})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.page.contents import ReportedCase
@@ -12,6 +12,9 @@ from tltl_runtime.regression.page.level_map import map_data
 from tltl_runtime.regression.page.packing import across, down, runs
 from tltl_runtime.regression.page.recorded import recorded
 from tltl_runtime.stealth.level import Box
+
+_FINE_CM: Final = 5
+"""Of the ways, of which there are many; a step of a decision is one letter then."""
 
 
 def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
@@ -38,16 +41,17 @@ def _all_of(bounds: Box, accounts: Sequence[Account]) -> dict[str, Any]:
 
 
 def _way(bounds: Box, account: Account) -> dict[str, Any]:
-    """Where an episode went, second by second, in centimetres on the map, and how it ended."""
+    """Where an episode went, on the map, and how it ended."""
     place = account.place
     return {
         "index": account.index,
+        "unit": _FINE_CM,
         "end": account.end,
         "cause": account.cause,
         "by": list(account.by),
-        "x": across(bounds, [x for x, _, _ in account.way]),
-        "y": down(bounds, [y for _, y, _ in account.way]),
-        "state": runs(state for _, _, state in account.way),
+        "x": across(bounds, [x for x, *_ in account.way], _FINE_CM),
+        "y": down(bounds, [y for _, y, *_ in account.way], _FINE_CM),
+        "state": runs(state for *_, state, _ in account.way),
         "place": [across(bounds, place[:1]), down(bounds, place[1:2])],
     }
 

@@ -28,8 +28,8 @@ _BEFORE_END: Final = round(4.0 / DECISION)
 
 _KEY: Final = (
     "In blue how many episodes visited a state, in red how many failed in it; the more episodes took an edge, the "
-    "thicker it is. The figure on a state's upper corner is its distance, the least number of steps to acceptance, and "
-    "not the number of the state."
+    "thicker it is. The figure in a state's upper right corner is its distance, the least number of steps to "
+    "acceptance."
 )
 _SHOWN: Final = (("ways", "ways"), ("time", "time spent"), ("failed", "failed ends"))
 _WHEN: Final = (("now", "now"), ("before", "baseline"))
@@ -151,7 +151,7 @@ def _choice(legend: str, name: str, choices: Sequence[tuple[str, str]]) -> Marku
 
 def _curves(case: ReportedCase) -> Iterator[Markup]:
     if case.episodes:
-        caption = element("figcaption", "Progress of the recorded episodes: green succeeded, red failed")
+        caption = element("figcaption", "Progress of the recorded episodes: green succeeded, red and dashed failed")
         yield element("figure", progress_curves(case.episodes), caption)
     keys = (element("span", "now", class_="key now"), " ", element("span", "baseline", class_="key before"))
     caption = element("figcaption", "Share of episodes by their best progress: ", *(keys if case.before else keys[:1]))

@@ -16,7 +16,7 @@ from tltlc.record import EMPTY, record
 class ReportedCase:
     """A case with what the page draws of it.
 
-    ``level`` and ``fspa`` are what was played, None of a case that cannot be played any more.  ``episodes`` are the
+    ``level`` and ``fspa`` are what was played, None of a case that cannot be played.  ``episodes`` are the
     recorded ones by their index, ``before`` the accounts of the baseline, ``curve`` the picture of a training that
     began with its policy, a PNG, empty where there is none.
     """

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.way import EVERY, places_along
 from tltl_runtime.stealth.level import Box
 from tltlc.record import record
 
@@ -28,8 +29,8 @@ class Heat:
 
 def time_spent(bounds: Box, accounts: Sequence[Account]) -> Heat:
     """The seconds that an episode spends in each cell, on average."""
-    places = [(x, y) for each in accounts for x, y, _ in each.way[:-1]]
-    return _heat(bounds, TIME_CELL, places, 1.0 / max(1, len(accounts)))
+    places = [place for each in accounts for place in places_along(each.way)]
+    return _heat(bounds, TIME_CELL, places, EVERY / max(1, len(accounts)))
 
 
 def failed_ends(bounds: Box, accounts: Sequence[Account]) -> Heat:
@@ -45,4 +46,5 @@ def _heat(bounds: Box, cell: float, places: Iterable[tuple[float, float]], weigh
         column = min(max(0, int((x - west) / cell)), columns - 1)
         row = min(max(0, int((north - y) / cell)), rows - 1)
         counts[row * columns + column] += 1
-    return Heat(cell, columns, tuple((index, round(count * weight, 3)) for index, count in sorted(counts.items())))
+    values = ((index, round(count * weight, 4)) for index, count in sorted(counts.items()))
+    return Heat(cell, columns, tuple(each for each in values if each[1]))

@@ -41,8 +41,7 @@ class LevelMap {
     this.clear();
     const opacity = Math.max(0.15, Math.min(0.9, 6 / Math.max(1, ways.length)));
     for (const way of ways) {
-      const xs = unstepped(way.x);
-      const ys = unstepped(way.y);
+      const [xs, ys] = [way.x, way.y].map((packed) => unstepped(packed).map((each) => each * way.unit));
       let from = 0;
       for (const [state, count] of way.state) {
         const to = Math.min(from + count, xs.length - 1);
@@ -65,7 +64,7 @@ class LevelMap {
     for (let place = 0; place < heat.cells.length; place += 2) {
       const index = heat.cells[place];
       const value = heat.cells[place + 1];
-      const words = kind === "time" ? `${value.toFixed(2)} s an episode` : `${value} failed here`;
+      const words = kind === "time" ? `${value < 0.01 ? "under 0.01" : value.toFixed(2)} s an episode` : `${value} failed here`;
       draw(
         this.layers.heat,
         "rect",
@@ -92,10 +91,11 @@ class LevelMap {
     this.switches.forEach((each, place) => each.classList.toggle("active", episode.active[place][row] === 1));
     this.#trail(episode, row);
     episode.movers.forEach((mover, place) => {
-      const [width, height] = this.facts.movers[place];
+      const [width, height] = this.facts.movers[place].sides;
       const corner = { x: between(mover.x) - width / 2, y: between(mover.y) - height / 2 };
       draw(live, "rect", { class: "mover", ...corner, width, height });
     });
+    const moving = episode.movers.map((mover, place) => this.#moverBlock(place, between(mover.x), between(mover.y)));
     const enemies = episode.enemies.map((enemy, place) => ({
       facts: this.facts.enemies[place],
       x: between(enemy.x),
@@ -106,7 +106,7 @@ class LevelMap {
     }));
     const shut = episode.open.map((barrier) => barrier[row] === 0);
     for (const enemy of enemies) {
-      draw(live, "polygon", { class: `cone${enemy.sees ? " sees" : ""}`, points: this.#cone(enemy, shut) });
+      draw(live, "polygon", { class: `cone${enemy.sees ? " sees" : ""}`, points: this.#cone(enemy, shut, moving) });
     }
     for (const enemy of enemies) {
       const words = `${enemy.facts.name}: ${enemy.mode}${enemy.sees ? ", sees the player" : ""}`;
@@ -152,11 +152,18 @@ class LevelMap {
     draw(body, "circle", { cx: x, cy: y, r: radius, ...(colour && { fill: colour }) });
   }
 
+  /** What a moving obstacle stops at a place, as `blocks` of the map. */
+  #moverBlock(place, x, y) {
+    const { sides, heights } = this.facts.movers[place];
+    const [width, height] = sides;
+    return [x - width / 2, y - height / 2, x + width / 2, y + height / 2, ...heights];
+  }
+
   /** What an enemy sees at the height of its eyes, as points of a polygon. */
-  #cone({ facts, x, y, yaw }, shut) {
+  #cone({ facts, x, y, yaw }, shut, moving) {
     const high = ([, , , , low, top]) => low < facts.eyes && facts.eyes < top;
     const shutBlocks = this.facts.barriers.filter((each, place) => shut[place] && each.kind === "solid");
-    const blocks = [...this.facts.blocks, ...shutBlocks.map((each) => each.block)].filter(high);
+    const blocks = [...this.facts.blocks, ...shutBlocks.map((each) => each.block), ...moving].filter(high);
     const points = facts.angle < 360 ? [`${x.toFixed(0)},${y.toFixed(0)}`] : [];
     for (let ray = 0; ray <= RAYS; ray += 1) {
       const angle = ((yaw + facts.angle * (ray / RAYS - 0.5)) * Math.PI) / 180;

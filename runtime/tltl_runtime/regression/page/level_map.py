@@ -5,17 +5,21 @@ Its units are centimetres from the north-western corner of the level's bounds, x
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
+from itertools import count
 from math import cos, pi, sin
 from typing import Any, Final
 
 from tltl_runtime.regression.page.markup import Markup, element
 from tltl_runtime.stealth.enemies.enemy import EYES
-from tltl_runtime.stealth.level import Box, Level
+from tltl_runtime.stealth.level import Box, Level, Mover
 from tltl_runtime.stealth.pictures.plan import patrol
+from tltl_runtime.stealth.world.geometry import around
 
 _MARGIN: Final = 30
+_LETTER: Final = 25
+_LINE: Final = 60
+"""Width of a letter and height of a line of names, at most: they keep their size where the map is small."""
 _LAYERS: Final = ("heat", "ways", "ends", "live")
 """What the page draws into, from below to above."""
 
@@ -72,14 +76,14 @@ def map_key(level: Level) -> Markup:
 def map_data(level: Level) -> dict[str, Any]:
     """What the page needs to know of a level to draw onto its map, as JSON data.
 
-    ``blocks`` are what stops sight: sides on the map, and heights, in centimetres.  ``reach`` and ``angle`` (degrees)
-    are those of an enemy's cone of sight, ``eyes`` the height of its eyes.
+    ``blocks`` are what stops sight: sides on the map, and heights, in centimetres; ``movers`` do, too.
+    ``reach`` and ``angle``, in degrees, are those of an enemy's cone of sight, ``eyes`` the height of its eyes.
     """
     plan = _Plan(level.bounds)
     return {
         "blocks": [_block(plan, solid.box) for solid in level.solids if solid.kind != "floor"],
         "barriers": [{"kind": barrier.kind, "block": _block(plan, barrier.box)} for barrier in level.barriers],
-        "movers": [[round(100 * side) for side in mover.size[:2]] for mover in level.movers],
+        "movers": [_mover(mover) for mover in level.movers],
         "enemies": [
             {
                 "name": enemy.name,
@@ -89,6 +93,15 @@ def map_data(level: Level) -> dict[str, Any]:
             }
             for enemy in level.enemies
         ],
+    }
+
+
+def _mover(mover: Mover) -> dict[str, list[int]]:
+    """Its sides on the map, and from which height to which it stops sight, in centimetres."""
+    low, high = around(mover.path[0], mover.size)
+    return {
+        "sides": [round(100 * side) for side in mover.size[:2]],
+        "heights": [round(100 * low[2]), round(100 * high[2])],
     }
 
 
@@ -152,13 +165,15 @@ def _entities(level: Level, plan: _Plan) -> Iterable[Markup]:
 
 
 def _names(level: Level, plan: _Plan) -> Iterable[Markup]:
-    lines: Counter[tuple[int, int]] = Counter()
+    placed: list[tuple[int, int, int, int]] = []
     for region in level.regions:
-        corner = plan.at((region.box.low[0], region.box.high[1]))
-        # Regions that begin at the same place have their names below each other.
-        lines[corner] += 1
-        words = {"dx": "0.4em", "dy": f"{1.2 * lines[corner]:.1f}em"}
-        x, y = corner
+        x, y = plan.at((region.box.low[0], region.box.high[1]))
+        end = x + _LETTER * len(region.name)
+        # Names that would run into each other stand below each other.
+        taken = {line for left, right, top, line in placed if left < end and x < right and abs(y - top) < _LINE}
+        line = next(each for each in count(1) if each not in taken)
+        placed.append((x, end, y, line))
+        words = {"dx": "0.4em", "dy": f"{1.2 * line:.1f}em"}
         yield element("text", region.name.replace("_", " "), class_="region-name", x=x, y=y, **words)
     named = [(switch.name, switch.position, 35) for switch in level.switches]
     named += [(way_out.name, way_out.position, 35) for way_out in level.exits]

@@ -37,11 +37,11 @@ def runs(values: Iterable[T]) -> list[list[T | int]]:
     return [[value, sum(1 for _ in same)] for value, same in groupby(values)]
 
 
-def across(bounds: Box, xs: Sequence[float]) -> str:
-    """:func:`steps` of x, in centimetres from the western bound."""
-    return steps((x - bounds.low[0] for x in xs), 100)
+def across(bounds: Box, xs: Sequence[float], centimetres: int = 1) -> str:
+    """:func:`steps` of x from the western bound, in so many centimetres."""
+    return steps((x - bounds.low[0] for x in xs), 100 / centimetres)
 
 
-def down(bounds: Box, ys: Sequence[float]) -> str:
-    """:func:`steps` of y, in centimetres from the northern bound, southwards as on a screen."""
-    return steps((bounds.high[1] - y for y in ys), 100)
+def down(bounds: Box, ys: Sequence[float], centimetres: int = 1) -> str:
+    """:func:`steps` of y from the northern bound, southwards as on a screen, in so many centimetres."""
+    return steps((bounds.high[1] - y for y in ys), 100 / centimetres)

@@ -105,6 +105,11 @@ class Report {
     );
     for (const view of this.views.values()) near.observe(view.section);
     addEventListener("hashchange", () => this.#follow());
+    // The address does not change where it names this episode already.
+    document.addEventListener("click", ({ target }) => {
+      const link = target.closest("a");
+      if (link?.hash && link.hash === location.hash) this.#follow();
+    });
     addEventListener("beforeprint", () => {
       for (const view of this.views.values()) view.drawOnce();
     });
@@ -123,11 +128,16 @@ class Report {
       this.#applyFilter();
     }
     const view = this.views.get(slug);
+    // A link within the map is gone as soon as its episode is shown.
+    const followed = document.activeElement?.closest("a");
+    const isHere = section.querySelector(".stage")?.contains(document.activeElement);
     const isOpen = view && episode !== undefined && view.open(Number(episode), Math.round(Number(step)) || 0);
     if (isOpen) this.active = view;
     else if (view?.player.episode) view.showAll();
+    // The keys of the player are for whoever opened it by a link.
+    if (isOpen && followed) view.player.scrub.focus({ preventScroll: true });
     // Who chose the episode on the map or in the list looks at it already.
-    if (section.querySelector(".stage")?.contains(document.activeElement)) return;
+    if (isHere) return;
     (isOpen ? section.querySelector(".automaton-title") : section).scrollIntoView();
   }
 

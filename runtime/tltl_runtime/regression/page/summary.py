@@ -67,7 +67,7 @@ def _row(report: CaseReport, slug: str) -> Markup:
         _met(now, before) if now else "–",
         _against(now.progress.mean, before.progress.mean if before else None) if now else "–",
         _against(now.reward.mean, before.reward.mean if before else None) if now else "–",
-        prose(report.reasons[0]) if report.reasons else None,
+        prose(report.headline),
     )
     name = element("th", element("a", report.name, href=f"#{slug}"), scope="row")
     written = [

@@ -59,10 +59,10 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
     :func:`read_level` also tells what looks like a mistake and is none.
 
     Errors (:class:`TltlError`): all that is wrong, as far as it can be told at once.  TLT0800 no such level or
-    variant; TLT0801 a file is no TOML; TLT0802 an unknown key; TLT0803 a missing key, a value of the wrong kind or
-    out of range; TLT0804 a name that is taken or that specs cannot use; TLT0805 a name that stands for nothing;
-    TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay changes what is not there; and those of
-    :func:`tltlc.files.read_source`.
+    variant, or overlay to add; TLT0801 a file is no TOML; TLT0802 an unknown key; TLT0803 a missing key, a value of the
+    wrong kind or out of range; TLT0804 a name that is taken or that specs cannot use; TLT0805 a name that stands for
+    nothing; TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay changes what is not there; and those
+    of :func:`tltlc.files.read_source`.
     """
     return _Loading(level_path(name_or_path)).level(variant)
 
@@ -84,6 +84,8 @@ def level_path(name_or_path: str) -> Path:
     if name_or_path.endswith((".tltl", ".json")):
         title = f"`{name_or_path}` is a spec, not a level"
         help_ = "a level is a `.toml` file, or one of those that `tltlc list levels` shows"
+    elif "+" in name_or_path and (level := name_or_path.partition("+")[0]) in level_names():
+        help_ = f"overlays are added to a variant: `{name_or_path.replace(level, f'{level}:v0', 1)}`"
     elif Path(f"{name_or_path}.toml").is_file():
         help_ = f"did you mean the file `{name_or_path}.toml`?"
     raise TltlError([Diagnostic("TLT0800", title, help=help_)])
@@ -236,16 +238,17 @@ class _Loading:
 
     def _added(self, name: str) -> Path | None:
         """The file of an overlay that is added to a variant."""
-        return Path(name) if name.endswith(".toml") else self._shared("overlays", name, self.table.place("variants"))
+        return Path(name) if name.endswith(".toml") else self._shared("overlays", name)
 
-    def _shared(self, folder: str, name: str, label: Label) -> Path | None:
-        """The file of an asset or overlay, beside the level or in the package."""
+    def _shared(self, folder: str, name: str, label: Label | None = None) -> Path | None:
+        """The file of an asset or overlay, beside the level or in the package; without a label an argument names it."""
         for place in (self.path.parent / folder, LEVELS / folder):
             if (path := place / f"{name}.toml").is_file() and path.parent == place:
                 return path
         known = shared_names(self.path, folder)
         title = f"there is no {folder[:-1]} `{name}`"
-        self.log.append(Diagnostic("TLT0805", title, (label,), suggestion(name, known)))
+        code, labels = ("TLT0805", (label,)) if label else ("TLT0800", ())
+        self.log.append(Diagnostic(code, title, labels, suggestion(name, known)))
         return None
 
     def _used(

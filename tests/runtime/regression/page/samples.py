@@ -117,9 +117,9 @@ def reported(
 
 @cache
 def suite() -> SuiteReport:
-    """A case that passes, one with enemies that fails, and one that cannot be played any more."""
+    """A case that passes, one with enemies that fails, and one that cannot be played."""
     failed, met = cover_and_hide_failed(), cover_and_hide_met()
-    broken = CaseReport("broken:v0", "broken", "v0", "fail", ("it cannot be played any more", "TLT0803: no `start`"))
+    broken = CaseReport("broken:v0", "broken", "v0", "fail", ("it cannot be played", "TLT0803: no `start`"))
     return SuiteReport(
         suite="sample",
         seed=7,

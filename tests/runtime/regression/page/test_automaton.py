@@ -48,6 +48,7 @@ def test_each_state_has_its_counts(root: ElementTree.Element, fspa: Fspa, now: T
     assert groups.keys() == {str(state.id) for state in fspa.states}
     for state in fspa.states:
         group = groups[str(state.id)]
+        assert [each.text for each in group.findall("g[@class='badge name']/text")] == [f"state {state.id}"]
         for when, seen in (("now", now), ("before", before)):
             badges = group.find(f"g[@class='counts {when}']")
             assert badges is not None

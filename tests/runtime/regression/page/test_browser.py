@@ -92,6 +92,23 @@ def test_a_link_in_an_explanation_opens_its_episode(tab: Tab) -> None:
     assert tab.locator(f"#{CASE} .stage").evaluate("each => each.getBoundingClientRect().top < innerHeight")
 
 
+def test_keys_are_the_players_after_a_link_and_the_link_leads_there_again(tab: Tab) -> None:
+    link = tab.locator(f"#{CASE} .reasons a.episode").first
+    step = int((link.get_attribute("href") or "").split("/")[2])
+    link.click()
+    moment = tab.locator(f"#{CASE} .moment")
+    expect(moment).to_contain_text(f"step {step} of ")
+    tab.keyboard.press("ArrowRight")
+    expect(moment).to_contain_text(f"step {step + 1} of ")
+    tab.keyboard.press("ArrowLeft")
+    # The address is that of the link again, and so nothing about it changes by a click.
+    tab.wait_for_function(f"location.hash.endsWith('/{step}')")
+    tab.evaluate("scrollTo(0, 0)")
+    link.click()
+    assert tab.locator(f"#{CASE} .stage").evaluate("each => each.getBoundingClientRect().top < innerHeight")
+    expect(moment).to_contain_text(f"step {step} of ")
+
+
 def test_scrubbing_shows_the_state_the_values_and_the_map_of_a_step(browser: Browser, file: Path) -> None:
     episode = samples.suite().cases[1].episodes[0]
     states = episode.states.tolist()

@@ -107,9 +107,9 @@ def test_what_overlays_do_not_change_is_the_same_level(tmp_path: Path) -> None:
     ("variant", "code", "title"),
     [
         ("v7+guard_alert", "TLT0800", "the level `branching` has no variant `v7`"),
-        ("v0+guard_alart", "TLT0805", "there is no overlay `guard_alart`"),
-        ("v0+", "TLT0805", "there is no overlay ``"),
-        ("v0+../overlays/guard_alert", "TLT0805", "there is no overlay `../overlays/guard_alert`"),
+        ("v0+guard_alart", "TLT0800", "there is no overlay `guard_alart`"),
+        ("v0+", "TLT0800", "there is no overlay ``"),
+        ("v0+../overlays/guard_alert", "TLT0800", "there is no overlay `../overlays/guard_alert`"),
         ("v0+nowhere/wider.toml", "TLT0001", "cannot read `nowhere/wider.toml`: there is no such file"),
         ("v0+corridor_shut", "TLT0808", "the level uses no asset `corridor`"),
     ],
