@@ -92,8 +92,8 @@ def test_where_a_player_fails_chance_goes_on_from_its_places(
     starts: list[Start] = []
 
     def walk(observation: Mapping[str, NDArray[Any]]) -> NDArray[np.int64]:
-        """First one way and then another, by turns of all environments."""
-        decisions.append([1, 2, 0, 0, 0] if len(decisions) < 20 * env.num_envs else [0, 0, 0, 0, 0])
+        """First away from the switch, and then not at all, by turns of all environments."""
+        decisions.append([2, 1, 0, 0, 0] if len(decisions) < 20 * env.num_envs else [0, 0, 0, 0, 0])
         return np.array(decisions[-1])
 
     def drawn(search: Search) -> Start:
