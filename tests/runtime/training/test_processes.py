@@ -167,6 +167,21 @@ def test_processes_of_torchrun_learn_the_same_and_end_together(tmp_path: Path) -
     assert [line["iteration"] for line in read_metrics(folder / METRICS)] == [1, 2, 3, 4]
 
 
+def test_of_processes_that_train_by_command_the_first_one_alone_speaks(tmp_path: Path) -> None:
+    settings = "[rollout]\nenvs = 4\nsteps = 16\n[network]\nhidden = [16]\nchannels = [4]\n[exploration]\nways = 0\n"
+    (tmp_path / "small.toml").write_text(settings, encoding="utf-8")
+    torchrun = ["-m", "torch.distributed.run", "--standalone", "--nproc_per_node", "2"]
+    # Nobody can do what the spec asks there, which is warned of.
+    train = ["-m", "tltlc", "train", "--level", "navigation:v2", "--config", str(tmp_path / "small.toml")]
+    limits = ["--steps", "256", "--workers", "1", "--out", str(tmp_path / "run")]
+    with _started(*torchrun, *train, *limits) as process:
+        output, errors = process.communicate(timeout=200)
+    assert output.count("ended by the limit of steps after 256 steps") == 1, errors
+    assert errors.count("training navigation on navigation v2") == 1
+    assert errors.count("nobody reaches `s2`") == 1
+    assert read_policy(tmp_path / "run" / POLICY).card.variant == "v2"
+
+
 def test_processes_of_torchrun_keep_their_own_ways_and_imitate_them_together(tmp_path: Path) -> None:
     # A spec that who does anything at all meets, after eight steps.
     spec = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
