@@ -53,7 +53,6 @@ class Ablation:
 
 
 ABLATIONS: Mapping[str, Ablation] = {
-    "as it is": Ablation(),
     "reward sparse": Ablation({"reward": {"mode": "sparse"}}),
     "reward edge": Ablation({"reward": {"mode": "edge"}}),
     "reward potential": Ablation({"reward": {"mode": "potential"}}),
@@ -130,6 +129,8 @@ def _cells(plan: Plan, folder: Path) -> Iterator[tuple[str, Callable[[], Record]
     for level in plan.levels:
         for seed in plan.seeds:
             yield f"{level} {seed}", Cell(folder / f"{level}-{seed}", level, seed, plan).judged
+    if plan.ablations:
+        yield f"{ABLATION}as it is", Cell(folder / f"{ABLATED}-{plan.seeds[0]}", ABLATED, plan.seeds[0], plan).beginning
     for name, ablation in plan.ablations.items():
         yield f"{ABLATION}{name}", Cell(folder / name.replace(" ", "-"), ABLATED, plan.seeds[0], plan, ablation).curve
     yield GPU, Cell(folder / GPU, ABLATED, plan.seeds[0], plan, Ablation(options=("--device", GPU))).on_gpu
@@ -162,10 +163,23 @@ class Cell:
         """The training's figures, and how it came to them."""
         if not self._train(self.plan.ablation_minutes, self.plan.ablation_steps):
             return {"failed": "tltlc train"}
-        points = self._record()["curve"]
-        stride = -(-len(points) // CURVE_POINTS)
-        names = ("steps", "pass_rate", "progress")
-        return {**self._figures(), "curve": [[point[name] for name in names] for point in points[::-stride][::-1]]}
+        return {**self._figures(), "curve": _points(self._record()["curve"])}
+
+    def beginning(self) -> Record:
+        """The training's beginning, as long as an ablation: where nothing differs none need be trained."""
+        if not self._train(self.plan.minutes, NO_LIMIT):
+            return {"failed": "tltlc train"}
+        whole, lines = self._figures(), [line for line in self._lines() if line["steps"] <= self.plan.ablation_steps]
+        last, busy_s = lines[-1], sum(line["collect_s"] + line["learn_s"] for line in lines)
+        return {
+            **{name: whole[name] for name in ("end", "other_cores", "versions", "revision", "source")},
+            **({"end": "steps"} if last["steps"] < whole["steps"] else {}),
+            "steps": last["steps"],
+            "minutes": round(last["seconds"] / 60, 2),
+            "steps_per_s": round(last["steps"] / busy_s),
+            "window": {name: last[name] or 0.0 for name in ("pass_rate", "progress")},
+            "curve": _points(lines),
+        }
 
     def on_gpu(self) -> Record:
         """The training's figures where a GPU is at hand."""
@@ -224,11 +238,15 @@ class Cell:
     def _record(self) -> Any:
         return json.loads((self.folder / "record.json").read_text(encoding="utf-8"))
 
+    def _lines(self) -> Sequence[Record]:
+        """What was measured after each iteration."""
+        text = (self.folder / "metrics.jsonl").read_text(encoding="utf-8")
+        return [json.loads(line) for line in text.splitlines()]
+
     def _figures(self) -> Record:
         """Why the training ended, after how much, how fast it was, and the last window."""
         record, others = self._record(), self.folder / OTHERS
-        lines = (self.folder / "metrics.jsonl").read_text(encoding="utf-8").splitlines()
-        collect_s, learn_s = (sum(json.loads(line)[name] for line in lines) for name in ("collect_s", "learn_s"))
+        collect_s, learn_s = (sum(line[name] for line in self._lines()) for name in ("collect_s", "learn_s"))
         search = record["search"] or {"steps": 0, "replayed": 0, "seconds": 0.0}
         return {
             "end": record["end"],
@@ -243,6 +261,12 @@ class Cell:
             "versions": record["versions"],
             **json.loads(self._source.read_text(encoding="utf-8")),
         }
+
+
+def _points(measured: Sequence[Record]) -> Sequence[Sequence[float]]:
+    """Steps, pass rate and progress of at most ``CURVE_POINTS`` of what was measured, the last one among them."""
+    stride = -(-len(measured) // CURVE_POINTS)
+    return [[each[name] for name in ("steps", "pass_rate", "progress")] for each in measured[::-stride][::-1]]
 
 
 def settings_text(*settings: Settings) -> str:

@@ -182,9 +182,10 @@ def _ablations(records: Mapping[str, Record]) -> str:
     return f"""
 ### Ablations
 
-One training each on cover_and_hide, of {ABLATION_STEPS:,} steps and at most ten minutes, in which one setting differs
-from *as it is*. *Pass rate* and *progress* are those of its last episodes, at most 100 of them, as the training played
-them; a row that *ended* as `met` shows the steps and minutes that it took.
+One training each on cover_and_hide with seed 1, of {ABLATION_STEPS:,} steps and at most ten minutes, in which one
+setting differs from *as it is*, the beginning of the training above. *Pass rate* and *progress* are those of its last
+episodes, at most 100 of them, as the training played them; a row that *ended* as `met` shows the steps and minutes that
+it took.
 
 {table(header, body)}
 

@@ -64,7 +64,8 @@ def test_a_quick_run_is_resumed_and_what_is_finished_is_skipped(
     assert [each for each in ran if each != "train cuda"] == expected
     assert said[0] == f'{cell}: {{"failed": "tltlc evaluate"}}'
     records = store.section(training.SECTION)
-    assert records[cell]["end"] == records[ablation]["end"] == "minutes"
+    assert records[cell]["end"] == records[ablation]["end"] == records["ablation: as it is"]["end"] == "minutes"
+    assert records["ablation: as it is"]["curve"][-1][0] == records[cell]["steps"]
     assert records[cell]["steps"] == 4 * 32
     assert 0 < records[cell]["learn_share"] < 1
     settings = json.loads((folder / "no-semantic-map" / "run.json").read_text(encoding="utf-8"))
