@@ -94,7 +94,7 @@ def report_on(result: Result) -> CaseReport:
 def _headline(judgement: Judgement, thresholds: Thresholds, said: Sequence[str], failed: Finding | None) -> str:
     """Of a case that may meet its spec too rarely how it fails, of one whose figures changed that, else how often."""
     if failed and judgement.rate_interval[0] < thresholds.pass_rate:
-        return failed.text.partition("; closest")[0].partition("; in state")[0]
+        return failed.text.partition("; ")[0]
     return said[1] if len(said) > 1 else said[0]
 
 

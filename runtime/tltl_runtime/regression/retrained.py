@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Literal
 
 from tltl_runtime.evaluation.figures import Figures
@@ -77,31 +76,21 @@ def sentence(
     best: Best | None,
 ) -> str:
     """What is told of the outcome."""
-    return "; ".join(_clauses(outcome, trained, figures, rate_interval, thresholds, best))
-
-
-def _clauses(
-    outcome: Outcome,
-    trained: Trained,
-    figures: Figures,
-    rate_interval: tuple[float, float],
-    thresholds: Thresholds,
-    best: Best | None,
-) -> Iterator[str]:
     took = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
     count, passed = figures.episodes, round(figures.pass_rate * figures.episodes)
     now = f"the policy meets the spec in {passed} of {count} fresh episodes ({between(rate_interval)} for certain)"
     if outcome == "learned":
-        yield f"feasible: after {took} {now}"
-    elif outcome == "feasible":
-        yield "feasible, but not learned"
+        return f"feasible: after {took} {now}"
+    if outcome == "feasible":
+        said = ["feasible, but not learned"]
         if trained.shortest is not None:
-            yield f"there are ways, the shortest that is known takes {trained.shortest:,} steps"
-        yield f"after {took} {now}, and {thresholds.pass_rate:.0%} are asked for"
+            said.append(f"there are ways, the shortest that is known takes {trained.shortest:,} steps")
+        said.append(f"after {took} {now}, and {thresholds.pass_rate:.0%} are asked for")
     else:
         broken = "" if trained.complete else ", which the limit broke off,"
-        yield f"no way found: neither a search of {trained.searched:,} steps{broken} nor {took} met the spec once"
-        yield "the level is likely infeasible" if trained.complete else "that says little: let it train longer"
-    if best is not None and outcome != "learned":
+        said = [f"no way found: neither a search of {trained.searched:,} steps{broken} nor {took} met the spec once"]
+        said.append("the level is likely infeasible" if trained.complete else "that says little: let it train longer")
+    if best is not None:
         which = "the best of the failed ones" if passed else "the best of its episodes"
-        yield f"{which} came to progress {number(best.progress, 2)}, where this remained: {best.remained}"
+        said.append(f"{which} came to progress {number(best.progress, 2)}, where this remained: {best.remained}")
+    return "; ".join(said)

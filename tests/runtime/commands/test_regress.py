@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -17,6 +16,7 @@ import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, write_game
+from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tltl_runtime.commands.baseline import _advice
 from tltl_runtime.regression.baseline import read_baseline
 from tltl_runtime.regression.run import CASES, case_folder
@@ -37,13 +37,6 @@ def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
         done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == (command == "regress"), done.stderr
     return folder
-
-
-@pytest.fixture(name="game")
-def _game(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    shutil.copytree(recorded, tmp_path / "game")
-    monkeypatch.chdir(tmp_path / "game")
-    return tmp_path / "game"
 
 
 def verdicts(out: str) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -17,6 +16,7 @@ from tests.cli.conftest import tltlc  # noqa: F401
 from tests.runtime.commands.test_regress import ONE, Run
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, with_baseline, write_game
+from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tltl_runtime.policies.file import write_policy
 
 RETRAIN = ("regress", "game.toml", "--retrain", "--minutes", "0.02", *ONE)
@@ -31,13 +31,6 @@ def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_policy(folder / "soon.safetensors", untrained(NEVER, str(folder / "room.toml")))
     with_baseline(folder / "game.toml")
     return folder
-
-
-@pytest.fixture(name="game")
-def _game(recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    shutil.copytree(recorded, tmp_path / "game")
-    monkeypatch.chdir(tmp_path / "game")
-    return tmp_path / "game"
 
 
 def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa: F811

@@ -262,6 +262,14 @@ def test_a_spec_that_has_changed_since_the_training_is_told_and_nothing_passes_b
     assert found[0].report.reasons[1].startswith("plan.tltl:2: TLT0")
 
 
+def test_the_headline_of_a_failure_is_how_the_episodes_end(game: Path) -> None:
+    passed, _, failed = (done.report for done in run()[0])
+    assert passed.headline == passed.reasons[0]
+    (end,) = (each.text for each in failed.explanation if each.text.startswith(failed.headline))
+    assert end.partition(";")[0] == failed.headline
+    assert failed.headline.endswith(" of 25 episodes")
+
+
 def test_a_baseline_of_fewer_episodes_is_refused(game: Path) -> None:
     edit("game.toml", "episodes = 50", "episodes = 60")
     with pytest.raises(TltlError, match="TLT0903: the baseline of `room:v0` has 50 episodes, and 60 are asked for"):
