@@ -1,4 +1,4 @@
-"""Reading source files: every way in which a file can fail to be a text becomes a diagnostic."""
+"""Source files are looked for and read: every way in which one can fail to be a text becomes a diagnostic."""
 
 from __future__ import annotations
 
@@ -15,6 +15,22 @@ MAX_ARTEFACT_BYTES: Final = 1 << 28
 """Greatest size of an artefact, well above that of an automaton with the default state budget."""
 
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
+
+
+def exists(path: str | os.PathLike[str]) -> bool:
+    """Whether something is there, as far as the system tells: where it allows no such name or look, nothing is."""
+    # pathlib's raises there, before Python 3.14.
+    return os.path.exists(path)  # noqa: PTH110
+
+
+def is_file(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is there, as :func:`exists` has it; devices and pipes are none."""
+    return os.path.isfile(path)  # noqa: PTH113
+
+
+def is_dir(path: str | os.PathLike[str]) -> bool:
+    """Whether a folder is there, as :func:`exists` has it."""
+    return os.path.isdir(path)  # noqa: PTH112
 
 
 def read_source(

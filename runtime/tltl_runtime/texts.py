@@ -24,6 +24,11 @@ def percent(value: float) -> str:
     return f"{100.0 * float(share(value)):.0f}%"
 
 
+def percent_exactly(value: float) -> str:
+    """A number in [0, 1] that somebody chose, in percent with the places that it has: ``85%``, ``99.9%``."""
+    return f"{100.0 * value:g}%"
+
+
 def between(interval: tuple[float, float]) -> str:
     """An interval of shares in percent, rounded outwards: what is certain of the one is certain of the other."""
     low, high = floor(100.0 * interval[0] + 1e-9), ceil(100.0 * interval[1] - 1e-9)

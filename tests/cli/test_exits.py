@@ -194,3 +194,11 @@ def test_what_is_no_number(type_: click.ParamType, text: str, said: str, capsys:
         command.main(["--for", text], standalone_mode=False)
     assert exits.report(error.value) == exits.USAGE
     assert capsys.readouterr().err.startswith(f"error[TLT0700]: invalid value for '--for': {said}\n")
+
+
+def test_a_path_at_which_the_system_does_not_let_us_look_is_no_bug(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(OSError, match="too long") as error:
+        Path("a" * 300).stat()
+    assert exits.report(error.value) == exits.UNREADABLE
+    said = capsys.readouterr().err
+    assert said.startswith(f"error[TLT0001]: cannot look at `{'a' * 300}`: file name too long\n  help: ")

@@ -44,6 +44,8 @@ _COMPONENTS: Final = {"graphviz", "pygraphviz", "sympy", "networkx", "rich", "to
 _NO_ROOM: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
 """What standard output may say to a write; files that a command names have their own messages."""
 
+_NO_LOOK: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP}
+"""What the system may say of a path at which it is only asked whether something is there."""
 
 _NO_NUMBER: Final = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?")
 
@@ -91,6 +93,8 @@ def report(error: Exception) -> int:
     if isinstance(error, OSError) and error.filename is None and error.errno in _NO_ROOM:
         _discard_output()
         error = _full_output(error)
+    if isinstance(error, OSError) and error.filename is not None and error.errno in _NO_LOOK:
+        error = _refused_path(error)
     if isinstance(error, TltlError):
         from tltlc.cli.report import show
 
@@ -123,6 +127,13 @@ def _full_output(error: OSError) -> TltlError:
 
     title = f"cannot write to standard output: {reason(error)}"
     return TltlError([Diagnostic("TLT0005", title, help="make room, or send it to another place")])
+
+
+def _refused_path(error: OSError) -> TltlError:
+    from tltlc.files import reason
+
+    title = f"cannot look at `{os.fsdecode(error.filename)}`: {reason(error)}"
+    return TltlError([Diagnostic("TLT0001", title, help="check its name and its permissions")])
 
 
 def _discard_output() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tltlc.diagnostics.diagnostic import Label, TltlError
-from tltlc.files import read_source
+from tltlc.files import is_file, read_source
 from tltlc.grammar.tree import Import, Module
 from tltlc.record import record, replace
 from tltlc.resolve.options import ResolveOptions
@@ -122,7 +122,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     folders = (here, *options.library_dirs, standard_library())
     if declaration.is_path:
         shown = here / target
-        if not _is_file(shown):
+        if not is_file(shown):
             raise problem(
                 "TLT0010",
                 f"there is no file `{target}` beside this one",
@@ -135,7 +135,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
         return Path(_normal(shown.absolute())), _shown(shown)
     name = target.replace(".", "/") + ".tltl"
     for folder in folders:
-        if _is_file(folder / name):
+        if is_file(folder / name):
             return Path(_normal((folder / name).absolute())), _shown(folder / name)
     known = sorted({path.stem for folder in folders for path in _files(folder)})
     advice = _similar(target, known) or "a library is a file NAME.tltl beside this one or in a --library folder"
@@ -151,16 +151,9 @@ def _similar(target: str, known: list[str]) -> str | None:
 
 def _unquoted(target: str, folders: tuple[Path, ...]) -> str | None:
     name = target.removesuffix(".tltl")
-    if any(_is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name:
+    if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name:
         return f"a library is imported by its name, without quotes: `import {name}`"
     return None
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
 
 
 def _files(folder: Path) -> list[Path]:

@@ -43,7 +43,7 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
     with Report() as report, learning_for("`tltlc baseline`"), requests_heard():
         from tltl_runtime.commands.regression_display import RegressionDisplay
         from tltl_runtime.regression.baseline import written_to
-        from tltl_runtime.regression.baseline_run import write_recorded
+        from tltl_runtime.regression.baseline_run import kept_at, write_recorded
         from tltl_runtime.regression.suite import SHIPPED, read_suite
 
         read = read_suite(suite or SHIPPED)
@@ -54,7 +54,8 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
                     display.over()
                     _tell(read, each)
         except KeyboardInterrupt:
-            click.echo(f"stopped: `{wrote}` is as it was; the same command goes on with what is over", err=True)
+            again = "goes on with what is over" if kept_at(wrote) else "begins anew"
+            click.echo(f"stopped: `{wrote}` is as it was; the same command {again}", err=True)
             raise
         click.echo(f"wrote {wrote}", err=True)
         if wrote.resolve() != read.baseline.resolve():

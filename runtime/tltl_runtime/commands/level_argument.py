@@ -13,19 +13,20 @@ from tltl_runtime.stealth.levels.file import level_names
 from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.task import read_spec
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import exists, is_file
 from tltlc.spec_file import split
 
 
 def names_level(text: str) -> bool:
     """Whether a text that could be a path is ``LEVEL`` or ``LEVEL:VARIANT`` of a level that comes with the package."""
-    return not Path(text).exists() and level_place(text)[0] in level_names()
+    return not exists(text) and level_place(text)[0] in level_names()
 
 
 def check_spelling(text: str) -> None:
     """Raise TltlError, TLT0001, where a name without a folder or a suffix is no path, and nearly that of a level."""
     name = level_place(text)[0]
     close = get_close_matches(name, level_names(), n=1)
-    if close and re.fullmatch(r"[\w-]+", name) and not Path(text).exists():
+    if close and re.fullmatch(r"[\w-]+", name) and not exists(text):
         title = f"there is neither a file nor a level `{text}`"
         raise TltlError([Diagnostic("TLT0001", title, help=f"did you mean the level `{close[0]}`?")])
 
@@ -41,7 +42,7 @@ def check_no_toml(spec: str | None, settings: str = "") -> None:
 
 def check_there(level: str, variant: str, command: str) -> None:
     """Raise TltlError, TLT0001, where a level's file is gone: ``command`` takes it from elsewhere with --level."""
-    if level.endswith(".toml") and not Path(level).exists():
+    if level.endswith(".toml") and not exists(level):
         other = "" if variant == "v0" else f":{variant}"
         title = f"the level's file `{level}` is not there any more"
         help_ = f"put it back, or say where it is now: `{command} --level FILE.toml{other}`"
@@ -58,7 +59,7 @@ def own_level(spec: str, how: str = "with --level") -> str:
         message = f"`{fspa.name}` does not say which level it is about: name one {how}"
         raise click.UsageError(message, click.get_current_context())
     beside = Path(split(spec)[0]).parent / f"{fspa.level}.toml"
-    if beside.is_file():
+    if is_file(beside):
         return str(beside)
     if fspa.level not in level_names():
         title = f"there is no level `{fspa.level}`: `{beside}` is not there, and none of that name comes with tltlc"

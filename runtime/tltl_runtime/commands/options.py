@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import isfinite
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -11,6 +12,17 @@ import click
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 _OUTPUT: Final = ("--output", "--out", "-o")
+
+
+class FiniteRange(click.FloatRange):
+    """A finite number in a range, of which `nan` is neither below nor above."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number."""
+        number = super().convert(value, param, ctx)
+        if not isfinite(number):
+            self.fail("write a number", param, ctx)
+        return number
 
 
 def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:

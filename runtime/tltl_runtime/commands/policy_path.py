@@ -12,6 +12,7 @@ from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.run import POLICY, RUN, named_trainings, read_place, resume_command
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import exists, is_dir, is_file
 
 
 def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[Path, str | None, str | None]:
@@ -32,7 +33,7 @@ def policy_place(policy: Path | None, level: str | None, command: str) -> tuple[
         assert name is not None
         return _shipped(name), name, variant
     path = policy_path(policy)
-    if name is None and (policy / RUN).is_file():
+    if name is None and is_file(policy / RUN):
         # The card has the level's name alone, and here is the path of its file.
         name, variant = read_place(policy)
         check_there(name, variant, f"{command} {quote(str(policy))}")
@@ -60,18 +61,18 @@ def policy_path(path: Path) -> Path:
             training there measured cannot be read, or it is not there, and a level's name is like it.
     """
     check_spelling(str(path))
-    if path.suffix.lower() == ".onnx" and path.is_file():
+    if path.suffix.lower() == ".onnx" and is_file(path):
         title = f"`{path}` is the model for other engines, which `tltlc inspect -o` wrote"
         raise TltlError([Diagnostic("TLT0840", title, help="name the .safetensors file that it was made of")])
-    if path.suffix.lower() == ".toml" and path.is_file():
+    if path.suffix.lower() == ".toml" and is_file(path):
         title = f"`{path}` is a TOML file, e.g. a level, and no policy"
         help_ = "a policy is a .safetensors file, or the folder of a training; a level is named with --level"
         raise TltlError([Diagnostic("TLT0840", title, help=help_)])
-    if not path.is_dir():
+    if not is_dir(path):
         return path
-    if (path / POLICY).exists():
+    if exists(path / POLICY):
         return path / POLICY
-    if (path / RUN).exists():
+    if exists(path / RUN):
         title = f"the training in `{path}` has no policy yet: {progress(path)}"
         help_ = f"`{resume_command(path)}` goes on until it has one; one that is going on has it soon"
     elif named := named_trainings(path):

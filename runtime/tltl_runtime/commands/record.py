@@ -16,6 +16,7 @@ from tltl_runtime.commands.plain import plain
 from tltl_runtime.stealth.levels.place import level_place
 from tltlc.cli import exits
 from tltlc.cli.report import Report
+from tltlc.diagnostics.diagnostic import TltlError
 
 if TYPE_CHECKING:
     from tltl_runtime.stealth.episodes.episode import Episode
@@ -144,6 +145,10 @@ def _by_expert(env: RecordEpisode, made: Demonstrations, wanted: int, seed: int,
 def _by_keyboard(
     env: RecordEpisode, made: Demonstrations, wanted: int, seed: int | None, view: View, crouch: str
 ) -> None:
+    from tltl_runtime.stealth.recording import writable_folder
+
+    writable_folder(made.folder)
+
     def recordings(_: str) -> Recordings:
         return _Kept(made, wanted)
 
@@ -154,7 +159,13 @@ def _by_keyboard(
 
 
 class _Kept:
-    """Takes the episodes of a person, of which those are written that meet the spec."""
+    """Takes the episodes of a person, of which those are written that meet the spec.
+
+    One that its folder refuses goes to the folder for temporary files, and does not count.
+
+    Raises:
+        TltlError: TLT0005, of ``save``: that refuses it, too.
+    """
 
     def __init__(self, made: Demonstrations, wanted: int) -> None:
         self._made, self._wanted = made, wanted
@@ -164,10 +175,23 @@ class _Kept:
 
     def save(self, episode: Episode) -> str:
         """Write the episode where it is a demonstration; what the player reads of it."""
-        tried = self._made.add(episode)
+        try:
+            tried = self._made.add(episode)
+        except TltlError as refused:
+            return self._elsewhere(episode, refused)
         click.echo(_line(tried, self._wanted))
         there = f"{tried.kept} of {self._wanted}"
         return f"{tried.path.name}, {there}" if tried.path else f"not kept, {there}"
+
+    def _elsewhere(self, episode: Episode, refused: TltlError) -> str:
+        from tltl_runtime.commands.episode_text import episode_line
+        from tltl_runtime.commands.recording_files import write_elsewhere
+        from tltl_runtime.stealth.episodes.file import file_stem
+
+        path = write_elsewhere(episode, file_stem(episode), refused)
+        there = f"{self._made.count} of {self._wanted}"
+        click.echo(episode_line(episode, f"{path} ({there}, until it is moved to {self._made.folder})"))
+        return f"{path}, {there}"
 
 
 def _line(tried: Tried, wanted: int) -> str:

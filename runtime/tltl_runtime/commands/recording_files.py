@@ -1,4 +1,4 @@
-"""Where ``tltlc play`` writes its recordings, so that none is lost and none takes the place of another."""
+"""Where a person's recordings are written, so that none is lost and none takes the place of another."""
 
 from __future__ import annotations
 
@@ -54,14 +54,24 @@ class RecordingFiles:
         try:
             write_episode(path, episode)
         except TltlError as error:
-            click.echo(f"{error}", err=True)
-            path = new_path(Path(gettempdir()), self._name)
-            write_episode(path, episode)
+            path = write_elsewhere(episode, self._name, error)
         if self._unfinished is not None:
             self._unfinished.unlink(missing_ok=True)
             self._unfinished = None
         click.echo(f"{path}: {_judged(episode)}")
         return str(path)
+
+
+def write_elsewhere(episode: Episode, name: str, refused: TltlError) -> Path:
+    """Write an episode to the folder for temporary files, since its own place has ``refused`` it, which is told.
+
+    Raises:
+        TltlError: TLT0005, this folder refuses it, too.
+    """
+    click.echo(f"{refused}", err=True)
+    path = new_path(Path(gettempdir()), name)
+    write_episode(path, episode)
+    return path
 
 
 def _refusal(folder: Path, make: bool) -> str:

@@ -11,7 +11,7 @@ import click
 from tltl_runtime.commands.changed_option import ChangedCommand
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
-from tltl_runtime.commands.options import output_folder
+from tltl_runtime.commands.options import FiniteRange, output_folder
 from tltl_runtime.commands.workers import all_cores_option
 from tltlc.cli.report import Report
 
@@ -66,7 +66,7 @@ Examples:
 @click.option(
     "--minutes",
     metavar="M",
-    type=click.FloatRange(min=0, min_open=True, max=1_000_000),
+    type=FiniteRange(min=0, min_open=True, max=1_000_000),
     help=f"Of each training, at the most (default: {_MINUTES:g}).",
 )
 @all_cores_option

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -23,6 +24,9 @@ from tltlc.writing import write_file, write_files
 
 PAGE: Final = "report.html"
 """The page in the folder of a run."""
+
+_NO_UTF8: Final = re.compile("[\ud800-\udfff]")
+"""What names of files have in place of bytes that are no UTF-8, and no text of UTF-8 can hold."""
 
 
 @record
@@ -45,7 +49,7 @@ def json_text(outcome: Outcome) -> str:
     """The report for programs."""
     reports = [done.report for done in outcome.cases]
     found = document(outcome.suite, reports, complete=outcome.complete, left_out=outcome.left_out)
-    return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
+    return _encodable(json.dumps(found, indent=2, ensure_ascii=False)) + "\n"
 
 
 def _junit_text(outcome: Outcome) -> str:
@@ -65,7 +69,11 @@ def _page_text(outcome: Outcome) -> str:
         missing=outcome.missing,
         left_out=outcome.left_out,
     )
-    return html_report(contents)
+    return _encodable(html_report(contents))
+
+
+def _encodable(text: str) -> str:
+    return _NO_UTF8.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
 REPORTS: Final[Mapping[str, Callable[[Outcome], str]]] = {

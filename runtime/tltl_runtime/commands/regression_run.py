@@ -21,7 +21,7 @@ from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.baseline import Reference, baseline_of
 from tltl_runtime.regression.dependencies import select
 from tltl_runtime.regression.github import findings_as_commands
-from tltl_runtime.regression.retrain import forget_trainings
+from tltl_runtime.regression.retrain import check_places
 from tltl_runtime.regression.run import Done, check, owned, regress
 from tltl_runtime.regression.suite import SHIPPED, Case, Suite, read_suite
 from tltl_runtime.texts import listed
@@ -64,31 +64,31 @@ class Wanted:
 def run(wanted: Wanted) -> int:
     """Judge the cases that are asked for, and report on them; the exit status.
 
-    Where it is asked to end, it reports on what there is, and KeyboardInterrupt goes on.
+    Where it is asked to end, or an error ends it, it reports on what there is, and KeyboardInterrupt or the error goes
+    on.
 
     Raises:
-        TltlError: TLT0005, a file cannot be written; what reading the suite, playing and training raise.
+        TltlError: TLT0005, a file cannot be written; TLT0942, a policy lies where a training goes; what reading the
+            suite, playing and training raise.
     """
     check_writable(wanted.written)
     suite = read_suite(wanted.suite or SHIPPED, wanted.baseline)
     cases, left_out = _chosen(suite, wanted.changed)
+    if wanted.minutes is not None:
+        check_places(suite, cases, wanted.folder)
     references = baseline_of(suite) if cases else ()
     check(suite, cases, references)
     found: list[Done] = []
     with owned(wanted.folder):
-        if wanted.fresh and wanted.minutes is not None:
-            # At once, so that a run that is stopped goes on with fresh ones.
-            forget_trainings(suite, cases, wanted.folder)
         try:
             _play(suite, cases, references, wanted, found)
             _retrain(suite, wanted, found)
-        except KeyboardInterrupt:
-            _stopped(wanted, found, len(cases))
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt):
+                _stopped(wanted, found, len(cases))
+            _tell_too(_outcome(suite, cases, left_out, wanted, found), wanted)
             raise
-        finally:
-            missing = tuple(case.name for case in cases[len(found) :])
-            complete = not missing and not _untrained(wanted, found)
-            _tell(Outcome(suite, wanted.folder, tuple(found), complete, left_out, missing), wanted)
+        _tell(_outcome(suite, cases, left_out, wanted, found), wanted)
     return exits.CLEAN if all(done.report.verdict == "pass" for done in found) else exits.FINDINGS
 
 
@@ -127,7 +127,7 @@ def _retrain(suite: Suite, wanted: Wanted, found: list[Done]) -> None:
     """Train for the cases in ``found`` that do not pass, where this is asked for."""
     if wanted.minutes is not None:
         again = join([*_again(wanted), "--retrain"])
-        asked = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, again)
+        asked = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, again, wanted.fresh)
         retrain_cases(asked, found, to_stderr=wanted.is_json)
 
 
@@ -160,6 +160,23 @@ def _stopped(wanted: Wanted, found: list[Done], cases: int) -> None:
     if len(found) == cases and (left := _untrained(wanted, found)):
         done = f"all cases are judged, and {left} {'are' if left > 1 else 'is'} still to be trained for"
     click.echo(f"stopped: {done}; to go on: {join(words)}", err=True)
+
+
+def _outcome(
+    suite: Suite, cases: Sequence[Case], left_out: tuple[str, ...], wanted: Wanted, found: list[Done]
+) -> Outcome:
+    """What the run has come to so far."""
+    missing = tuple(case.name for case in cases[len(found) :])
+    complete = not missing and not _untrained(wanted, found)
+    return Outcome(suite, wanted.folder, tuple(found), complete, left_out, missing)
+
+
+def _tell_too(outcome: Outcome, wanted: Wanted) -> None:
+    """Tell of a run that an error has ended, which is not to be hidden by what goes wrong now, too."""
+    try:
+        _tell(outcome, wanted)
+    except Exception as error:
+        exits.report(error)
 
 
 def _tell(outcome: Outcome, wanted: Wanted) -> None:

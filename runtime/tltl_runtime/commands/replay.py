@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -12,7 +11,7 @@ import click
 
 from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.notation import notation_option
-from tltl_runtime.commands.options import output_file, summary_format
+from tltl_runtime.commands.options import FiniteRange, output_file, summary_format
 from tltl_runtime.commands.reading import read_each
 from tltlc.cli.report import Report
 
@@ -47,12 +46,6 @@ def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int,
     raise click.BadParameter(f"write WIDTHxHEIGHT, each from {low} to {high}, e.g. 640x480")
 
 
-def _finite(_: click.Context, __: click.Parameter, number: float | None) -> float | None:
-    if number is None or isfinite(number):
-        return number
-    raise click.BadParameter("write a number")
-
-
 @click.command(
     epilog="""\b
 Examples:
@@ -69,15 +62,13 @@ Examples:
 @click.option("--view", type=click.Choice(_VIEWS), help="Of a film (default: third_person).")
 @click.option(
     "--speed",
-    type=click.FloatRange(0.05, 100.0),
-    callback=_finite,
+    type=FiniteRange(0.05, 100.0),
     help="Of a film (default: 1): 2 is twice as fast as the game.",
 )
 @click.option(
     "--fps",
     "rate",
-    type=click.FloatRange(1.0, 60.0),
-    callback=_finite,
+    type=FiniteRange(1.0, 60.0),
     help="Pictures a second (default: one for each decision).",
 )
 @click.option("--size", metavar="WxH", callback=_size, help="Of a film (default: 640x480) or a plan, in pixels.")
@@ -85,16 +76,14 @@ Examples:
     "--from",
     "start",
     metavar="SECONDS",
-    type=click.FloatRange(min=0.0),
-    callback=_finite,
+    type=FiniteRange(min=0.0),
     help="Begin a film or the signals here.",
 )
 @click.option(
     "--to",
     "stop",
     metavar="SECONDS",
-    type=click.FloatRange(min=0.0),
-    callback=_finite,
+    type=FiniteRange(min=0.0),
     help="End a film or the signals here.",
 )
 @notation_option

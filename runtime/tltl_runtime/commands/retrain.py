@@ -2,33 +2,42 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from math import ceil
 from pathlib import Path
 from shlex import quote
+from typing import Final
 
 import click
 
+from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.plain import plain
 from tltl_runtime.commands.regression_display import RegressionDisplay
 from tltl_runtime.commands.shown_training import train_shown
 from tltl_runtime.commands.training_text import minutes as said_minutes
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.baseline import baseline_command
-from tltl_runtime.regression.retrain import forget_training, is_kept, retrained, retraining
+from tltl_runtime.regression.retrain import is_kept, make_room, retrained, retraining
 from tltl_runtime.regression.retrained import Retrained
-from tltl_runtime.regression.run import Done
+from tltl_runtime.regression.run import NOT_THE_CASE, Done
 from tltl_runtime.regression.suite import SHIPPED, Suite
 from tltl_runtime.training.record import ended_as, write_record
 from tltl_runtime.training.run import RUN, Run
+from tltlc.cli.report import show
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import record, replace
+
+_NOT_THE_CASE: Final = NOT_THE_CASE | {"TLT0005"}
+"""Codes of what is wrong with the workers, or with the folder."""
 
 
 @record
 class Retraining:
     """How cases are trained anew: for so many ``minutes`` each at the most, below the ``folder`` of the run.
 
-    ``again`` is the command that goes on after a stop, but for its --minutes.
+    ``again`` is the command that goes on after a stop, but for its --minutes; ``fresh``: nothing that is kept counts.
     """
 
     suite: Suite
@@ -36,13 +45,17 @@ class Retraining:
     minutes: float
     pool: Pool
     again: str
+    fresh: bool
 
 
 def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> None:
     """Train for each case that needs it, one after the other; what it came to is told at once, and put into ``found``.
 
+    What is wrong with one case, such as a level that was edited meanwhile, is told on standard error, and the others go
+    on.
+
     Raises:
-        TltlError: what training and playing raise.
+        TltlError: TLT0942, a policy lies where a training goes; TLT0730, TLT0850 and TLT0852 of the workers; TLT0005.
     """
     for done in found:
         if done.report.verdict != "pass" and done.ready and done.ready.outdated:
@@ -53,13 +66,32 @@ def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> N
         for row, done in enumerate(found)
         if (ready := done.to_train)
     }
+    if asked.fresh:
+        # All at once, so that a run that is stopped goes on with fresh ones.
+        for row, run in runs.items():
+            with _one_case(found[row].report.name):
+                _make_room(asked, found[row].report.name, run)
     for row, run in runs.items():
         done = found[row]
-        _train(asked, done.report.name, run)
-        outcome = _played(asked, done, run)
-        found[row] = replace(done, report=replace(done.report, retrained=outcome))
-        for line in _lines(asked, done.report.name, outcome):
-            click.echo(plain(line), err=to_stderr)
+        with _one_case(done.report.name):
+            _train(asked, done.report.name, run)
+            outcome = _played(asked, done, run)
+            found[row] = replace(done, report=replace(done.report, retrained=outcome))
+            for line in _lines(asked, done.report.name, outcome):
+                click.echo(plain(line), err=to_stderr)
+
+
+@contextmanager
+def _one_case(name: str) -> Iterator[None]:
+    """Tell what is wrong with a case; raises TltlError for what would be wrong with the others, too."""
+    try:
+        with level_faults():
+            yield
+    except TltlError as error:
+        if _NOT_THE_CASE & {each.code for each in error.diagnostics}:
+            raise
+        click.echo(f"{plain(name)}: nothing can be said of its training", err=True)
+        show(error.diagnostics, "text", sys.stderr)
 
 
 def _train(asked: Retraining, name: str, run: Run) -> None:
@@ -74,8 +106,14 @@ def _train(asked: Retraining, name: str, run: Run) -> None:
     limit = said_minutes(asked.minutes)
     click.echo(f"{plain(name)}: a training {how}{why}, for {limit} at the most, in {run.folder}", err=True)
     if there and not kept:
-        forget_training(run.folder)
+        _make_room(asked, name, run)
     write_record(run, train_shown(run, resume=kept, again=f"{asked.again} --minutes {asked.minutes:g}"))
+
+
+def _make_room(asked: Retraining, name: str, run: Run) -> None:
+    """Have the folder be free for a new training, and say where an earlier one is then."""
+    if run.folder.is_dir() and (aside := make_room(asked.suite, run.folder)):
+        click.echo(f"{plain(name)}: the training that was in {run.folder} is now in {aside}", err=True)
 
 
 def _played(asked: Retraining, done: Done, run: Run) -> Retrained:

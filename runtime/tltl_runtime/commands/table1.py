@@ -11,7 +11,7 @@ import click
 
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
-from tltl_runtime.commands.options import output_folder
+from tltl_runtime.commands.options import FiniteRange, output_folder
 from tltl_runtime.commands.workers import all_cores_option
 from tltlc.cli import exits
 from tltlc.cli.report import Report
@@ -49,7 +49,7 @@ Examples:
 @click.option(
     "--minutes",
     metavar="M",
-    type=click.FloatRange(min=0, max=1_000_000),
+    type=FiniteRange(min=0, max=1_000_000),
     help="Of each training, at the most; 0: no limit but that of steps (default: 60; with --shipped as many as the "
     "policies were given that come with the levels).",
 )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryFile
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reason
+from tltlc.files import exists, is_file, reason
 
 
 def check_writable(files: Mapping[str, Path | None]) -> None:
@@ -17,9 +18,12 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
     """
     for option, path in files.items():
         # What is no file, such as a pipe, is written to directly.
-        if path is None or (path.exists() and not path.is_file()):
+        if path is None or (exists(path) and not is_file(path)):
             continue
         try:
+            # Its name may be one that the system does not allow.
+            with suppress(FileNotFoundError):
+                path.stat()
             # What a link leads to is what is written.
             with TemporaryFile(dir=path.resolve().parent):
                 pass

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import ExitStack, closing
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
 from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import Played
-from tltl_runtime.evaluation.player import Player, Recorded, Result, Setup, Task
-from tltl_runtime.evaluation.spread import Worker, spread
+from tltl_runtime.evaluation.player import Player, Plays, Recorded, Result, Setup, Task
+from tltl_runtime.evaluation.spread import spread
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
@@ -101,25 +102,32 @@ def results(
             cluster, or no core of it becomes free; what the making of an environment raises.
         ValueError: a number of workers below 0.
     """
+    if workers != "ray":
+        yield from results_here(partial(Player, setup), tasks, workers, setup.seed)
+        return
+    from tltl_runtime.evaluation.ray_pool import ray_workers
+
+    with ray_workers(setup, len(tasks), waiting) as team:
+        yield from spread(team, tasks, setup.seed)
+
+
+def results_here(make: Callable[[], Plays], tasks: Sequence[Task], workers: int, seed: int) -> Generator[Result]:
+    """As :func:`results`, on this machine, played by what ``make`` makes in each process, to which it is pickled.
+
+    Raises:
+        TltlError: TLT0850, a worker was lost while it played an episode of the evaluation's ``seed``; what playing
+            raises.
+        ValueError: a number of workers below 0.
+    """
     if workers == 1:
-        with closing(Player(setup)) as player:
+        with closing(make()) as player:
             for task in tasks:
                 yield player.play(task)
         return
-    with ExitStack() as stack:
-        yield from spread(_team(setup, workers, len(tasks), stack, waiting), tasks, setup.seed)
-
-
-def _team(setup: Setup, workers: Pool, most: int, stack: ExitStack, waiting: Callable[[float], None]) -> list[Worker]:
-    """Up to ``most`` workers, which ``stack`` closes."""
-    if workers == "ray":
-        from tltl_runtime.evaluation.ray_pool import ray_workers
-
-        return list(stack.enter_context(ray_workers(setup, most, waiting)))
     if workers < 0:
         raise ValueError(f"there are no {workers} workers")
-    team: list[Worker] = []
-    for _ in range(min(workers or cores(), most)):
-        team.append(Process(setup))
-        stack.callback(team[-1].close)
-    return team
+    with ExitStack() as stack:
+        team = [Process(make) for _ in range(min(workers or cores(), len(tasks)))]
+        for each in team:
+            stack.callback(each.close)
+        yield from spread(team, tasks, seed)

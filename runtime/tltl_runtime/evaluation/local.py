@@ -6,20 +6,24 @@ import multiprocessing
 import os
 import signal
 import threading
+from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Final
 
-from tltl_runtime.evaluation.player import Player, Result, Setup, Task
+from tltl_runtime.evaluation.player import Plays, Result, Task
 from tltl_runtime.evaluation.spread import LostError
 
 
 class Process:
-    """A process of its own, an executor's only one: where it breaks, it is known what it was playing."""
+    """A process of its own, an executor's only one: where it breaks, it is known what it was playing.
 
-    def __init__(self, setup: Setup) -> None:
+    Who plays there is what ``make`` makes there, which can be pickled.
+    """
+
+    def __init__(self, make: Callable[[], Plays]) -> None:
         context = multiprocessing.get_context("spawn")
-        self._executor = ProcessPoolExecutor(1, context, initializer=_begin, initargs=(setup,))
+        self._executor = ProcessPoolExecutor(1, context, initializer=_begin, initargs=(make,))
 
     def play(self, task: Task) -> Future[Result]:
         """Begin an episode."""
@@ -37,17 +41,17 @@ class Process:
 
 _ENDED: Final = "its process ended; where it said nothing before, it was perhaps killed for want of memory"
 
-_setup: Setup
-_player: Player | None = None
+_make: Callable[[], Plays]
+_player: Plays | None = None
 """Of a process that plays."""
 
 
-def _begin(setup: Setup) -> None:
-    global _setup
+def _begin(make: Callable[[], Plays]) -> None:
+    global _make
     # Ctrl-C goes to the whole group of processes; whoever started this one decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    _setup = setup
+    _make = make
 
 
 def _end_with_parent() -> None:
@@ -61,7 +65,7 @@ def _end_with_parent() -> None:
 def _play(task: Task) -> Result:
     # What is raised in `_begin` would be lost, and here it is told.
     global _player
-    _player = _player or Player(_setup)
+    _player = _player or _make()
     return _player.play(task)
 
 

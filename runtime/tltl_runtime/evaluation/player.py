@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, Protocol
 
 import gymnasium
 
@@ -59,6 +59,16 @@ class Result:
     played: Played
     trajectory: Trajectory | None = None
     recording: bytes = b""
+
+
+class Plays(Protocol):
+    """Who plays the episodes of an evaluation, one after the other."""
+
+    def play(self, task: Task) -> Result:
+        """Play one episode."""
+
+    def close(self) -> None:
+        """Free the game."""
 
 
 class Player:

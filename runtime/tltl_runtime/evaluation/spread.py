@@ -61,5 +61,5 @@ def _lost(error: LostError, task: Task, seed: int) -> TltlError:
         f"a worker was lost while it played episode {task.index} of seed {seed}, {CHOICES[task.sampled]} "
         f"(seed {episode_seed(seed, task.index)} of the level): {error}"
     )
-    help_ = f"play that one alone: `--seed {seed} --first {task.index} --episodes 1 --workers 1`"
+    help_ = f"`tltlc evaluate` plays that one alone: `--seed {seed} --first {task.index} --episodes 1 --workers 1`"
     return TltlError([Diagnostic("TLT0850", title, help=help_)])

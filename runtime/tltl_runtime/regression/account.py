@@ -156,7 +156,7 @@ def _distance(episode: Episode, atom: int, rows: Sequence[int]) -> tuple[str | N
     """What an atom measures the distance to, and the least after those of the decisions that did not make it true; None
     where it measures none.
     """
-    target = target_of(episode.fspa.atoms[atom])
+    target = target_of(episode.fspa, atom)
     if target is None:
         return None, None
     column = [signal.name for signal in episode.fspa.signals].index(f"distance({target})")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from shlex import join
 from typing import Any, Final
@@ -12,7 +12,9 @@ from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.refusals import Refusals
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.suite import SHIPPED, Suite, baseline_path
+from tltl_runtime.regression.verdict import FIGURES
 from tltl_runtime.stealth.levels.made_for import shown
+from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
 from tltlc.record import record
@@ -22,13 +24,16 @@ FORMAT: Final = "tltl-baseline"
 VERSION: Final = 2
 MAX_BYTES: Final = 1 << 28
 
+_ROUNDING: Final = 1e-6
+"""By which a sum of rewards may exceed what it can be."""
+
 _REFUSALS: Final = Refusals(
     "a baseline", "TLT0900", "TLT0901", "TLT0902", again="record it again with `tltlc baseline`"
 )
 
 
 @record
-class Played:
+class Identity:
     """What was played: a policy on a level in a variant, judged by a spec, with the seed of the episodes.
 
     ``level`` and ``spec`` are names; the hashes are those of :mod:`tltl_runtime.policies.identity`, and ``policy`` is
@@ -52,7 +57,7 @@ class Played:
 class Reference:
     """What was played, and the accounts of its episodes, from number 0 on."""
 
-    played: Played
+    played: Identity
     accounts: tuple[Account, ...]
 
 
@@ -84,22 +89,56 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
     except (RecordJsonError, RecursionError) as error:
         raise _REFUSALS.broken(name, str(error)) from None
     for row, each in enumerate(found):
+        where = f"baseline.references[{row}].accounts"
         # Episodes are compared by their place, and a mean of none is no figure.
         if not each.accounts or any(account.index != place for place, account in enumerate(each.accounts)):
-            what = f"baseline.references[{row}].accounts: the episodes must be there from number 0 on, without a gap"
-            raise _REFUSALS.broken(name, what)
+            raise _REFUSALS.broken(name, f"{where}: the episodes must be there from number 0 on, without a gap")
+        for account in each.accounts:
+            for flaw in _flaws(account):
+                raise _REFUSALS.broken(name, f"{where}[{account.index}]: {flaw}")
     return found
+
+
+def _flaws(account: Account) -> Iterator[str]:
+    """What no episode can have come to."""
+    for key in ("arrivals", "way"):
+        if not getattr(account, key):
+            yield f"`{key}` is empty, and begins where the player does"
+    if account.steps < 1:
+        yield f"`steps` is {account.steps}, and an episode has one at least"
+    if min(_states(account)) < 0:
+        yield f"it has the state {min(_states(account))}, and states are counted from 0"
+    for key, (least, most) in FIGURES.items():
+        value = getattr(account, key)
+        if not least - _ROUNDING <= value <= most + _ROUNDING:
+            yield f"`{key}` is {value:g}, and a number from {least:g} to {most:g} was expected"
+
+
+def _states(account: Account) -> Iterator[int]:
+    """The states of the automaton that an account speaks of."""
+    yield account.unmet
+    yield from (arrival.state for arrival in account.arrivals)
+    yield from (state for *_, state, _ in account.way)
 
 
 def baseline_of(suite: Suite) -> tuple[Reference, ...]:
     """The baseline of a suite; TLT0903 where there is none, and errors as of :func:`read_baseline`."""
-    if not suite.baseline.exists():
+    if _is_missing(suite.baseline):
         title = f"the suite `{shown(suite.path)}` has no baseline: there is no `{shown(suite.baseline)}`"
         raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
     return read_baseline(suite.baseline)
 
 
-def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Suite) -> Reference:
+def _is_missing(path: Path) -> bool:
+    """Whether there is no such file; of one that cannot be looked at, reading tells why."""
+    try:
+        path.stat()
+    except (OSError, ValueError) as error:
+        return isinstance(error, (FileNotFoundError, NotADirectoryError))
+    return False
+
+
+def reference_of(references: tuple[Reference, ...], wanted: Identity, suite: Suite) -> Reference:
     """What the baseline has of the same level, variant, spec, policy and seed; the level may be another one by now.
 
     Raises:
@@ -118,6 +157,16 @@ def reference_of(references: tuple[Reference, ...], wanted: Played, suite: Suite
         other = [what for name, what in names.items() if not _same(there[0].played, wanted, (name,))]
         title += f" with this {other[0]}"
     raise TltlError([Diagnostic("TLT0903", title, help=f"record it: {baseline_command(suite)}")])
+
+
+def check_states(reference: Reference, fspa: Fspa, suite: Suite) -> None:
+    """Raise TltlError, TLT0902, where an episode was in a state that its spec's automaton does not have."""
+    count, played = len(fspa.states), reference.played
+    for account in reference.accounts:
+        if (state := max(_states(account))) >= count:
+            where = f"episode {account.index} of `{played.level}:{played.variant}`"
+            why = f"{where} has the state {state}, and those of `{played.spec}` are 0 to {count - 1}"
+            raise _REFUSALS.broken(str(suite.baseline), why)
 
 
 def written_to(suite: Path) -> Path:
@@ -140,5 +189,5 @@ class _Document:
     references: tuple[Reference, ...]
 
 
-def _same(one: Played, other: Played, names: tuple[str, ...]) -> bool:
+def _same(one: Identity, other: Identity, names: tuple[str, ...]) -> bool:
     return all(getattr(one, name) == getattr(other, name) for name in names)

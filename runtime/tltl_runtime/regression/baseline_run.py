@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Final
@@ -14,6 +15,7 @@ from tltl_runtime.regression.play import Ready, Told, episodes, ready
 from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict import Verdict, judge
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.files import exists, is_file
 from tltlc.record import record, replace
 from tltlc.writing import remove_file, write_file
 
@@ -45,13 +47,13 @@ def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference,
 def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generator[Compared]:
     """Record the baseline of a suite, as :func:`record_baseline` does, and write it to ``path`` when all is over.
 
-    Until then what is over is kept beside it, so that a recording that was stopped goes on.
+    Until then what is over is kept at :func:`kept_at`, so that a recording that was stopped goes on.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; what :func:`record_baseline` raises.
     """
-    groups, partial = _groups(suite), path.with_name(f"{path.name}.partial")
-    kept, found = read_kept(tuple[Reference, ...], partial, inputs_hash([])) or (), list[Reference]()
+    groups, partial, found = _groups(suite), kept_at(path), list[Reference]()
+    kept = (partial and read_kept(tuple[Reference, ...], partial, inputs_hash([]))) or ()
     # The place may refuse: better to know before minutes of play.
     _keep(partial, kept)
     for each in _recorded(groups, pool, told, kept):
@@ -59,7 +61,17 @@ def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generato
         _keep(partial, (*found, *(other for other in kept if other not in found)))
         yield each
     write_baseline(path, tuple(found))
-    remove_file(partial, _ADVICE)
+    if partial:
+        remove_file(partial, _ADVICE)
+
+
+def kept_at(path: Path) -> Path | None:
+    """Where a recording keeps what is over: beside the file that ``path`` leads to, None where that is no file but a
+    device or a pipe.
+    """
+    if exists(path) and not is_file(path):
+        return None
+    return Path(f"{os.path.realpath(path)}.partial")
 
 
 def verdict_as_it_is(suite: Suite, case: Case, reference: Reference) -> Verdict:
@@ -112,5 +124,6 @@ def _played(one: Ready, pool: Pool, told: Told) -> Reference:
     return Reference(one.played, tuple(accounts))
 
 
-def _keep(path: Path, references: tuple[Reference, ...]) -> None:
-    write_file(path, kept_text(inputs_hash([]), references), _ADVICE)
+def _keep(path: Path | None, references: tuple[Reference, ...]) -> None:
+    if path:
+        write_file(path, kept_text(inputs_hash([]), references), _ADVICE)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import Played
+from tltl_runtime.regression.baseline import Identity
 from tltl_runtime.regression.explain import Finding, ends, findings
 from tltl_runtime.regression.play import Result
 from tltl_runtime.regression.reasons import edits, obstacles, reasons
@@ -40,8 +40,8 @@ class CaseReport:
     changes: tuple[Change, ...] = ()
     explanation: tuple[Finding, ...] = ()
     edits: tuple[str, ...] = ()
-    played: Played | None = None
-    reference: Played | None = None
+    played: Identity | None = None
+    reference: Identity | None = None
     accounts: tuple[Account, ...] = ()
     recordings: tuple[tuple[int, str], ...] = ()
     """Of which episodes there are recordings, and the names of their files."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from os.path import normpath
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,7 +19,7 @@ from tltl_runtime.stealth.levels.file import level_path
 from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
 from tltl_runtime.stealth.levels.place import overlays_of
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.files import MAX_ARTEFACT_BYTES, is_file, read_source
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Import
 from tltlc.project import FILE_NAME, project_for
@@ -60,7 +61,7 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
 
 
 def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
-    """The files that a case depends on, as absolute paths.
+    """The files that a case depends on, as absolute paths: as they are named, and where links lead.
 
     Those that would take the place of another one count, too, so that it matters when they are made or deleted.
     """
@@ -68,7 +69,7 @@ def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
     found += _level_files(level_path(case.level), case.variant)
     if case.spec is not None:
         found += _spec_files(Path(split(case.spec)[0]))
-    return tuple(dict.fromkeys(path.resolve() for path in found))
+    return tuple(dict.fromkeys(each for path in found for each in (Path(normpath(path.absolute())), path.resolve())))
 
 
 def _is_meant(name: str, paths: Iterable[Path]) -> bool:
@@ -123,7 +124,7 @@ def _shared(names: Iterable[str], folder: str, places: Sequence[Path], *, sure: 
     """The files of assets or overlays; of names that may be something else, the files that there are."""
     for name in names:
         paths = [place / folder / f"{name}.toml" for place in places]
-        if sure or any(map(_is_file, paths)):
+        if sure or any(map(is_file, paths)):
             yield from _first(paths)
 
 
@@ -164,15 +165,8 @@ def _first(paths: Iterable[Path]) -> Iterator[Path]:
     """The paths up to the first one that is a file: those before it would take its place."""
     for path in paths:
         yield path
-        if _is_file(path):
+        if is_file(path):
             return
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False
 
 
 def _text(path: Path) -> SourceFile | None:

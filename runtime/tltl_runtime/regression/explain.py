@@ -9,11 +9,11 @@ from typing import Final
 
 from tltl_runtime.regression.account import Account, Nearest
 from tltl_runtime.regression.places import in_the_way, place_name
-from tltl_runtime.regression.stages import REACHES, chain, deed, together
+from tltl_runtime.regression.stages import REACHES, deed, deed_of_all, together
 from tltl_runtime.regression.way import places_along
 from tltl_runtime.stealth.episodes.cause import Kind
 from tltl_runtime.stealth.level import Level, Region
-from tltl_runtime.texts import number
+from tltl_runtime.texts import number, percent
 from tltlc.automaton.fspa import Fspa
 from tltlc.record import record
 
@@ -58,20 +58,29 @@ def findings(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[
 def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
     """Up to which stage the episodes come; one sentence for all that is as before, one for the first that is not."""
     done: list[str] = []
-    for state in chain(fspa)[:-1]:
-        distance = fspa.states[state].distance or 0
+    for distance, states in _visited(fspa, (*now, *before)):
         came, used = (_passed(fspa, accounts, distance) for accounts in (now, before))
+        what = deed_of_all(fspa, states, distance)
         if abs(len(came) / len(now) - len(used) / len(before)) < _ALIKE:
             if len(came) / len(now) > _USUAL:
-                done.append(deed(fspa, state))
+                done.append(what)
             continue
         first = f"{together(done)} as before, then " if done else ""
         failed = tuple(each.index for each in now if each not in came)
-        text = f"{first}{deed(fspa, state)} in {_of(len(came), now)}; before: in {_of(len(used), before)}"
+        text = f"{first}{what} in {_of(len(came), now)}; before: in {_of(len(used), before)}"
         yield Finding(text, failed)
         return
     if done:
         yield Finding(f"{together(done)} as before", ())
+
+
+def _visited(fspa: Fspa, accounts: Sequence[Account]) -> list[tuple[int, set[int]]]:
+    """The states that any of the episodes came to and that are not accepting, by their distance, the greatest first."""
+    found: dict[int, set[int]] = {}
+    for state in {arrival.state for each in accounts for arrival in each.arrivals}:
+        if distance := fspa.states[state].distance:
+            found.setdefault(distance, set()).add(state)
+    return sorted(found.items(), reverse=True)
 
 
 def _passed(fspa: Fspa, accounts: Sequence[Account], distance: int) -> list[Account]:
@@ -159,23 +168,24 @@ def _approach(undone: str, accounts: Sequence[Account]) -> str:
 
 
 def _limit(near: Sequence[Nearest]) -> str:
-    """What was the limit in most of the episodes, and how near they came at best."""
-    ((atom, wanted), _), *_ = Counter((each.atom, each.wanted) for each in near).most_common(1)
+    """What was the limit most often, and how near the episodes came then at best."""
+    (((atom, wanted), count),) = Counter((each.atom, each.wanted) for each in near).most_common(1)
     limited = [each for each in near if (each.atom, each.wanted) == (atom, wanted)]
+    often = "" if 2 * count > len(near) else "most often "
     if not wanted:
-        return f"the limit is that `{atom}` holds"
+        return f"{often}the limit is that `{atom}` holds"
     if distances := [each.distance for each in limited if each.distance is not None]:
-        return f"closest approach to `{limited[0].target}`: {min(distances):.1f} m (`{atom}` is the limit)"
+        return f"closest approach to `{limited[0].target}`: {min(distances):.1f} m ({often}`{atom}` is the limit)"
     best = max(each.robustness for each in limited)
     # Of what is either true or false there is no better or worse.
-    return f"the limit is `{atom}`" + (f", {number(best, 2)} at best" if best > -1.0 else "")
+    return f"{often}the limit is `{atom}`" + (f", {number(best, 2)} at best" if best > -1.0 else "")
 
 
 def _remained(fspa: Fspa, accounts: Sequence[Account]) -> str:
     """In which state of the automaton most of the episodes failed, and what remained to be done there."""
     ((state, count),) = Counter(each.unmet for each in accounts).most_common(1)
-    mostly = "mostly " if count < len(accounts) else ""
-    return f"{mostly}in state {state}, where this remained: {fspa.states[state].label.english}"
+    often = "" if count == len(accounts) else "mostly " if 2 * count > len(accounts) else "most often "
+    return f"{often}in state {state}, where this remained: {fspa.states[state].label.english}"
 
 
 def _lengths(now: Sequence[Account], before: Sequence[Account]) -> Iterator[Finding]:
@@ -198,7 +208,7 @@ def _regions(level: Level, now: Sequence[Account], before: Sequence[Account]) ->
         share, used = len(there) / len(new), len(used_to) / len(old)
         if abs(share - used) >= _OTHERWISE:
             name = region.name.replace("_", " ")
-            text = f"{share:.0%} of the successful episodes pass through the {name}; before: {used:.0%}"
+            text = f"{percent(share)} of the successful episodes pass through the {name}; before: {percent(used)}"
             yield Finding(text, tuple(each.index for each in there))
 
 

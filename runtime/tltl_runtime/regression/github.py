@@ -11,6 +11,7 @@ from tltl_runtime.regression.dependencies import dependencies
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.levels.file import level_path
 from tltlc.diagnostics.formats.github import workflow_command
+from tltlc.files import is_file
 
 _COMMANDS: Final = {"fail": "error", "review": "warning"}
 
@@ -40,7 +41,7 @@ def _blamed(suite: Suite, case: Case, report: CaseReport) -> Path:
     for name in changed:
         parts = Path(name).parts
         for path in there:
-            if path.parts[-len(parts) :] == parts and path.is_file():
+            if path.parts[-len(parts) :] == parts and is_file(path):
                 return path
     return suite.path
 

@@ -13,7 +13,7 @@ from tltl_runtime.evaluation.player import Setup, Task
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.account import Account, account
-from tltl_runtime.regression.baseline import Played, Reference
+from tltl_runtime.regression.baseline import Identity, Reference
 from tltl_runtime.regression.suite import Case
 from tltl_runtime.regression.verdict import Judgement, judge
 from tltl_runtime.stealth.episodes.file import from_bytes as episode_from_bytes
@@ -22,7 +22,7 @@ from tltl_runtime.stealth.levels.file import level_and_changes
 from tltl_runtime.task import read_spec
 from tltl_runtime.training.versions import versions
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import read_bytes
+from tltlc.files import is_dir, read_bytes
 from tltlc.record import record
 from tltlc.spec_file import split
 
@@ -42,7 +42,7 @@ class Ready:
 
     case: Case
     setup: Setup
-    played: Played
+    played: Identity
     level: Level
     changes: tuple[str, ...] = ()
     outdated: str | None = None
@@ -74,7 +74,7 @@ def ready(case: Case, seed: int, variant: str | None = None) -> Ready:
     setup = set_up(policy, case.level, variant or case.variant, case.spec, seed, "all")
     level, changes = level_and_changes(setup.level, setup.variant)
     sha256 = hashlib.sha256(data).hexdigest()
-    played = Played(
+    played = Identity(
         level=level.name,
         variant=level.variant,
         spec=setup.fspa.name,
@@ -97,7 +97,10 @@ def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
     """
     tasks = [Task(index) for index in range(made.case.episodes)]
     with closing(results(made.setup, tasks, pool)) as playing:
-        for each in playing:
+        for count, each in enumerate(playing):
+            # Before an error come all results that are there: a gap among them would leave out the slow episodes.
+            if each.played.index != count:
+                continue
             episode = episode_from_bytes(each.recording, _PLAYER)
             # Each worker has loaded the level for itself.
             if episode.level.files != made.level.files:
@@ -121,7 +124,7 @@ def judged(made: Ready, reference: Reference, error: float, pool: Pool, told: Ca
 
 def policy_file(path: Path) -> Path:
     """The policy of a case: a file, or that in the folder of a training."""
-    if not path.is_dir():
+    if not is_dir(path):
         return path
     from tltl_runtime.training.run import POLICY
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from statistics import fmean
 
 from tltl_runtime.regression.account import Account
-from tltl_runtime.regression.baseline import Played
+from tltl_runtime.regression.baseline import Identity
 from tltl_runtime.regression.suite import Thresholds
 from tltl_runtime.regression.verdict import Judgement, beyond
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.supply.feasible import reach_warnings
-from tltl_runtime.texts import between
+from tltl_runtime.texts import between, percent_exactly
 from tltlc.automaton.fspa import Fspa
 
 
@@ -20,7 +20,7 @@ def reasons(
 ) -> Iterator[str]:
     """What the statistics say."""
     passed, used = (sum(each.success for each in accounts) for accounts in (now, before))
-    good, bad = f"{thresholds.pass_rate:.0%}", f"{thresholds.fail_rate:.0%}"
+    good, bad = percent_exactly(thresholds.pass_rate), percent_exactly(thresholds.fail_rate)
     met = f"met in {passed} of {len(now)} episodes, before in {used} of {len(before)}"
     if judgement.verdict == "fail":
         yield f"{met}: certainly in less than {bad}"
@@ -57,7 +57,7 @@ def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
             yield f"{warning.title}: {warning.help}"
 
 
-def edits(now: Played, before: Played, changes: Sequence[str]) -> Iterator[str]:
+def edits(now: Identity, before: Identity, changes: Sequence[str]) -> Iterator[str]:
     """What is otherwise than in the baseline: files, what overlays say that they change (``changes``), and versions."""
     old, new = dict(before.files), dict(now.files)
     differ = [name for name in dict.fromkeys((*new, *old)) if old.get(name) != new.get(name)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from contextlib import closing
+from itertools import count
 from pathlib import Path
 from typing import Final
 
@@ -27,6 +28,7 @@ from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, RUN, Ru
 from tltl_runtime.training.settings import read_settings
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import reason
 from tltlc.record import replace
 from tltlc.writing import remove_file, write_files
 
@@ -64,13 +66,18 @@ def retraining(suite: Suite, ready: Ready, folder: Path, minutes: float, pool: P
 
 
 def is_kept(run: Run) -> bool:
-    """Whether the folder has this very training, be it over or not: the same level, spec, policy, seed and settings."""
+    """Whether the folder has this very training, be it over or not: the same level, spec, policy, seed and settings.
+
+    Raises:
+        TltlError: what is wrong with the level, which nothing in the folder is to be blamed for.
+    """
+    wanted = identity(run)
     try:
         # Its level may be named otherwise there; what was in it then counts.
         there = replace(read_run(run.folder), level=run.level, variant=run.variant)
-        if {**identity(there), "level": read_level_hash(run.folder)} != identity(run):
+        if {**identity(there), "level": read_level_hash(run.folder)} != wanted:
             return False
-        checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
+        checkpoint = read_checkpoint(run.folder / CHECKPOINT, wanted)
     except TltlError:
         # It is damaged, or of another version.
         return False
@@ -79,14 +86,10 @@ def is_kept(run: Run) -> bool:
     return not over or (checkpoint is not None and (run.folder / POLICY).exists())
 
 
-def forget_trainings(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
-    """Remove the trainings for some cases below the ``folder`` of a run; errors as of :func:`forget_training`, and
-    TLT0942 before anything is removed.
-    """
-    places = [_place(suite, case, folder) for case in cases]
-    for place in places:
-        if place.is_dir():
-            forget_training(place)
+def check_places(suite: Suite, cases: Sequence[Case], folder: Path) -> None:
+    """Raise TltlError, TLT0942, where a policy lies in the place of a training for one of the cases."""
+    for case in cases:
+        _place(suite, case, folder)
 
 
 def _place(suite: Suite, case: Case, folder: Path) -> Path:
@@ -101,16 +104,35 @@ def _place(suite: Suite, case: Case, folder: Path) -> Path:
     return place
 
 
-def forget_training(folder: Path) -> None:
-    """Remove what a training has left in a folder, and nothing else.
+def make_room(suite: Suite, folder: Path) -> Path | None:
+    """Make room for another training in a folder: where the one that is there was moved to, None where it is removed.
+
+    One that is over is moved as a whole, beside itself; of another nothing is left, but for files that are not its own.
 
     Raises:
-        TltlError: TLT0005, a file cannot be removed; TLT0865, another process trains there.
+        TltlError: TLT0005, a file cannot be removed, or the folder not be moved; TLT0865, another process trains there.
     """
-    names = (RUN, CHECKPOINT, POLICY, RECORD, CURVE, METRICS, EPISODE, _RESULT)
+    names = (RUN, CHECKPOINT, POLICY, CURVE, METRICS, EPISODE, _RESULT)
     with held(folder):
-        for path in (*(folder / name for name in names), *folder.glob("events.out.tfevents.*")):
-            remove_file(path, WRITABLE)
+        if not (folder / RECORD).exists():
+            for path in (*(folder / name for name in names), *folder.glob("events.out.tfevents.*")):
+                remove_file(path, WRITABLE)
+            return None
+    # Not before the lock's file is closed: Windows would refuse.
+    aside = _free_beside(suite, folder)
+    try:
+        folder.rename(aside)
+    except OSError as error:
+        title = f"cannot move `{folder}` to `{aside}`: {reason(error)}"
+        raise TltlError([Diagnostic("TLT0005", title, help=WRITABLE)]) from None
+    return aside
+
+
+def _free_beside(suite: Suite, folder: Path) -> Path:
+    """The first of ``FOLDER-2``, ``FOLDER-3`` and so on that is not there, and where no training of the suite goes."""
+    taken = {case_folder(suite, case.name, folder.parent) for case in suite.cases}
+    beside = (folder.with_name(f"{folder.name}-{number}") for number in count(2))
+    return next(path for path in beside if path not in taken and not path.exists())
 
 
 def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[int, Account], None]) -> Retrained:

@@ -6,7 +6,7 @@ from typing import Literal
 
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.suite import Thresholds
-from tltl_runtime.texts import between, duration, number
+from tltl_runtime.texts import between, duration, number, percent_exactly
 from tltlc.record import record
 
 Outcome = Literal["learned", "feasible", "no_way"]
@@ -85,7 +85,7 @@ def sentence(
         said = ["feasible, but not learned"]
         if trained.shortest is not None:
             said.append(f"there are ways, the shortest that is known takes {trained.shortest:,} steps")
-        said.append(f"after {took} {now}, and {thresholds.pass_rate:.0%} are asked for")
+        said.append(f"after {took} {now}, and {percent_exactly(thresholds.pass_rate)} are asked for")
     else:
         broken = "" if trained.complete else ", which the limit broke off,"
         said = [f"no way found: neither a search of {trained.searched:,} steps{broken} nor {took} met the spec once"]

@@ -10,7 +10,7 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.held_folder import held
 from tltl_runtime.record_json import to_json
-from tltl_runtime.regression.baseline import Reference, baseline_command, reference_of
+from tltl_runtime.regression.baseline import Reference, baseline_command, check_states, reference_of
 from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken, report_on_edited
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, Result, Told, judged, ready
@@ -31,7 +31,7 @@ _RECORDINGS: Final = 3
 """Of how many episodes of each finding there are recordings."""
 
 _EDITED: Final = "TLT0905"
-_NOT_THE_CASE: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
+NOT_THE_CASE: Final = frozenset({"TLT0730", "TLT0850", "TLT0852"})
 """Codes of what is wrong with the workers."""
 
 WRITABLE: Final = "see that there is room, and that you may write there, or name another folder with --out"
@@ -61,7 +61,7 @@ class Done:
 
 
 def check(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:
-    """Raise TltlError, TLT0903, where the baseline lacks a case that can be played."""
+    """Raise TltlError, TLT0903, where the baseline lacks a case that can be played, and TLT0902, where it is broken."""
     for case in cases:
         _prepared(suite, case, references)
 
@@ -91,7 +91,8 @@ def regress(
 
     Raises:
         TltlError: TLT0903 where the baseline lacks a case, or a policy or its spec has become another one meanwhile;
-            TLT0730, TLT0850 and TLT0852 of the workers; TLT0005 for the folder.
+            TLT0902 where its episodes were in states that the spec does not have; TLT0730, TLT0850 and TLT0852 of the
+            workers; TLT0005 for the folder.
     """
     if fresh:
         _forget(suite, cases, folder)
@@ -124,6 +125,7 @@ def _prepared(suite: Suite, case: Case, references: tuple[Reference, ...]) -> tu
         return error
     wanted = replace(one.played, variant=case.reference)
     reference = reference_of(references, wanted, suite)
+    check_states(reference, one.setup.fspa, suite)
     if len(reference.accounts) < case.episodes:
         title = (
             f"the baseline of `{case.name}` has {len(reference.accounts)} episodes, and {case.episodes} are asked for"
@@ -146,7 +148,7 @@ def _done(suite: Suite, one: Ready, reference: Reference, folder: Path, pool: Po
         result = judged(one, reference, error, pool, lambda count, last: told(case, count, last))
     except TltlError as fault:
         codes = {each.code for each in fault.diagnostics}
-        if codes & _NOT_THE_CASE:
+        if codes & NOT_THE_CASE:
             raise
         report = report_on_edited if _EDITED in codes else report_on_broken
         return Done(report(case, fault), kept=False)

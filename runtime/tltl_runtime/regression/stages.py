@@ -2,23 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Final
 
 from tltl_runtime.stealth.expert.goals import distant_entity
 from tltlc.automaton.fspa import Fspa, Implicant
-from tltlc.expression import Signal, nodes
+from tltlc.expression import Expression, Signal, nodes
+from tltlc.expression_eval import evaluate
 from tltlc.monitor.tables import tables
-from tltlc.resolve.spec import Atom
 
 REACHES: Final = "reaches "
 """How a deed begins that is to be somewhere."""
 
+MEETS: Final = "meets the spec"
 
-def target_of(atom: Atom) -> str | None:
-    """The entity to which an atom measures the distance, None where it speaks of anything else, too."""
-    names = {node.name for node in nodes(atom.expression) if isinstance(node, Signal)}
-    return distant_entity(next(iter(names))) if len(names) == 1 else None
+_FAR: Final = 1e4
+"""Metres that no level has."""
+
+
+def target_of(fspa: Fspa, atom: int) -> str | None:
+    """The entity that one must come near to, and to nothing else, for an atom to hold; None where that is not so."""
+    expression = fspa.atoms[atom].expression
+    names = {node.name for node in nodes(expression) if isinstance(node, Signal)}
+    entity = distant_entity(next(iter(names))) if len(names) == 1 else None
+    (name, *_) = (*names, "")
+    return (
+        entity if entity and _holds(fspa, expression, name, 0.0) and not _holds(fspa, expression, name, _FAR) else None
+    )
+
+
+def _holds(fspa: Fspa, expression: Expression, distance: str, metres: float) -> bool:
+    try:
+        return evaluate(expression, {distance: metres}, {param.name: param.value for param in fspa.params}) > 0.0
+    except (ArithmeticError, ValueError):
+        return False
 
 
 def deed(fspa: Fspa, state: int) -> str:
@@ -29,29 +46,31 @@ def deed(fspa: Fspa, state: int) -> str:
     distinct = list(dict.fromkeys(found))
     if distinct and all(each.startswith(REACHES) for each in distinct):
         return REACHES + " or ".join(each.removeprefix(REACHES) for each in distinct)
-    return " or ".join(distinct) or "meets the spec"
+    return " or ".join(distinct) or MEETS
 
 
 def _deed(fspa: Fspa, prime: Implicant) -> str:
     """What makes a prime implicant true: where one is to go somewhere, that alone; what is to hold before what is not
     to; of what is kept, nothing.
     """
-    if targets := [f"`{target}`" for atom, holds in prime if holds and (target := target_of(fspa.atoms[atom]))]:
+    asked = [(atom, holds) for atom, holds in prime if not _is_kept(fspa, atom, holds)]
+    if targets := [f"`{target}`" for atom, holds in asked if holds and (target := target_of(fspa, atom))]:
         return f"{REACHES}{' and '.join(targets)}"
     for truth in (True, False):
-        wanted = [atom for atom, holds in prime if holds == truth and not _is_kept(fspa, atom, truth)]
-        if wanted:
+        if wanted := [atom for atom, holds in asked if holds == truth]:
             return f"makes {' and '.join(f'`{fspa.atoms[atom].name}`' for atom in wanted)} {str(truth).lower()}"
     return ""
 
 
-def chain(fspa: Fspa) -> tuple[int, ...]:
-    """The states from the first one to an accepting one, each of smaller distance than the one before."""
-    found = [0]
-    while fspa.states[found[-1]].distance:
-        nearer = tables(fspa).improving[found[-1]]
-        found.append(min(nearer, key=lambda edge: fspa.states[edge.target].distance or 0).target)
-    return tuple(found)
+def deed_of_all(fspa: Fspa, states: Collection[int], distance: int) -> str:
+    """What leads from these states, all of one distance to acceptance, nearer to it; where that is not the same in all
+    of them, how near.
+    """
+    deeds = {deed(fspa, state) for state in states}
+    if len(deeds) == 1:
+        return deeds.pop()
+    left = f"{distance - 1} transition{'s' * (distance > 2)}"
+    return f"comes within {left} of acceptance" if distance > 1 else MEETS
 
 
 def _is_kept(fspa: Fspa, atom: int, truth: bool) -> bool:

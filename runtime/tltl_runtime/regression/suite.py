@@ -14,7 +14,7 @@ from tltl_runtime.stealth.levels.place import level_place, overlays_of, with_ove
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.files import read_source
+from tltlc.files import exists, is_file, read_source
 from tltlc.record import record
 from tltlc.source import Span
 from tltlc.spec_file import split
@@ -167,7 +167,7 @@ def _level(table: Table, folder: Path) -> tuple[str, str]:
     if not level:
         return "", ""
     if level.endswith(".toml"):
-        if not (folder / level).is_file():
+        if not is_file(folder / level):
             table.log.append(_missing("level", level, table.place("level")))
         return str(folder / level), Path(normpath(level)).as_posix()
     try:
@@ -175,7 +175,7 @@ def _level(table: Table, folder: Path) -> tuple[str, str]:
     except TltlError as error:
         (found,) = error.diagnostics
         name, variant = level_place(level)
-        is_there = name in level_names() or (folder / name).is_file()
+        is_there = name in level_names() or is_file(folder / name)
         help_ = _apart(name, variant) if variant and is_there else found.help
         table.log.append(Diagnostic(found.code, found.title, (table.place("level"),), help_))
     return level, ""
@@ -196,7 +196,7 @@ def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
     found = []
     for name in names:
         path = folder / name
-        if name.endswith(".toml") and not path.is_file():
+        if name.endswith(".toml") and not is_file(path):
             table.log.append(_missing("overlay", name, table.place("overlay")))
         found.append(str(path) if name.endswith(".toml") else name)
     return tuple(found)
@@ -207,7 +207,7 @@ def _spec(table: Table, folder: Path) -> str | None:
     if not text:
         return None
     file, name = split(text)
-    if not (folder / file).is_file():
+    if not is_file(folder / file):
         table.log.append(_missing("spec", file, table.place("spec")))
     return f"{folder / file}:{name}" if name else str(folder / file)
 
@@ -223,7 +223,7 @@ def _policy(table: Table, folder: Path, level: str) -> Path | None:
             table.log.append(Diagnostic("TLT0853", title, (label,), help_))
         return found
     path = folder / named
-    if not path.exists():
+    if not exists(path):
         table.log.append(_missing("policy", named, table.place("policy"), tuple(shipped_policies())))
     return path
 

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Generator, Iterator, Sequence
+from functools import partial
 from hashlib import sha256
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Final
 
-from tltl_runtime.evaluation.evaluate import Pool, evaluate
-from tltl_runtime.evaluation.play import episode_seed
+from tltl_runtime.evaluation.evaluate import Pool, evaluate, results_here
+from tltl_runtime.evaluation.play import Played, episode_seed
+from tltl_runtime.evaluation.player import Result, Task
 from tltl_runtime.evaluation.statistics import spread_of
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.paper_table import CellFigures, Model
-from tltl_runtime.stealth.env import spec_of
+from tltl_runtime.stealth.env import make_env, spec_of
 from tltl_runtime.stealth.episodes.outcome import outcome
+from tltl_runtime.stealth.expert.expert import Expert, play_episode
 from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
 from tltl_runtime.training.versions import versions
@@ -80,32 +82,45 @@ def _by_policy(policy: Path, level: str, variant: str, pool: Pool) -> Iterator[W
         yield Went(each.success, each.progress, each.reward)
 
 
-def _by_expert(level: str, variant: str, pool: Pool) -> Sequence[Went]:
-    """The careful expert's episodes; in this process, or in several."""
-    from tltl_runtime.vector.cores import cores
-
-    workers = cores() if pool == "ray" or pool == 0 else pool
-    # Those of the policies' episodes, so that all play the same.
-    seeds = tuple(episode_seed(SEED, index) for index in range(EPISODES))
-    parts = [(level, variant, seeds[first::workers]) for first in range(workers)]
-    if workers == 1:
-        return _expert_part(*parts[0])
-    with ProcessPoolExecutor(workers, get_context("spawn")) as executor:
-        played = list(executor.map(_expert_part, *zip(*parts, strict=True)))
-    return [played[index % workers][index // workers] for index in range(EPISODES)]
+def _by_expert(level: str, variant: str, pool: Pool) -> Generator[Went]:
+    """The careful expert's episodes, which are those of the policies, so that all play the same; on this machine."""
+    tasks = [Task(index) for index in range(EPISODES)]
+    workers = 0 if pool == "ray" else pool
+    for each in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED):
+        yield Went(each.played.success, each.played.progress, each.played.reward)
 
 
-def _expert_part(level: str, variant: str, seeds: tuple[int, ...]) -> list[Went]:
-    from tltl_runtime.stealth.env import make_env
-    from tltl_runtime.stealth.expert.expert import Expert, play_episode
-    from tltl_runtime.stealth.recording import RecordEpisode
+class _ExpertPlayer:
+    """Has the careful expert play, as :class:`~tltl_runtime.evaluation.player.Player` has a policy."""
 
-    env = RecordEpisode(make_env(level, variant))
-    expert = Expert(env)
-    found = []
-    for seed in seeds:
-        play_episode(env, expert, seed)
-        went = outcome(env.episode)
-        found.append(Went(went.success, went.progress, went.reward))
-    env.close()
-    return found
+    def __init__(self, level: str, variant: str) -> None:
+        self._env = RecordEpisode(make_env(level, variant))
+        self._expert = Expert(self._env)
+
+    def play(self, task: Task) -> Result:
+        """Play one episode."""
+        seed = episode_seed(SEED, task.index)
+        info = play_episode(self._env, self._expert, seed)
+        episode = self._env.episode
+        went, unmet = outcome(episode), info["unmet"]
+        return Result(
+            task,
+            Played(
+                index=task.index,
+                seed=seed,
+                success=went.success,
+                verdict=went.verdict,
+                end=went.end,
+                progress=went.progress,
+                reward=went.reward,
+                steps=went.steps,
+                seconds=went.seconds,
+                state=info["state"],
+                unmet=unmet,
+                label=episode.fspa.states[unmet].label.english,
+            ),
+        )
+
+    def close(self) -> None:
+        """Free the game."""
+        self._env.close()

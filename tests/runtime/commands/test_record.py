@@ -109,6 +109,7 @@ def test_a_damaged_recording_is_none_and_stays(tltlc: TltlcFunction, here: Path)
         (["nowhere"], 2, "error[TLT08"),
         (["cover_and_hide", "--episodes", "0"], 2, "--episodes"),
         (["cover_and_hide", "--by", "ghost"], 2, "--by"),
+        (["cover_and_hide", "--by", "keyboard", "-o", "nameless.tltl/mine"], 3, "TLT0005]: cannot write to `nameless"),
     ],
 )
 def test_what_cannot_be_recorded(
@@ -183,3 +184,24 @@ def test_of_a_person_too_nothing_is_kept_that_fails(tmp_path: Path, capsys: pyte
     assert said[0].startswith("seed 4: stopped after 5 steps") and said[0].endswith("not kept (0 of 2)")
     assert said[1] == "  stopped after 0.75 s, remaining: Keep alive throughout"
     assert said[2].endswith("(1 of 2)")
+
+
+def test_what_its_folder_refuses_finds_another_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spare, folder = tmp_path / "spare", tmp_path / "mine"
+    spare.mkdir()
+    monkeypatch.setattr("tltl_runtime.commands.recording_files.gettempdir", lambda: str(spare))
+    env = make_env("cover_and_hide", "v0", SOON)
+    made = Demonstrations(folder, env.unwrapped.level, env.task)  # type: ignore[attr-defined]
+    env.close()
+    taking = _Kept(made, 2)
+    folder.touch()
+    there = spare / "cover_and_hide-v0-4.episode.npz"
+    assert taking.save(played(4)) == f"{there}, 0 of 2"
+    assert read_episode(there).success
+    said = capsys.readouterr()
+    assert said.err.startswith("TLT0005: cannot write ")
+    assert said.out.rstrip().endswith(f": {there} (0 of 2, until it is moved to {folder})")
+    folder.unlink()
+    assert taking.save(played(5)) == "cover_and_hide-v0-5.episode.npz, 1 of 2"

@@ -21,6 +21,7 @@ from tltl_runtime.commands.baseline import _advice
 from tltl_runtime.regression.baseline import read_baseline
 from tltl_runtime.regression.run import CASES, case_folder
 from tltl_runtime.regression.suite import Case, Thresholds, read_suite
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Run = Callable[..., Outcome]
 NAMES = ["room:v0", "room:v1", "hopeless"]
@@ -159,6 +160,32 @@ def test_a_run_that_is_stopped_in_its_first_case_reports_that_nothing_is_judged(
     assert (tests.get("tests"), tests.get("errors")) == ("3", "3")
 
 
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [(TltlError([Diagnostic("TLT0850", "a worker was lost")]), 1), (KeyboardInterrupt(), 130), (RuntimeError(), 70)],
+)
+def test_what_ended_a_run_is_told_where_the_page_cannot_be_written_either(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    error: BaseException,
+    status: int,
+) -> None:
+    def ended(*_: object, **__: object) -> None:
+        raise error
+
+    folder = Path("regression/game")
+    (folder / CASES / "hopeless" / "case.json").unlink()
+    (folder / "report.html").unlink()
+    (folder / "report.html").mkdir()
+    monkeypatch.setattr("tltl_runtime.regression.run.judged", ended)
+    found = tltlc("regress", "game.toml", *ONE)
+    assert found.status == status
+    assert "error[TLT0005]: cannot write `regression/game/report.html`" in found.err
+    first = {1: "error[TLT0850]: a worker was lost", 130: "stopped: 2 of 3 cases are judged", 70: "error: a bug"}
+    assert first[status] in found.err
+
+
 def test_a_suite_behind_changed_is_no_word_of_it(tltlc: Run, game: Path) -> None:  # noqa: F811
     refused = tltlc("regress", "--changed", "guard", "game.toml")
     assert refused.status == 2
@@ -204,6 +231,18 @@ def test_reports_go_into_pipes(tltlc: Run, game: Path) -> None:  # noqa: F811
         assert json.load(pipe)["left_out"] == NAMES
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files are Unicode here")
+def test_the_name_of_a_suite_may_be_no_utf_8(tltlc: Run, game: Path) -> None:  # noqa: F811
+    name = os.fsdecode(b"g\xff.toml")
+    Path("game.toml").rename(name)
+    words = ("--baseline", "game.baseline.json", "--out", "new", "--changed", "soon", *ONE)
+    found = tltlc("regress", name, "--json", "report.json", "--junit", "report.xml", *words)
+    assert (found.status, found.err.splitlines()[-1]) == (1, "wrote new/report.html: open it in a browser")
+    assert json.loads(Path("report.json").read_text(encoding="utf-8"))["suite"] == "g\ufffd.toml"
+    assert "<title>g\ufffd: regression report</title>" in Path("new/report.html").read_text(encoding="utf-8")
+    assert ET.parse("report.xml").getroot()[0].get("name") == "g\ufffd"
+
+
 def test_a_level_that_does_not_load_fails_with_the_reason(tltlc: Run, game: Path) -> None:  # noqa: F811
     text = Path("room.toml").read_text(encoding="utf-8")
     Path("room.toml").write_text(text.replace("[start]", "[strat]"), encoding="utf-8")
@@ -219,6 +258,9 @@ def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
     found = tltlc("regress", "game.toml", "--github", "--json", "-")
     assert (found.status, found.out) == (2, "")
     assert "--github and `--json -` both need standard output" in found.err
+    for minutes in ("nan", "inf", "0"):
+        found = tltlc("regress", "game.toml", "--retrain", "--minutes", minutes)
+        assert found.status == 2 and "invalid value for '--minutes'" in found.err
     Path("taken").touch()
     found = tltlc("regress", "game.toml", "--out", "taken/run", *ONE)
     assert (found.status, found.out) == (3, "")
@@ -236,6 +278,8 @@ def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
             "error[TLT0005]: cannot write `nowhere/report`: there is no such folder\n"
             f"  help: name another place with {option}\n"
         )
+        found = tltlc("regress", "game.toml", "--fresh", option, "a" * 300, *ONE)
+        assert (found.status, found.out) == (3, "") and "`: file name too long\n" in found.err
     Path("game.baseline.json").unlink()
     found = tltlc("regress", "game.toml", *ONE)
     assert (found.status, found.out) == (1, "")

@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -15,9 +16,15 @@ import pytest
 from tests.cli.conftest import tltlc  # noqa: F401
 from tests.runtime.commands.test_regress import ONE, Run
 from tests.runtime.evaluation.untrained import untrained
-from tests.runtime.regression.game import NEVER, with_baseline, write_game
+from tests.runtime.regression.game import NEVER, edit, with_baseline, write_game
+from tests.runtime.regression.made import several
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
+from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import write_policy
+from tltl_runtime.regression.retrained import Retrained, Trained
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.stealth.world.physics import WorldError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 RETRAIN = ("regress", "game.toml", "--retrain", "--minutes", "0.02", *ONE)
 FOLDER = "regression/game/retrained/hopeless"
@@ -65,6 +72,7 @@ def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa
     plain = tltlc("regress", "game.toml", "--json", "-", *ONE)
     assert [case["retrained"] for case in json.loads(plain.out)["cases"]] == [None] * 3
 
+    learned = Path(FOLDER, "policy.safetensors").read_bytes()
     write_policy("soon.safetensors", untrained(NEVER, "room.toml", seed=7))
     assert tltlc("baseline", "game.toml", *ONE).status == 0
     third = tltlc(*RETRAIN)
@@ -72,6 +80,8 @@ def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa
         "begins with its policy, anew, since what is kept is of another level, policy, spec, seed or settings"
         in third.err
     )
+    assert f"hopeless: the training that was in {FOLDER} is now in {FOLDER}-2" in third.err.splitlines()
+    assert Path(f"{FOLDER}-2", "policy.safetensors").read_bytes() == learned
 
 
 def test_where_all_pass_nothing_is_trained(tltlc: Run, game: Path) -> None:  # noqa: F811
@@ -79,6 +89,96 @@ def test_where_all_pass_nothing_is_trained(tltlc: Run, game: Path) -> None:  # n
     Path("game.toml").write_text(text.rpartition("[[case]]")[0], encoding="utf-8")
     found = tltlc(*RETRAIN)
     assert (found.status, Path("regression/game/retrained").exists()) == (0, False)
+    _training("room-v0")
+    assert tltlc(*RETRAIN, "--fresh").status == 0
+    assert Path("regression/game/retrained/room-v0/policy.safetensors").exists(), "it is not trained again"
+
+
+def _training(slug: str) -> None:
+    """The files of a training that is over, as far as they are looked for."""
+    folder = Path("regression/game/retrained", slug)
+    folder.mkdir(parents=True)
+    for name in ("run.json", "record.json", "policy.safetensors"):
+        (folder / name).touch()
+
+
+def _edited(*_: object) -> Retrained:
+    raise TltlError([Diagnostic("TLT0905", "`room.toml` changed while `edited` was played")])
+
+
+def _left(*_: object) -> Retrained:
+    raise WorldError(load_level("navigation"), 3, "player", "it left")
+
+
+def _told(*_: object) -> Retrained:
+    trained = Trained("minutes", 100, 1.0, 10, False, None)
+    return Retrained("no_way", "no way found", trained, figures_of(several(0, 25)), (0.0, 0.2), None, "policy", None)
+
+
+def _lost(*_: object) -> Retrained:
+    raise TltlError([Diagnostic("TLT0850", "a worker was lost")])
+
+
+def _three(monkeypatch: pytest.MonkeyPatch, *outcomes: Callable[..., Retrained]) -> None:
+    """Have a suite of three cases that nobody meets, whose trainings, which take no time, come to these."""
+    head, *_, hopeless = Path("game.toml").read_text(encoding="utf-8").split("[[case]]")
+    cases = [f"[[case]]{hopeless.replace('hopeless', name)}" for name in ("edited", "left", "told")]
+    Path("game.toml").write_text(head + "".join(cases), encoding="utf-8")
+    waiting = iter(outcomes)
+    monkeypatch.setattr("tltl_runtime.commands.retrain._train", lambda *_: None)
+    monkeypatch.setattr("tltl_runtime.commands.retrain.retrained", lambda *_: next(waiting)())
+
+
+def test_what_is_wrong_with_one_training_leaves_the_others(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _three(monkeypatch, _edited, _left, _told)
+    found = tltlc(*RETRAIN, "--json", "report.json")
+    assert found.status == 1
+    lines = found.err.splitlines()
+    first, second = (lines.index(f"{name}: nothing can be said of its training") for name in ("edited", "left"))
+    assert lines[first + 1] == "error[TLT0905]: `room.toml` changed while `edited` was played"
+    assert lines[second + 1] == "error[TLT0806]: level navigation v0, step 3, player: it left"
+    assert "told, trained anew: no way found" in found.out.splitlines()
+    said = json.loads(Path("report.json").read_text(encoding="utf-8"))
+    assert said["complete"] is False
+    assert [case["retrained"] and case["retrained"]["outcome"] for case in said["cases"]] == [None, None, "no_way"]
+
+
+def test_what_is_wrong_with_the_workers_ends_all(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _three(monkeypatch, _lost, _told)
+    found = tltlc(*RETRAIN)
+    assert "error[TLT0850]: a worker was lost" in found.err and "trained anew" not in found.out
+
+
+def test_fresh_trainings_leave_the_older_ones_beside_them(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _three(monkeypatch, _lost)
+    for slug in ("edited", "told"):
+        _training(slug)
+    found = tltlc(*RETRAIN, "--fresh")
+    folder = "regression/game/retrained"
+    for slug in ("edited", "told"):
+        assert f"{slug}: the training that was in {folder}/{slug} is now in {folder}/{slug}-2" in found.err.splitlines()
+        assert Path(folder, f"{slug}-2", "policy.safetensors").exists() and not Path(folder, slug).exists()
+
+
+def test_a_policy_where_its_training_goes_is_told_before_anything_is_played(tltlc: Run, game: Path) -> None:  # noqa: F811
+    Path(FOLDER).mkdir(parents=True)
+    Path("soon.safetensors").rename(Path(FOLDER, "policy.safetensors"))
+    edit("game.toml", '"soon.safetensors"', f'"{FOLDER}"')
+    found = tltlc(*RETRAIN)
+    assert (found.status, found.out) == (1, "")
+    assert found.err.startswith(f"error[TLT0942]: the policy of the case `hopeless` lies in `{FOLDER}`")
 
 
 @pytest.mark.parametrize(

@@ -73,6 +73,12 @@ def test_a_folder_is_one_runs(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> No
     assert cells(Path("mine")) == {}
 
 
+@pytest.mark.parametrize("minutes", ["nan", "inf", "-1"])
+def test_a_limit_is_a_number(tltlc: Run, minutes: str) -> None:  # noqa: F811
+    found = tltlc("table1", "--minutes", minutes, *ONE)
+    assert found.status == 2 and "invalid value for '--minutes'" in found.err
+
+
 def test_a_training_that_did_not_end_is_told(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
     models(monkeypatch, "imitation")
     began: list[list[str]] = []

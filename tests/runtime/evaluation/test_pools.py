@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import closing
+from functools import partial
 from importlib.util import find_spec
 from multiprocessing import active_children
 from typing import Any, get_args
@@ -18,7 +19,7 @@ import pytest
 
 from tests.runtime.evaluation.untrained import untrained
 from tltl_runtime.evaluation import ray_pool
-from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, set_up
+from tltl_runtime.evaluation.evaluate import Pool, evaluate, results, results_here, set_up
 from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import Played, episode_seed
 from tltl_runtime.evaluation.player import Player, Recorded, Result, Setup, Task
@@ -120,7 +121,7 @@ def test_a_lost_worker_is_reported_with_its_seed(policy: Policy, workers: Pool) 
     (diagnostic,) = found.value.diagnostics
     assert diagnostic.code == "TLT0850"
     assert f"episode 6 of seed 3, sampled (seed {episode_seed(3, 6)} of the level): " in diagnostic.title
-    assert diagnostic.help == "play that one alone: `--seed 3 --first 6 --episodes 1 --workers 1`"
+    assert diagnostic.help == "`tltlc evaluate` plays that one alone: `--seed 3 --first 6 --episodes 1 --workers 1`"
 
 
 @pytest.mark.parametrize("workers", [1, pytest.param("ray", marks=needs_ray)])
@@ -129,6 +130,22 @@ def test_what_the_game_raises_comes_as_it_is(policy: Policy, workers: Pool) -> N
     with pytest.raises(WorldError, match="level navigation v0, step 3, player: it left") as found:
         list(results(setup, [Task(0)], workers))
     assert found.value.body == "player"
+
+
+class Ends:
+    """Somebody else than a policy's player, who ends the process."""
+
+    def play(self, task: Task) -> Result:
+        killed()
+        raise AssertionError("it was killed")
+
+    def close(self) -> None:
+        pass
+
+
+def test_whoever_plays_a_lost_worker_is_reported() -> None:
+    with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode 0 of seed 3"):
+        list(results_here(Ends, [Task(0)], 2, 3))
 
 
 @pytest.mark.parametrize("workers", [1, *POOLS])
@@ -171,7 +188,7 @@ def test_what_was_played_when_a_worker_is_lost_is_told_first() -> None:
 
 
 def test_a_process_that_ended_between_two_episodes_is_lost_all_the_same(policy: Policy) -> None:
-    worker = Process(set_up(policy, None, None, None, 3))
+    worker = Process(partial(Player, set_up(policy, None, None, None, 3)))
     try:
         assert worker.play(Task(0)).result().task == Task(0)
         for child in active_children():

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tltl_runtime.regression.account import Account, Arrival, Nearest
-from tltl_runtime.regression.baseline import Played, Reference
+from tltl_runtime.regression.baseline import Identity, Reference
 from tltl_runtime.regression.suite import Case, Suite, Thresholds, baseline_path
 from tltl_runtime.regression.way import Way
 from tltl_runtime.stealth.episodes.cause import Kind
@@ -79,7 +79,7 @@ def several(passed: int, failed: int = 0) -> list[Account]:
     return [made(index, index >= failed) for index in range(passed + failed)]
 
 
-PLAYED = Played(
+PLAYED = Identity(
     level="room",
     variant="v0",
     spec="careful",

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.runtime.regression.game import EASY
 from tests.runtime.regression.made import PLAYED, made, reference, several, suite
 from tltl_runtime.regression.account import Nearest
 from tltl_runtime.regression.baseline import (
     baseline_command,
     baseline_of,
+    check_states,
     read_baseline,
     reference_of,
     write_baseline,
@@ -19,6 +21,7 @@ from tltl_runtime.regression.baseline import (
 )
 from tltl_runtime.regression.suite import SHIPPED, baseline_path, read_suite
 from tltl_runtime.stealth.levels.made_for import shown
+from tltlc import compile_text
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import replace
 
@@ -53,6 +56,13 @@ def test_its_place() -> None:
         ("arrivals", [[0, 1]]),
         ("colour", "red"),
         ("reward", float("inf")),
+        ("reward", 1e300),
+        ("reward", -1.1),
+        ("progress", 7),
+        ("progress", -0.5),
+        ("steps", 0),
+        ("arrivals", []),
+        ("way", []),
     ],
 )
 def test_what_is_broken_is_refused(tmp_path: Path, key: str, value: object) -> None:
@@ -66,6 +76,39 @@ def test_what_is_broken_is_refused(tmp_path: Path, key: str, value: object) -> N
     (found,) = error.value.diagnostics
     assert found.code == "TLT0902"
     assert key in found.title
+
+
+@pytest.mark.parametrize(("key", "path"), [("arrivals", ("state",)), ("way", (2,)), ("unmet", ())])
+def test_states_must_be_those_of_the_automaton(tmp_path: Path, key: str, path: tuple[str | int, ...]) -> None:
+    played, (there,) = suite(path=tmp_path / "game.toml"), compile_text(EASY)
+    count = len(there.states)
+    write_baseline(played.baseline, (reference(several(2)),))
+    document = json.loads(played.baseline.read_text(encoding="utf-8"))
+
+    def with_state(state: int) -> None:
+        account = document["references"][0]["accounts"][1]
+        if path:
+            account[key][-1][path[0]] = state
+        else:
+            account[key] = state
+        played.baseline.write_text(json.dumps(document), encoding="utf-8")
+
+    with_state(count - 1)
+    (known,) = baseline_of(played)
+    check_states(known, there, played)
+    with_state(count)
+    (known,) = baseline_of(played)
+    with pytest.raises(TltlError, match=f"TLT0902: .* episode 1 of `room:v0` has the state {count}, and "):
+        check_states(known, there, played)
+    with_state(-1)
+    with pytest.raises(TltlError, match=r"TLT0902: .*references\[0\]\.accounts\[1\]: it has the state -1"):
+        baseline_of(played)
+
+
+def test_a_sum_of_rewards_may_be_rounded(tmp_path: Path) -> None:
+    known = (reference([made(0, False, reward=-1.0000000000000002, progress=0.0)]),)
+    write_baseline(tmp_path / "game.baseline.json", known)
+    assert read_baseline(tmp_path / "game.baseline.json") == known
 
 
 @pytest.mark.parametrize("text", ["[]", "3", "{}", "[" * 100_000, "\xff", '{"format": "tltl-episode"}'])
@@ -127,6 +170,11 @@ def test_a_suite_without_a_baseline(tmp_path: Path) -> None:
     write_baseline(tmp_path / "game.baseline.json", (reference(several(1)),))
     assert baseline_of(suite(path=tmp_path / "game.toml")) == (reference(several(1)),)
     assert baseline_path(SHIPPED).parent == SHIPPED.parent
+
+
+def test_a_baseline_that_cannot_be_looked_at_is_not_missing() -> None:
+    with pytest.raises(TltlError, match="TLT0001: cannot read `aaa"):
+        baseline_of(replace(suite(), baseline=Path("a" * 300)))
 
 
 @pytest.mark.parametrize("path", [Path("game.toml"), SHIPPED])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
@@ -82,6 +84,27 @@ def test_a_baseline_that_was_stopped_goes_on(game: Path) -> None:
     # What is over is recorded anew, since levels may play otherwise.
     list(write_recorded(suite, path, 1, again := Played()))
     assert again.counts == {"room:v0": 50, "hopeless": 50}
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
+def test_a_baseline_goes_into_a_pipe(game: Path) -> None:
+    there, here = os.pipe()
+    with ThreadPoolExecutor(1) as readers, os.fdopen(there, encoding="utf-8") as pipe:
+        read = readers.submit(pipe.read)
+        try:
+            list(write_recorded(read_suite(Path("game.toml")), Path(f"/dev/fd/{here}"), 1, Played()))
+        finally:
+            os.close(here)
+        assert read.result() == Path("game.baseline.json").read_text(encoding="utf-8")
+
+
+def test_what_is_over_is_kept_beside_what_a_link_leads_to(game: Path) -> None:
+    Path("kept").mkdir()
+    Path("new.json").symlink_to("kept/new.json")
+    with closing(write_recorded(read_suite(Path("game.toml")), Path("new.json"), 1, Played())) as stopped:
+        next(stopped)
+    assert [path.name for path in Path("kept").iterdir()] == ["new.json.partial"]
+    assert not Path("new.json.partial").exists()
 
 
 def test_what_was_kept_of_a_baseline_by_other_code_is_played_again(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:

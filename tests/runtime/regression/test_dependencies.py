@@ -189,6 +189,16 @@ def test_several_names_and_unknown_ones(suite: Suite) -> None:
     assert found.unknown == ("README.md", "src/game.py")
 
 
+def test_a_file_that_is_a_link_counts_by_its_own_name_and_by_where_it_leads(suite: Suite) -> None:
+    asset = Path("game/levels/assets/crates.toml")
+    Path("lib").mkdir()
+    asset.rename("lib/hard_crates.toml")
+    asset.symlink_to(Path("lib/hard_crates.toml").resolve())
+    here = Path.cwd().name
+    for name in (f"{here}/game/levels/assets/crates.toml", "lib/hard_crates.toml", "hard_crates"):
+        assert concerned(suite, name) == BOTH, name
+
+
 def test_what_would_take_the_place_of_another_file_counts(suite: Suite) -> None:
     """An asset that is deleted beside a level, or made there, changes which one the level uses."""
     Path("game/levels/assets/crates.toml").unlink()

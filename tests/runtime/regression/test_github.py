@@ -60,6 +60,15 @@ def test_the_file_is_what_has_changed(suite: Suite) -> None:
     assert annotated(suite, replace(report, played=both))[1] == "game/levels/assets/guard.toml"
 
 
+def test_a_file_that_cannot_be_looked_at_is_not_shown(suite: Suite) -> None:
+    name = f"assets/{'a' * 300}.toml"
+    level = Path("levels/room.toml")
+    level.write_text(ROOM.replace('kind = "guard"', f'kind = "{"a" * 300}"'), encoding="utf-8")
+    changed = replace(PLAYED, files=((name, "0" * 64),))
+    report = CaseReport(NAME, "room", "v0", "fail", ("why",), played=changed, reference=reference().played)
+    assert annotated(suite, report)[1] == "game/game.toml"
+
+
 def test_paths_begin_at_the_top_of_the_checkout(suite: Suite) -> None:
     report = CaseReport(NAME, "room", "v0", "fail", ("why",))
     assert annotated(suite, report, ".")[1] == "levels/room.toml"

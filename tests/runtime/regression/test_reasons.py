@@ -7,7 +7,7 @@ import pytest
 from tests.runtime.regression.made import PLAYED, several
 from tltl_runtime.regression.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.suite import Thresholds
-from tltl_runtime.regression.verdict import judge
+from tltl_runtime.regression.verdict import Judgement, judge
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.task import load_task
 from tltlc.record import replace
@@ -34,6 +34,15 @@ def said(passed: int, failed: int, reward: float = 0.0) -> list[str]:
 )
 def test_what_is_certain(passed: int, failed: int, text: str) -> None:
     assert said(passed, failed)[0] == text
+
+
+def test_thresholds_are_told_as_they_were_chosen() -> None:
+    chosen = replace(DEFAULT, pass_rate=0.995, fail_rate=0.125)
+    judgement = Judgement("pass", True, (0.9985, 1.0), ())
+    (passed,) = reasons(judgement, chosen, several(3000), several(3000))
+    assert passed.endswith(": certainly in 99.5% or more")
+    (failed,) = reasons(replace(judgement, verdict="fail", rate_interval=(0.0, 0.125)), chosen, several(1), several(1))
+    assert failed.endswith(": certainly in less than 12.5%")
 
 
 def test_what_is_not_certain() -> None:

@@ -9,16 +9,17 @@ from pathlib import Path
 import pytest
 
 from tests.runtime.evaluation.untrained import untrained
-from tests.runtime.regression.game import NEVER, with_baseline, write_game
+from tests.runtime.regression.game import NEVER, edit, with_baseline, write_game
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import baseline_of
 from tltl_runtime.regression.play import ready
 from tltl_runtime.regression.retrain import (
     EPISODE,
-    forget_training,
-    forget_trainings,
+    FOLDER,
+    check_places,
     is_kept,
+    make_room,
     retrained,
     retraining,
 )
@@ -158,15 +159,20 @@ def test_of_a_training_that_is_over_its_policy_is_needed(game: Suite) -> None:
     assert not is_kept(run)
 
 
-def test_trainings_are_forgotten_all_at_once_unless_a_policy_lies_there(game: Suite) -> None:
-    places = [Path("run/retrained") / name for name in ("room-v0", "hopeless")]
-    assert all((place / RUN).exists() for place in places)
-    own = replace(game.cases[1], policy=places[1] / POLICY)
+def test_what_is_wrong_with_the_level_is_no_fault_of_what_is_kept(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    edit("room.toml", "[start]", "[strat]")
+    with pytest.raises(TltlError, match="TLT0803: the level `room` lacks `start`"):
+        is_kept(training_of(game, hopeless))
+
+
+def test_no_policy_lies_where_a_training_goes(game: Suite) -> None:
+    check_places(game, game.cases, Path("run"))
+    own = replace(game.cases[1], policy=Path("run/retrained/hopeless") / POLICY)
+    suite = replace(game, cases=(game.cases[0], own, game.cases[2]))
     with pytest.raises(TltlError, match="TLT0942: the policy of the case `room:v1` lies in `run/retrained/hopeless`"):
-        forget_trainings(replace(game, cases=(game.cases[0], own, game.cases[2])), game.cases, Path("run"))
-    assert all((place / RUN).exists() for place in places)
-    forget_trainings(game, game.cases, Path("run"))
-    assert not any((place / RUN).exists() for place in places)
+        check_places(suite, suite.cases, Path("run"))
+    check_places(suite, suite.cases[:2], Path("run"))
     assert not (Path("run/retrained") / "room-v1").exists()
 
 
@@ -181,14 +187,38 @@ def test_with_more_minutes_it_goes_on(game: Suite) -> None:
     assert after.trained.searched > before.trained.searched and after.trained.seconds > before.trained.seconds
 
 
-def test_what_is_forgotten_leaves_other_files(game: Suite) -> None:
+def test_what_makes_room_leaves_other_files(game: Suite) -> None:
     *_, hopeless = judged(game)
     folder = training_of(game, hopeless).folder
     (folder / "notes.txt").touch()
     retrained(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
     assert (folder / RUN).exists() and (folder / POLICY).exists()
-    forget_training(folder)
+    (folder / RECORD).unlink()
+    assert make_room(game, folder) is None, "it is not over"
     assert [path.name for path in folder.iterdir() if not path.name.startswith(".")] == ["notes.txt"]
+
+
+def test_what_was_learned_stays_beside_what_is_learned_now(game: Suite) -> None:
+    folder = Path("run") / FOLDER / "hopeless"
+    policy = (folder / POLICY).read_bytes()
+    (folder / "notes.txt").touch()
+    # Where the training of another case goes is not free, even if there is none yet.
+    suite = replace(game, cases=(*game.cases, replace(game.cases[2], name="hopeless-3")))
+    folder.with_name("hopeless-2").mkdir()
+    aside = make_room(suite, folder)
+    assert aside == folder.with_name("hopeless-4") and not folder.exists()
+    assert (aside / POLICY).read_bytes() == policy and (aside / RECORD).exists() and (aside / "notes.txt").exists()
+
+
+def test_a_training_that_cannot_be_moved_stays(game: Suite, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object) -> None:
+        raise PermissionError(13, "no")
+
+    folder = Path("run") / FOLDER / "hopeless"
+    monkeypatch.setattr(Path, "rename", refused)
+    with pytest.raises(TltlError, match=f"TLT0005: cannot move `{folder}` to `{folder}-2`"):
+        make_room(game, folder)
+    assert (folder / RECORD).exists()
 
 
 def test_a_policy_that_lies_where_its_training_goes(game: Suite) -> None:

@@ -8,7 +8,9 @@ import shutil
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,6 +18,7 @@ from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.game import EASY, SUITE, Played, edit, with_baseline
 from tests.runtime.regression.made import ROOM
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
+from tltl_runtime.evaluation.evaluate import results
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.policies.policy import Policy
@@ -29,7 +32,7 @@ from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.episodes.versions import versions
 from tltl_runtime.stealth.levels.file import load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
-from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import replace
 
 GUARD = (LEVELS / "assets" / "guard.toml").read_text(encoding="utf-8")
@@ -232,6 +235,21 @@ def test_what_is_wrong_with_the_workers_ends_the_run(game: Path, monkeypatch: py
     assert not (Path("new") / CASES).exists()
 
 
+def test_no_verdict_rests_on_episodes_with_a_gap(game: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before an error come all episodes that are over, and the slow ones are missing among them."""
+    lost = TltlError([Diagnostic("TLT0850", "a worker was lost", help="play it alone")])
+
+    def with_gap(*given: Any) -> Iterator[Any]:
+        yield from (each for each in islice(results(*given), 6) if each.task.index != 2)
+        raise lost
+
+    monkeypatch.setattr("tltl_runtime.regression.play.results", with_gap)
+    told: list[int] = []
+    with pytest.raises(TltlError) as error:
+        told.extend(each.account.index for each in episodes(ready(read_suite(Path("game.toml")).cases[0], 3), 1))
+    assert (error.value, told) == (lost, [0, 1])
+
+
 def test_a_level_that_is_edited_while_its_baseline_is_recorded(game: Path) -> None:
     made = ready(read_suite(Path("game.toml")).cases[0], 3)
     edit("room.toml", "8.0, 8.0", "8.0, 7.5")
@@ -274,6 +292,15 @@ def test_a_baseline_of_fewer_episodes_is_refused(game: Path) -> None:
     edit("game.toml", "episodes = 50", "episodes = 60")
     with pytest.raises(TltlError, match="TLT0903: the baseline of `room:v0` has 50 episodes, and 60 are asked for"):
         run()
+
+
+def test_a_baseline_with_states_that_the_spec_does_not_have_is_refused_before_anything_is_played(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    easy, hopeless = baseline_of(suite)
+    *accounts, last = hopeless.accounts
+    damaged = replace(hopeless, accounts=(*accounts, replace(last, unmet=99)))
+    with pytest.raises(TltlError, match=r"TLT0902: .* episode 49 of `room:v0` has the state 99, and"):
+        check(suite, suite.cases, (easy, damaged))
 
 
 def test_a_folder_may_have_a_plus_in_its_name(game: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

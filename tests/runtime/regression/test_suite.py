@@ -115,6 +115,18 @@ def test_a_suite_that_cannot_be_read(tmp_path: Path, name: str) -> None:
     assert [found.code for found in error.value.diagnostics] == ["TLT0001"]
 
 
+@pytest.mark.parametrize(
+    ("key", "name"),
+    [("level", ".toml"), ("level", ""), ("policy", ""), ("spec", ".tltl:careful"), ("overlay", ".toml")],
+)
+def test_a_name_that_no_file_can_have_is_a_missing_one(tmp_path: Path, key: str, name: str) -> None:
+    keys = {"level": "navigation", key: "a" * 300 + name}
+    with pytest.raises(TltlError) as error:
+        read(tmp_path, "[[case]]\n" + "".join(f'{each} = "{value}"\n' for each, value in keys.items()))
+    (found,) = error.value.diagnostics
+    assert found.title.startswith(f"there is no {key} `aaa")
+
+
 def test_an_own_level_needs_a_policy_of_ones_own(tmp_path: Path) -> None:
     (tmp_path / "navigation.toml").write_text(ROOM, encoding="utf-8")
     with pytest.raises(TltlError, match=r"no policy comes with the level `.*navigation\.toml`"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import closing
+from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
@@ -80,6 +82,16 @@ def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) ->
     assert [each.success for each in alone] == [True] * 3
     (tmp_path / "several").mkdir()
     assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == alone
+
+
+def test_a_process_of_the_expert_that_is_lost_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(table_cells, "EPISODES", 30)
+    with closing(table_cells._by_expert("cover_and_hide", "v0", 2)) as playing:
+        assert next(playing).success
+        for child in active_children():
+            child.kill()
+        with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode"):
+            list(playing)
 
 
 def test_the_expert_plays_again_where_the_spec_or_the_code_is_another(

@@ -21,7 +21,7 @@ from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
 from tltl_runtime.stealth.levels.ways import check_ways
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.files import read_source
+from tltlc.files import is_file, read_source
 from tltlc.record import replace
 from tltlc.source import SourceFile, Span
 from tltlc.spec_file import is_plain_name
@@ -86,7 +86,7 @@ def level_path(name_or_path: str) -> Path:
         help_ = "a level is a `.toml` file, or one of those that `tltlc list levels` shows"
     elif "+" in name_or_path and (level := name_or_path.partition("+")[0]) in level_names():
         help_ = f"overlays are added to a variant: `{name_or_path.replace(level, f'{level}:v0', 1)}`"
-    elif Path(f"{name_or_path}.toml").is_file():
+    elif is_file(f"{name_or_path}.toml"):
         help_ = f"did you mean the file `{name_or_path}.toml`?"
     raise TltlError([Diagnostic("TLT0800", title, help=help_)])
 
@@ -243,7 +243,7 @@ class _Loading:
     def _shared(self, folder: str, name: str, label: Label | None = None) -> Path | None:
         """The file of an asset or overlay, beside the level or in the package; without a label an argument names it."""
         for place in (self.path.parent / folder, LEVELS / folder):
-            if (path := place / f"{name}.toml").is_file() and path.parent == place:
+            if is_file(path := place / f"{name}.toml") and path.parent == place:
                 return path
         known = shared_names(self.path, folder)
         title = f"there is no {folder[:-1]} `{name}`"

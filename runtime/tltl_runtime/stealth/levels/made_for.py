@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.files import read_source
+from tltlc.files import is_file, read_source
 
 LEVELS: Final = Path(__file__).parents[2] / "levels"
 """The folder of the levels that come with the package."""
@@ -29,7 +29,7 @@ def made_for(table: Table, level: Path) -> str:
         table.log.append(wrong(table.entries["spec"], "spec", "FILE.tltl:NAME, e.g. `stealth.tltl:unseen`"))
         return ""
     label = table.place("spec")
-    path = next((folder / file for folder in (level.parent, *SPECS) if (folder / file).is_file()), None)
+    path = next((folder / file for folder in (level.parent, *SPECS) if is_file(folder / file)), None)
     if path is None:
         help_ = f"put it beside `{level.name}`"
         table.log.append(Diagnostic("TLT0805", f"there is no spec file `{file}`", (label,), help_))

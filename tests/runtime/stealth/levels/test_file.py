@@ -127,6 +127,15 @@ def test_solids_of_a_shipped_level_do_not_run_into_its_barriers(name: str, varia
             assert apart, (barrier.name, each.name)
 
 
+@pytest.mark.parametrize("line", ['spec = "{}.tltl:careful"\n{}', '{1}[[use]]\nasset = "{0}"\n'])
+def test_names_that_no_file_can_have_are_missing_ones(folder: Path, line: str) -> None:
+    write("long.toml", line.format("a" * 300, ROOM))
+    with pytest.raises(TltlError, match=r"TLT0805: there is no .*`aaa"):
+        load_level("long.toml")
+    with pytest.raises(TltlError, match="TLT0800: there is no level `aaa"):
+        load_level("a" * 300)
+
+
 def test_boxes_stairs_and_the_enclosure(folder: Path) -> None:
     write("room.toml", ROOM + "[[stairs]]\nfrom = [8.0, 5.0, 0.0]\nto = [6.0, 5.0, 0.5]\nwidth = 1.0\nsteps = 2\n")
     level = load_level("room.toml")
