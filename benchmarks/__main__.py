@@ -19,6 +19,8 @@ from benchmarks import (
     process,
     report,
     safety,
+    suite,
+    table1,
     training,
     verdicts,
 )
@@ -27,7 +29,20 @@ from benchmarks.store import Store
 
 SECTIONS = {
     module.SECTION: module
-    for module in (process, monitors, batch, game, safety, expert, training, verdicts, edits, compile_table)
+    for module in (
+        process,
+        monitors,
+        batch,
+        game,
+        safety,
+        expert,
+        training,
+        verdicts,
+        suite,
+        edits,
+        table1,
+        compile_table,
+    )
 }
 
 
@@ -43,10 +58,9 @@ def main() -> None:
     store = Store()
     if options.fresh:
         store.discard(options.only)
-        if options.only in (None, training.SECTION):
-            training.discard()
-        if options.only in (None, edits.SECTION):
-            edits.discard()
+        for module in (training, edits, table1):
+            if options.only in (None, module.SECTION):
+                module.discard()
     if options.only is None or not store.section("machine"):
         # What one section adds later, perhaps without the peers, must not describe how the others were measured.
         store.put("machine", "facts", facts())

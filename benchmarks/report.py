@@ -18,7 +18,9 @@ from benchmarks import (
     monitors,
     process,
     safety,
+    suite,
     summary,
+    table1,
     training,
     training_report,
     verdicts,
@@ -64,7 +66,9 @@ def render(store: Store) -> str:
         expert_report.section(store.section(expert.SECTION)),
         training_report.section(store.section(training.SECTION)),
         verdicts_report.section(store.section(verdicts.SECTION)),
+        suite.section(store.section(suite.SECTION)),
         edits_report.section(store.section(edits.SECTION)),
+        table1.section(store.section(table1.SECTION)),
     ]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
@@ -152,7 +156,9 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
     yield from expert_report.goals(store)
     yield from training_report.goals(store.section(training.SECTION))
     yield from verdicts_report.goals(store.section(verdicts.SECTION))
+    yield from suite.goals(store.section(suite.SECTION))
     yield from edits_report.goals(store.section(edits.SECTION))
+    yield from table1.goals(store.section(table1.SECTION))
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:
