@@ -67,11 +67,27 @@ of the baseline in brackets.
 
 {table(("truth", *(f"`{verdict}`" for verdict in _VERDICTS)), summed)}
 
+{_bounds(counts)}
+
 {table(header, [_row(name, edit) for name, edit in edits.items()])}
 """,
         f"Failed: {', '.join(failed)}." if failed else "",
     ]
     return "\n\n".join(part.strip() for part in parts if part)
+
+
+def _bounds(counts: Mapping[tuple[str, str], int]) -> str:
+    """What so few edits leave open: upper limits of 95 % for what was not seen once."""
+    asked = (
+        ("a `pass` of an infeasible one", _INFEASIBLE, ("pass",)),
+        ("a finding on an unchanged one", ("unchanged",), ("review", "fail")),
+    )
+    said = []
+    for what, truths, wrong in asked:
+        tried = sum(counts[truth, verdict] for truth in truths for verdict in _VERDICTS)
+        if tried and not any(counts[truth, verdict] for truth in truths for verdict in wrong):
+            said.append(f"{what}, seen in 0 of {tried}, may have a probability of up to {1 - 0.05 ** (1 / tried):.0%}")
+    return f"So few edits leave much open: {'; '.join(said)} (at 95 %)." if said else ""
 
 
 def _row(name: str, edit: Record) -> Sequence[object]:

@@ -111,6 +111,8 @@ def test_the_goals_are_of_what_cannot_be_done_and_of_what_changes_nothing() -> N
     text = edits_report.section({**records, "07 h": {"failed": "it cannot be played"}})
     assert "for 25 of 25 in navigation before" in " ".join(text.split())
     assert "| infeasible | 0 | 0 | 1 |" in text
+    assert "a `pass` of an infeasible one, seen in 0 of 2, may have a probability of up to 78%; a finding" in text
+    assert "So few" not in edits_report.section(bad)
     row = "| A block moves. | in part | 24 of 25 | 3 | `review` * | 48 of 50 | 7 | 0.98 (0.98) | 0.70 (0.75) |"
     assert f"| 02 b {row}" in text
     assert text.endswith("Failed: 07 h (it cannot be played).")
