@@ -14,6 +14,7 @@ from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_file
 from tltl_runtime.commands.plain import plain
 from tltl_runtime.commands.workers import all_cores_option
+from tltl_runtime.commands.writable import check_apart
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 
@@ -44,10 +45,12 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
         from tltl_runtime.commands.regression_display import RegressionDisplay
         from tltl_runtime.regression.baseline import written_to
         from tltl_runtime.regression.baseline_run import kept_at, write_recorded
+        from tltl_runtime.regression.dependencies import files_of
         from tltl_runtime.regression.suite import SHIPPED, read_suite
 
         read = read_suite(suite or SHIPPED)
         wrote = path or written_to(read.path)
+        check_apart({"--output": wrote}, files_of(read) - {read.baseline.resolve()})
         try:
             with RegressionDisplay() as display:
                 for each in write_recorded(read, wrote, workers, display):

@@ -16,10 +16,10 @@ from tltl_runtime.commands.regression_display import RegressionDisplay
 from tltl_runtime.commands.regression_files import REPORTS, Outcome, json_text, write_reports
 from tltl_runtime.commands.regression_text import case_lines, sum_line
 from tltl_runtime.commands.retrain import Retraining, retrain_cases
-from tltl_runtime.commands.writable import check_writable
+from tltl_runtime.commands.writable import check_apart, check_writable
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.baseline import Reference, baseline_of
-from tltl_runtime.regression.dependencies import select
+from tltl_runtime.regression.dependencies import files_of, select
 from tltl_runtime.regression.github import findings_as_commands
 from tltl_runtime.regression.retrain import check_places
 from tltl_runtime.regression.run import Done, check, owned, regress
@@ -73,6 +73,7 @@ def run(wanted: Wanted) -> int:
     """
     check_writable(wanted.written)
     suite = read_suite(wanted.suite or SHIPPED, wanted.baseline)
+    check_apart(wanted.written, files_of(suite))
     cases, left_out = _chosen(suite, wanted.changed)
     if wanted.minutes is not None:
         check_places(suite, cases, wanted.folder)

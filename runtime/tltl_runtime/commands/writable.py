@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -17,8 +17,7 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
     Better to know before minutes of play.
     """
     for option, path in files.items():
-        # What is no file, such as a pipe, is written to directly.
-        if path is None or (exists(path) and not is_file(path)):
+        if path is None or not _takes_a_place(path):
             continue
         try:
             # Its name may be one that the system does not allow.
@@ -31,3 +30,23 @@ def check_writable(files: Mapping[str, Path | None]) -> None:
             why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)
             help_ = f"name another place with {option}"
             raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {why}", help=help_)]) from None
+
+
+def check_apart(files: Mapping[str, Path | None], read: Iterable[Path]) -> None:
+    """Raise TltlError, TLT0005, where a file would take the place of one that is ``read``, or of another of them;
+    ``files`` are named by their options.
+    """
+    taken = {path.resolve(): "the suite reads it" for path in read}
+    for option, path in files.items():
+        if path is None or not _takes_a_place(path):
+            continue
+        place = path.resolve()
+        if place in taken:
+            help_ = f"name another place with {option}"
+            raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {taken[place]}", help=help_)])
+        taken[place] = f"{option} writes it, too"
+
+
+def _takes_a_place(path: Path) -> bool:
+    """Whether what is written replaces a file or makes one; what is no file, such as a pipe, is written to directly."""
+    return not exists(path) or is_file(path)

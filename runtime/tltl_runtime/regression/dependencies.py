@@ -72,6 +72,11 @@ def dependencies(suite: Suite, case: Case) -> tuple[Path, ...]:
     return tuple(dict.fromkeys(each for path in found for each in (Path(normpath(path.absolute())), path.resolve())))
 
 
+def files_of(suite: Suite) -> frozenset[Path]:
+    """The files that a suite's cases depend on, all of which it reads but for the baseline that is recorded."""
+    return frozenset(path for case in suite.cases for path in dependencies(suite, case))
+
+
 def _is_meant(name: str, paths: Iterable[Path]) -> bool:
     given = Path(_unquoted(name))
     place, parts = given.resolve(), given.parts

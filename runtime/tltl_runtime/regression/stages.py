@@ -24,11 +24,11 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
     """The entity that one must come near to, and to nothing else, for an atom to hold; None where that is not so."""
     expression = fspa.atoms[atom].expression
     names = {node.name for node in nodes(expression) if isinstance(node, Signal)}
-    entity = distant_entity(next(iter(names))) if len(names) == 1 else None
-    (name, *_) = (*names, "")
-    return (
-        entity if entity and _holds(fspa, expression, name, 0.0) and not _holds(fspa, expression, name, _FAR) else None
-    )
+    if len(names) != 1:
+        return None
+    (name,) = names
+    near, far = (_holds(fspa, expression, name, metres) for metres in (0.0, _FAR))
+    return distant_entity(name) if near and not far else None
 
 
 def _holds(fspa: Fspa, expression: Expression, distance: str, metres: float) -> bool:

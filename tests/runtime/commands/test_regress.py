@@ -254,6 +254,30 @@ def test_a_level_that_does_not_load_fails_with_the_reason(tltlc: Run, game: Path
     assert found.err.splitlines()[-1].startswith("wrote regression/game/report.html")
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("baseline", "game.toml", "-o", "game.toml"), "`game.toml`: the suite reads it"),
+        (("regress", "game.toml", "--json", "game.toml"), "`game.toml`: the suite reads it"),
+        (("regress", "game.toml", "--json", "game.baseline.json"), "`game.baseline.json`: the suite reads it"),
+        (("regress", "game.toml", "--html", "room.toml"), "`room.toml`: the suite reads it"),
+        (("baseline", "game.toml", "-o", "easy.safetensors"), "`easy.safetensors`: the suite reads it"),
+        (("regress", "game.toml", "--json", "j", "--html", "./j"), "`j`: --json writes it, too"),
+    ],
+)
+def test_nothing_that_is_read_is_overwritten(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    words: tuple[str, ...],
+    said: str,
+) -> None:
+    before = {path: path.read_bytes() for path in game.iterdir() if path.is_file()}
+    found = tltlc(*words)
+    assert (found.status, found.out) == (3, "")
+    assert found.err.startswith(f"error[TLT0005]: cannot write {said}\n  help: name another place with --")
+    assert {path: path.read_bytes() for path in game.iterdir() if path.is_file()} == before
+
+
 def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
     found = tltlc("regress", "game.toml", "--github", "--json", "-")
     assert (found.status, found.out) == (2, "")
