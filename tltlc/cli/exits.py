@@ -74,8 +74,11 @@ def missing_component(wanted_by: str, module: str, requirement: str) -> TltlErro
     return TltlError([Diagnostic("TLT0730", title, help=way_out if own else f"pip install '{requirement}'")])
 
 
-def report(error: Exception) -> int:
-    """Say on standard error what went wrong and return the exit status."""
+def report(error: Exception, *, interrupted: bool = False) -> int:
+    """Say on standard error what went wrong and return the exit status.
+
+    Of a command that was ``interrupted`` what nobody foresaw comes of that, and is not told.
+    """
     if isinstance(error, BrokenPipeError):
         error = StopQuietlyError(CLOSED_PIPE)
     if isinstance(error, StopQuietlyError):
@@ -100,7 +103,7 @@ def report(error: Exception) -> int:
 
         show(error.diagnostics, "text", sys.stderr)
         return status_of(error.diagnostics)
-    return _bug(error)
+    return INTERRUPTED if interrupted else _bug(error)
 
 
 def _usage(error: click.ClickException) -> Diagnostic:

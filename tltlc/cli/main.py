@@ -14,6 +14,7 @@ from typing import Any, Final, NoReturn
 import click
 
 from tltlc.cli import exits, plugins
+from tltlc.cli.interrupts import interrupts_end, was_heard
 
 BUILT_IN: Final = {
     "compile": "Compile the specs of a file to artefacts and monitors.",
@@ -48,8 +49,11 @@ COMPLETE_VARIABLE: Final = "_TLTLC_COMPLETE"
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run the command line (by default that of the process) and exit with its status."""
-    cli.main(args=None if arguments is None else list(arguments))
+    """Run the command line (by default that of the process, whose interrupts it takes) and exit with its status."""
+    if arguments is not None:
+        cli.main(args=list(arguments))
+    with interrupts_end():
+        cli.main()
 
 
 class CommandLine(click.Group):
@@ -66,7 +70,7 @@ class CommandLine(click.Group):
             status = super().main(None if args is None else list(args), **extra) or 0
             sys.stdout.flush()
         except Exception as error:
-            status = exits.report(error)
+            status = exits.report(error, interrupted=was_heard())
         sys.exit(status)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from types import FrameType
 
 from tltlc.cli import exits
+from tltlc.cli.interrupts import interrupt
 
 _REQUESTS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
@@ -17,11 +18,11 @@ def requests_heard() -> Iterator[None]:
     """Within, SIGTERM and SIGHUP raise KeyboardInterrupt; the command then ends with 128 and the signal's number."""
     heard: list[int] = []
 
-    def interrupt(number: int, _: Any) -> None:
+    def request(number: int, frame: FrameType | None) -> None:
         heard.append(number)
-        raise KeyboardInterrupt
+        interrupt(number, frame)
 
-    before = {number: signal.signal(number, interrupt) for number in _REQUESTS}
+    before = {number: signal.signal(number, request) for number in _REQUESTS}
     try:
         yield
     except KeyboardInterrupt:

@@ -13,6 +13,7 @@ from typing import Final
 
 from tltl_runtime.evaluation.player import Plays, Result, Task
 from tltl_runtime.evaluation.spread import LostError
+from tltl_runtime.spawning import interrupts_withheld
 
 
 class Process:
@@ -29,14 +30,17 @@ class Process:
         """Begin an episode."""
         future: Future[Result] = Future()
         try:
-            self._executor.submit(_play, task).add_done_callback(lambda done: _pass_on(done, future))
+            with interrupts_withheld():
+                playing = self._executor.submit(_play, task)
+            playing.add_done_callback(lambda done: _pass_on(done, future))
         except BrokenProcessPool:
             future.set_exception(LostError(_ENDED))
         return future
 
     def close(self) -> None:
-        """Have the process end after the episode that it plays; others end meanwhile."""
-        self._executor.shutdown(wait=False, cancel_futures=True)
+        """Wait until the process has played its episode, and end it; others play theirs meanwhile."""
+        # An executor that still ends when Python does may fail, or never end.
+        self._executor.shutdown(wait=True, cancel_futures=True)
 
 
 _ENDED: Final = "its process ended; where it said nothing before, it was perhaps killed for want of memory"
@@ -48,7 +52,7 @@ _player: Plays | None = None
 
 def _begin(make: Callable[[], Plays]) -> None:
     global _make
-    # Ctrl-C goes to the whole group of processes; whoever started this one decides what it means.
+    # Whoever started this one decides what Ctrl-C means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     _make = make

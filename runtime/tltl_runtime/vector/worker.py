@@ -28,7 +28,7 @@ def work(connection: Connection, functions: Any, rows: Rows, first: int, autores
     Commands are pairs of a name and its arguments; each is answered by a pair: ``done`` and what it gave, or
     ``failed`` and a traceback, after which the worker ends.  The first answer, unasked, says that all is made.
     """
-    # Ctrl-C goes to the whole group of processes; whoever started this one decides what it means.
+    # Whoever started this one decides what Ctrl-C means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         share = Share(functions.fn, rows, first, autoreset)

@@ -13,6 +13,7 @@ from typing import Any, Final
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import CloudpickleWrapper
 
+from tltl_runtime.spawning import interrupts_withheld
 from tltl_runtime.vector.errors import Loss
 from tltl_runtime.vector.memory import Rows
 from tltl_runtime.vector.worker import CLOSE, FAILED, EnvFunction, work
@@ -71,7 +72,8 @@ class Workers:
                 name=f"env worker {worker}",
                 daemon=True,
             )
-            process.start()
+            with interrupts_withheld():
+                process.start()
             theirs.close()
             self._processes[worker], self._connections[worker] = process, ours
             self._watch(worker)

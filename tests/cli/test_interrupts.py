@@ -1,0 +1,77 @@
+"""Ctrl-C, at the moments at which Python itself makes something else of it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
+
+_SLOW = """
+import sys, time
+print("imports", flush=True)
+try:
+    time.sleep(1.0)
+except BaseException:
+    raise ImportError("a library that says something else") from None
+"""
+
+
+def _ended(folder: Path, script: str, told: str) -> tuple[int, str, str]:
+    """What becomes of a process that is interrupted as soon as it prints ``told``: status, output, messages."""
+    (folder / "slow.py").write_text(_SLOW, encoding="utf-8")
+    script = f"from tltlc.cli.interrupts import interrupts_end\n{script}"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
+    command = [sys.executable, "-c", script]
+    with subprocess.Popen(command, env=environment, stdout=-1, stderr=-1, text=True) as running:
+        assert running.stdout is not None
+        assert running.stdout.readline() == told
+        running.send_signal(signal.SIGINT)
+        out, err = running.communicate(timeout=60)
+    return running.returncode, out, err
+
+
+def test_an_import_is_over_before_its_interrupt_comes(tmp_path: Path) -> None:
+    script = "import time\nwith interrupts_end():\n    import slow\n    print('imported')\n    time.sleep(60)"
+    status, out, err = _ended(tmp_path, script, "imports\n")
+    assert (status, err) == (130, "")
+    # Where the machine is slow, the interrupt may come right behind the import.
+    assert out in ("", "imported\n")
+
+
+def test_an_interrupt_at_the_very_end_changes_nothing(tmp_path: Path) -> None:
+    script = (
+        "import atexit, sys, time\n"
+        "atexit.register(lambda: (print('ends', flush=True), time.sleep(0.5)))\n"
+        "with interrupts_end():\n    sys.exit(1)"
+    )
+    assert _ended(tmp_path, script, "ends\n") == (1, "", "")
+
+
+def test_what_is_ignored_stays_ignored(tmp_path: Path) -> None:
+    script = (
+        "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"
+        "with interrupts_end():\n    print('works', flush=True)\n    time.sleep(0.5)\n    print('over')"
+    )
+    assert _ended(tmp_path, script, "works\n") == (0, "over\n", "")
+
+
+def test_a_fault_after_an_interrupt_is_no_bug(tmp_path: Path) -> None:
+    script = (
+        "import time\nfrom tltlc.cli import main\n"
+        "def broken(*_):\n"
+        "    print('works', flush=True)\n"
+        "    try:\n        time.sleep(60)\n"
+        "    except KeyboardInterrupt:\n        raise SystemError('an exception is set') from None\n"
+        "main.CommandLine.get_command = broken\n"
+        "import sys; sys.argv = ['tltlc', 'check']\n"
+        "main.main()"
+    )
+    assert _ended(tmp_path, script, "works\n") == (130, "", "")

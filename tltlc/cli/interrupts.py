@@ -1,0 +1,72 @@
+"""Ctrl-C, at whatever moment it comes, ends a command as an interrupt, and never as a fault of what it interrupted."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from _thread import interrupt_main
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Timer, main_thread
+from types import FrameType
+from typing import Final
+
+from tltlc.cli import exits
+
+_AGAIN_S: Final = 0.05
+"""From an interrupt that came in the middle of an import to the next attempt."""
+
+_heard: Final[list[int]] = []
+
+
+@contextmanager
+def interrupts_end() -> Iterator[None]:
+    """Within, the process is one command: Ctrl-C ends it with 130, and no more once its own end has begun.
+
+    Where Ctrl-C is ignored, as in the background of a shell, it stays so.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    except KeyboardInterrupt:
+        sys.exit(exits.INTERRUPTED)
+    finally:
+        # Python's own end would turn it into a death by the signal, or into a crash of a library's threads.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def interrupt(number: int, frame: FrameType | None) -> None:
+    """The handler of a signal: raises KeyboardInterrupt, as soon as no module is being imported.
+
+    Half-imported modules turn it into errors of their own, or lose it.
+    """
+    _heard.append(number)
+    if _is_importing(frame):
+        again = Timer(_AGAIN_S, _send_again, (number,))
+        again.daemon = True
+        again.start()
+        return
+    raise KeyboardInterrupt
+
+
+def was_heard() -> bool:
+    """Whether this process has been interrupted, so that a fault that nobody foresaw may be no fault."""
+    return bool(_heard)
+
+
+def _is_importing(frame: FrameType | None) -> bool:
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _send_again(number: int) -> None:
+    ident = main_thread().ident
+    if sys.platform == "win32" or ident is None:
+        interrupt_main(signal.Signals(number))
+    else:
+        # Ends a wait for the system, too.
+        signal.pthread_kill(ident, number)
