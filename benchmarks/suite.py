@@ -68,11 +68,11 @@ def section(records: Mapping[str, Record]) -> str:
             f"`{each['verdict']}`" + ("" if each["certain"] else " *"),
             f"{round(each['pass_rate'] * each['episodes'])} of {each['episodes']}",
             *(f"{each[figure]:.2f} ({each['before'][figure]:.2f})" for figure in ("progress", "reward")),
-            each["reasons"][0],
+            each["headline"],
         )
         for name, each in cases.items()
     ]
-    header = ("case", "verdict", "met", "progress", "reward", "first reason")
+    header = ("case", "verdict", "met", "progress", "reward", "why")
     return f"""
 ## The shipped suite
 
@@ -99,7 +99,7 @@ def _verdicts() -> Record:
 
 
 def _kept(case: Mapping[str, Any]) -> Record:
-    keys = ("verdict", "certain", "episodes", "pass_rate", "reasons")
+    keys = ("verdict", "certain", "episodes", "pass_rate", "headline", "reasons")
     return {**{key: case[key] for key in keys}, **_means(case), "before": _means(case["baseline"])}
 
 

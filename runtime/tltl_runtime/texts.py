@@ -10,6 +10,9 @@ from typing import Final
 WIDTH: Final = 80
 """Of a terminal for which lines are broken, in characters."""
 
+_FEW: Final = 25
+"""Of so many things at most it is said how many, and no share."""
+
 
 def share(value: float, places: int = 2) -> str:
     """A number in [0, 1] with so many places; 0 and 1 are written for nothing but themselves."""
@@ -27,6 +30,12 @@ def percent(value: float) -> str:
 def percent_exactly(value: float) -> str:
     """A number in [0, 1] that somebody chose, in percent with the places that it has: ``85%``, ``99.9%``."""
     return f"{100.0 * value:g}%"
+
+
+def counted(count: int, total: int, what: str = "") -> str:
+    """How many of a number of things, with the share where it takes working out: ``121 of 300 episodes (40%)``."""
+    told = f"{count} of {total}{' ' * bool(what)}{what}"
+    return f"{told} ({percent(count / total)})" if total > _FEW and 0 < count < total else told
 
 
 def between(interval: tuple[float, float]) -> str:

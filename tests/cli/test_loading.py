@@ -52,7 +52,7 @@ def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Pa
 
 def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
     modules = {name for name in loaded("--help", folder=tmp_path) if name.startswith("tltlc")}
-    line = {"tltlc", "tltlc.cli", "tltlc.cli.main", "tltlc.cli.exits", "tltlc.cli.plugins"}
+    line = {"tltlc", "tltlc.cli", "tltlc.cli.main", "tltlc.cli.exits", "tltlc.cli.interrupts", "tltlc.cli.plugins"}
     shared = {"tltlc.diagnostics", "tltlc.diagnostics.diagnostic", "tltlc.record", "tltlc.source"}
     assert modules <= line | shared
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tltl_runtime.texts import column, listed, number, percent, share
+from tltl_runtime.texts import column, counted, listed, number, percent, share
 
 
 @pytest.mark.parametrize(
@@ -15,6 +15,21 @@ from tltl_runtime.texts import column, listed, number, percent, share
 def test_shares(value: float, said: str) -> None:
     assert share(value) == said
     assert percent(value) == f"{round(100 * float(said))}%"
+
+
+@pytest.mark.parametrize(
+    ("count", "total", "said"),
+    [
+        (1, 25, "1 of 25 episodes"),
+        (1, 26, "1 of 26 episodes (4%)"),
+        (299, 300, "299 of 300 episodes (99%)"),
+        (0, 300, "0 of 300 episodes"),
+        (300, 300, "300 of 300 episodes"),
+    ],
+)
+def test_of_how_many(count: int, total: int, said: str) -> None:
+    assert counted(count, total, "episodes") == said
+    assert counted(count, total) == said.replace(" episodes", "")
 
 
 @given(st.floats(0.0, 1.0), st.integers(1, 4))

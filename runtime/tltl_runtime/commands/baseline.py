@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from shlex import join
 from typing import TYPE_CHECKING, Any
@@ -17,8 +18,11 @@ from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import check_apart
 from tltlc.cli import exits
 from tltlc.cli.report import Report
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.files import exists, is_file
 
 if TYPE_CHECKING:
+    from tltl_runtime.regression.baseline import Reference
     from tltl_runtime.regression.baseline_run import Compared
     from tltl_runtime.regression.suite import Case, Suite
 
@@ -33,12 +37,14 @@ Examples:
 )
 @click.argument("suite", metavar="[SUITE]", required=False, type=click.Path(path_type=Path))
 @output_file("FILE", "Where to write it (default: SUITE.baseline.json, beside the suite).")
+@click.option("--fresh", is_flag=True, help="Play again what the file has already, and nothing has changed of.")
 @all_cores_option
 @level_faults()
-def command(suite: Path | None, path: Path | None, workers: Any) -> int:
+def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) -> int:
     """Record the figures of the policies of a suite on the levels as they are now, for `tltlc regress`.
 
-    Of each level that is the variant with which its cases are compared, by default the first one.  Without SUITE, the
+    Of each level that is the variant with which its cases are compared, by default the first one.  What the file has
+    already is not played again where level, policy, spec, seed and versions are as they were.  Without SUITE, the
     levels that come with tltlc are played, and `shipped.baseline.json` is written.
     """
     with Report() as report, learning_for("`tltlc baseline`"), requests_heard():
@@ -51,14 +57,14 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
         read = read_suite(suite or SHIPPED)
         wrote = path or written_to(read.path)
         check_apart({"--output": wrote}, files_of(read) - {read.baseline.resolve()})
+        there, older = exists(wrote), _older(wrote)
         try:
             with RegressionDisplay() as display:
-                for each in write_recorded(read, wrote, workers, display):
+                for each in write_recorded(read, wrote, workers, display, () if fresh else older):
                     display.over()
-                    _tell(read, each)
+                    _tell(read, each, older, fresh=fresh)
         except KeyboardInterrupt:
-            again = "goes on with what is over" if kept_at(wrote) else "begins anew"
-            click.echo(f"stopped: `{wrote}` is as it was; the same command {again}", err=True)
+            click.echo(f"stopped: {_left(wrote, kept_at(wrote), there=there)}", err=True)
             raise
         click.echo(f"wrote {wrote}", err=True)
         if wrote.resolve() != read.baseline.resolve():
@@ -68,13 +74,36 @@ def command(suite: Path | None, path: Path | None, workers: Any) -> int:
     return report.status
 
 
-def _tell(suite: Suite, compared: Compared) -> None:
+def _older(path: Path) -> tuple[Reference, ...]:
+    """What is in the file that is to be written, if that is a baseline."""
+    from tltl_runtime.regression.baseline import read_baseline
+
+    with suppress(TltlError):
+        return read_baseline(path) if is_file(path) else ()
+    return ()
+
+
+def _left(path: Path, partial: Path | None, *, there: bool) -> str:
+    """What a recording that was stopped has left, and what goes on with it; ``there``: there was a file before."""
+    from tltl_runtime.stealth.levels.made_for import shown
+
+    if partial and not there:
+        return f"no `{path}` was written; what is over is kept in `{shown(partial)}`: the same command goes on with it"
+    return f"`{path}` is as it was; the same command {'goes on with what is over' if partial else 'begins anew'}"
+
+
+def _tell(suite: Suite, compared: Compared, older: tuple[Reference, ...], *, fresh: bool) -> None:
     """Say what was recorded, and which cases do not pass by it even where nothing has changed."""
     from tltl_runtime.regression.baseline_run import verdict_as_it_is
 
     reference = compared.reference
-    played, passed, count = reference.played, sum(each.success for each in reference.accounts), len(reference.accounts)
-    click.echo(plain(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes"))
+    played, passed, count = reference.played, _passed(reference), len(reference.accounts)
+    before = _before(reference, older)
+    if reference in older and not fresh:
+        beside = "  (as before)"
+    else:
+        beside = f"; before: {_passed(before)} of {len(before.accounts)}" if before else ""
+    click.echo(plain(f"{played.level}:{played.variant}: {played.spec} met in {passed} of {count} episodes") + beside)
     if compared.outdated:
         click.echo(plain(f"    {compared.outdated}"), err=True)
     for case in compared.cases:
@@ -82,6 +111,19 @@ def _tell(suite: Suite, compared: Compared) -> None:
         if verdict != "pass":
             advice = _advice(passed / count, case)
             click.echo(plain(f"    `{case.name}` is `{verdict}` even if nothing changes: {advice}"), err=True)
+
+
+def _passed(reference: Reference) -> int:
+    return sum(each.success for each in reference.accounts)
+
+
+def _before(reference: Reference, older: tuple[Reference, ...]) -> Reference | None:
+    """What an older baseline has of the same level, variant and spec, of another policy only if that was the one."""
+    names = ("level", "variant", "place", "spec")
+    played = reference.played
+    same = [each for each in older if all(getattr(each.played, key) == getattr(played, key) for key in names)]
+    its = [each for each in same if each.played.policy == played.policy]
+    return its[0] if its else same[0] if len(same) == 1 else None
 
 
 def _advice(pass_rate: float, case: Case) -> str:

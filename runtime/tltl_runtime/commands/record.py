@@ -125,7 +125,8 @@ def _place(level: str | None, spec: str | None) -> tuple[str, str]:
 
 def _begins(made: Demonstrations, wanted: int) -> list[str]:
     """What the folder holds already."""
-    said = [f"{_there(made, wanted)} already"] if made.count else []
+    # Of enough the end tells.
+    said = [f"{_there(made, wanted)} already"] if 0 < made.count < wanted else []
     if others := len(made.others):
         kept = f"{others} recording{'s' * (others > 1)} there" + (" is none" if others == 1 else " are none")
         first, more = made.others[0], " and others" * (others > 1)
@@ -202,4 +203,6 @@ def _line(tried: Tried, wanted: int) -> str:
 
 
 def _there(made: Demonstrations, wanted: int) -> str:
+    if made.count > wanted:
+        return f"{made.count} demonstrations are in {made.folder}, and {wanted} are asked for"
     return f"{made.count} of {wanted} demonstrations are in {made.folder}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,16 +12,23 @@ import click
 from tltl_runtime.commands.changed_option import ChangedCommand
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
-from tltl_runtime.commands.options import FiniteRange, output_folder
+from tltl_runtime.commands.options import FiniteRange, Function, output_folder
 from tltl_runtime.commands.workers import all_cores_option
+from tltl_runtime.commands.writable import is_output
 from tltlc.cli.report import Report
 
 _MINUTES: Final = 10.0
 """Of a training with --retrain, where nothing else is said."""
+_REPORTS: Final = {"json": "the JSON", "junit": "the XML", "html": "the page"}
 
 
 def _file(*, dash: bool = False) -> click.Path:
     return click.Path(path_type=Path, allow_dash=dash, dir_okay=False)
+
+
+def _report(name: str, about: str) -> Callable[[Function], Function]:
+    about = f"{about}; `-` prints it in place of the text."
+    return click.option(f"--{name}", metavar="FILE", type=_file(dash=True), help=about)
 
 
 @click.command(
@@ -42,14 +50,9 @@ Examples:
     multiple=True,
     help="Only the cases that depend on one of these files; it takes every word up to the next option.",
 )
-@click.option(
-    "--json",
-    metavar="FILE",
-    type=_file(dash=True),
-    help="Write the report as JSON, too; `-` prints it in place of the text.",
-)
-@click.option("--junit", metavar="FILE", type=_file(), help="Write it as JUnit XML, too.")
-@click.option("--html", metavar="FILE", type=_file(), help="Write the page here, too.")
+@_report("json", "Write the report as JSON, too")
+@_report("junit", "Write it as JUnit XML, too")
+@_report("html", "Write the page here, too")
 @click.option("--github", is_flag=True, help="Print findings as annotations of GitHub Actions, too.")
 @click.option(
     "--baseline",
@@ -89,8 +92,10 @@ def command(
     which nothing has changed since it was played is not played again.  The exit status is 0 where all cases pass, and
     1 where one is to be reviewed or fails; what --retrain finds changes neither.
     """
-    if github and str(files["json"]) == "-":
-        raise click.UsageError("--github and `--json -` both need standard output: write the JSON to a file")
+    printed = {name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_output(path)}
+    if printed and len(users := [*["--github"] * github, *printed.values()]) > 1:
+        *_, last = (_REPORTS[name] for name in printed)
+        raise click.UsageError(f"{users[0]} and {users[1]} both need standard output: write {last} to a file")
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes are those of --retrain")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):

@@ -7,16 +7,21 @@ import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Final
+from typing import Final, get_args
 
+from tltl_runtime.regression.baseline import Reference
 from tltl_runtime.regression.document import document
 from tltl_runtime.regression.junit import junit
+from tltl_runtime.regression.level_texts import designed
 from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
 from tltl_runtime.regression.page.page import html_report
+from tltl_runtime.regression.play import Ready
 from tltl_runtime.regression.run import CASES, Done, case_folder
-from tltl_runtime.regression.suite import Suite
+from tltl_runtime.regression.suite import SHIPPED, Suite
+from tltl_runtime.regression.verdict import Verdict
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.stealth.level import Level
 from tltl_runtime.training.versions import versions
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import record
@@ -24,6 +29,12 @@ from tltlc.writing import write_file, write_files
 
 PAGE: Final = "report.html"
 """The page in the folder of a run."""
+
+_REPORT: Final = "case.json"
+"""In the folder of a case, what became of it."""
+
+_NOTE: Final = "Its variants v1 and v2 were changed on purpose: reviews and fails are what they are to show."
+"""On the page of the suite that comes with the package."""
 
 _NO_UTF8: Final = re.compile("[\ud800-\udfff]")
 """What names of files have in place of bytes that are no UTF-8, and no text of UTF-8 can hold."""
@@ -59,8 +70,9 @@ def _junit_text(outcome: Outcome) -> str:
 def _page_text(outcome: Outcome) -> str:
     """The page; raises what drawing it raises."""
     suite = outcome.suite
+    is_shipped = suite.path == SHIPPED
     contents = SuiteReport(
-        suite=suite.path.stem,
+        suite="shipped" if is_shipped else suite.path.stem,
         seed=suite.seed,
         error=suite.error,
         versions=versions(),
@@ -68,8 +80,22 @@ def _page_text(outcome: Outcome) -> str:
         complete=outcome.complete,
         missing=outcome.missing,
         left_out=outcome.left_out,
+        earlier=_earlier(outcome),
+        note=_NOTE if is_shipped else "",
     )
     return _encodable(html_report(contents))
+
+
+def _earlier(outcome: Outcome) -> dict[str, Verdict]:
+    """What an earlier run in the folder said of the cases that were left out, as far as it is there."""
+    found: dict[str, Verdict] = {}
+    for name in outcome.left_out:
+        path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
+        with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
+            verdict = json.loads(path.read_text(encoding="utf-8"))["content"]["verdict"]
+            if verdict in get_args(Verdict):
+                found[name] = verdict
+    return found
 
 
 def _encodable(text: str) -> str:
@@ -109,8 +135,20 @@ def _reported(done: Done, suite: Suite, folder: Path) -> ReportedCase:
     if done.ready is None or done.reference is None:
         return ReportedCase(done.report)
     episodes = _episodes(done, case_folder(suite, done.report.name, folder / CASES))
-    level, before = done.ready.level, done.reference.accounts
-    return ReportedCase(done.report, level, done.ready.setup.fspa, episodes, before, _curve(done, folder))
+    return ReportedCase(
+        report=done.report,
+        level=done.ready.level,
+        fspa=done.ready.setup.fspa,
+        episodes=episodes,
+        before=done.reference.accounts,
+        designed=_designed(done.ready, done.reference),
+        curve=_curve(done, folder),
+    )
+
+
+def _designed(ready: Ready, reference: Reference) -> Level | None:
+    """The level that the baseline was recorded on, which is made again where it is another one than that of now."""
+    return ready.level if ready.played.files == reference.played.files else designed(reference)
 
 
 def _curve(done: Done, folder: Path) -> bytes:

@@ -13,23 +13,27 @@ import click
 
 from tltl_runtime.commands.plain import plain
 from tltl_runtime.commands.regression_display import RegressionDisplay
-from tltl_runtime.commands.regression_files import REPORTS, Outcome, json_text, write_reports
+from tltl_runtime.commands.regression_files import REPORTS, Outcome, write_reports
 from tltl_runtime.commands.regression_text import case_lines, sum_line
 from tltl_runtime.commands.retrain import Retraining, retrain_cases
-from tltl_runtime.commands.writable import check_apart, check_writable
+from tltl_runtime.commands.writable import check_apart, check_no_training, check_writable, is_output
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.baseline import Reference, baseline_of
-from tltl_runtime.regression.dependencies import files_of, select
+from tltl_runtime.regression.dependencies import Selection, files_of, select
 from tltl_runtime.regression.github import findings_as_commands
 from tltl_runtime.regression.retrain import check_places
 from tltl_runtime.regression.run import Done, check, owned, regress
 from tltl_runtime.regression.suite import SHIPPED, Case, Suite, read_suite
+from tltl_runtime.regression.unnamed import unnamed
 from tltl_runtime.texts import listed
 from tltlc.cli import exits
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.formats.github import workflow_command
 from tltlc.record import record
 
 _MOST_NAMED: Final = 8
 """Of the files on which no case depends, as many are named."""
+_MEANT: Final = "v1 and v2 of the shipped levels are changed on purpose: see the page"
 
 
 @record
@@ -51,14 +55,14 @@ class Wanted:
     minutes: float | None
 
     @property
-    def is_json(self) -> bool:
-        """Whether standard output is for the report as JSON alone."""
-        return str(self.files.get("--json")) == "-"
+    def printed(self) -> str | None:
+        """The option of the report for which alone standard output is, in place of the text; None: it is for that."""
+        return next((option for option, path in self.files.items() if is_output(path)), None)
 
     @property
     def written(self) -> dict[str, Path]:
         """The files of reports; standard output is none."""
-        return {option: path for option, path in self.files.items() if option != "--json" or not self.is_json}
+        return {option: path for option, path in self.files.items() if not is_output(path)}
 
 
 def run(wanted: Wanted) -> int:
@@ -71,13 +75,16 @@ def run(wanted: Wanted) -> int:
         TltlError: TLT0005, a file cannot be written; TLT0942, a policy lies where a training goes; what reading the
             suite, playing and training raise.
     """
+    check_no_training(wanted.folder)
     check_writable(wanted.written)
     suite = read_suite(wanted.suite or SHIPPED, wanted.baseline)
     check_apart(wanted.written, files_of(suite))
-    cases, left_out = _chosen(suite, wanted.changed)
+    chosen = _chosen(suite, wanted)
+    cases, left_out = chosen.cases, tuple(case.name for case in chosen.left_out)
     if wanted.minutes is not None:
         check_places(suite, cases, wanted.folder)
-    references = baseline_of(suite) if cases else ()
+    references = _references(suite, cases)
+    _tell_unnamed(suite, chosen.left_out, references)
     check(suite, cases, references)
     found: list[Done] = []
     with owned(wanted.folder):
@@ -93,17 +100,42 @@ def run(wanted: Wanted) -> int:
     return exits.CLEAN if all(done.report.verdict == "pass" for done in found) else exits.FINDINGS
 
 
-def _chosen(suite: Suite, changed: Sequence[str] | None) -> tuple[tuple[Case, ...], tuple[str, ...]]:
-    """The cases to be judged, and the names of those that are left out, which standard error tells."""
-    if changed is None:
-        return suite.cases, ()
-    found = select(suite, changed)
+def _chosen(suite: Suite, wanted: Wanted) -> Selection:
+    """The cases to be judged, and those that are left out, which standard error tells."""
+    if wanted.changed is None:
+        return Selection(suite.cases)
+    found = select(suite, wanted.changed)
     if found.unknown:
         click.echo(f"no case depends on {plain(listed(found.unknown, _MOST_NAMED))}", err=True)
-    left_out = tuple(case.name for case in found.left_out)
-    if left_out:
-        click.echo(f"left out, since nothing has changed that they depend on: {plain(', '.join(left_out))}", err=True)
-    return found.cases, left_out
+    for name, meant in found.slips:
+        said = plain(f"there is no file `{name}`: did you mean `{meant}`?")
+        click.echo(f"warning: {said}", err=True)
+        if wanted.github:
+            click.echo(workflow_command("warning", said, {"title": "--changed"}))
+    if found.left_out:
+        names = plain(", ".join(case.name for case in found.left_out))
+        click.echo(f"left out, since none of the named files concerns them: {names}", err=True)
+    return found
+
+
+def _references(suite: Suite, cases: Sequence[Case]) -> tuple[Reference, ...]:
+    """The baseline, without which nothing can be played."""
+    try:
+        return baseline_of(suite)
+    except TltlError:
+        if cases:
+            raise
+        return ()
+
+
+def _tell_unnamed(suite: Suite, left_out: Sequence[Case], references: tuple[Reference, ...]) -> None:
+    """Warn of files that have changed, and of which nobody said so."""
+    for name, cases in unnamed(suite, left_out, references).items():
+        of = plain(listed(cases, _MOST_NAMED))
+        said = (
+            f"`{plain(name)}` has changed since the baseline, and is not among the files that are named; left out: {of}"
+        )
+        click.echo(f"warning: {said}", err=True)
 
 
 def _play(
@@ -121,7 +153,7 @@ def _play(
             found.append(done)
             display.over()
             for line in case_lines(done.report, width, kept=done.kept):
-                click.echo(line, err=wanted.is_json)
+                click.echo(line, err=wanted.printed is not None)
 
 
 def _retrain(suite: Suite, wanted: Wanted, found: list[Done]) -> None:
@@ -129,7 +161,7 @@ def _retrain(suite: Suite, wanted: Wanted, found: list[Done]) -> None:
     if wanted.minutes is not None:
         again = join([*_again(wanted), "--retrain"])
         asked = Retraining(suite, wanted.folder, wanted.minutes, wanted.workers, again, wanted.fresh)
-        retrain_cases(asked, found, to_stderr=wanted.is_json)
+        retrain_cases(asked, found, to_stderr=wanted.printed is not None)
 
 
 def _untrained(wanted: Wanted, found: list[Done]) -> int:
@@ -183,9 +215,12 @@ def _tell_too(outcome: Outcome, wanted: Wanted) -> None:
 def _tell(outcome: Outcome, wanted: Wanted) -> None:
     """Sum up, and write what was asked for."""
     reports = [done.report for done in outcome.cases]
-    click.echo(sum_line(reports, outcome.missing), err=wanted.is_json)
-    if wanted.is_json:
-        click.echo(json_text(outcome), nl=False)
+    click.echo(sum_line(reports, outcome.missing), err=wanted.printed is not None)
+    if outcome.suite.path == SHIPPED and any(report.verdict != "pass" for report in reports):
+        click.echo(_MEANT, err=wanted.printed is not None)
+    if wanted.printed is not None:
+        # The bytes of the file that it would be, whatever the letters of the terminal.
+        click.echo(REPORTS[wanted.printed](outcome).encode(), nl=False)
     if wanted.github:
         for line in findings_as_commands(outcome.suite, reports, Path(os.environ.get("GITHUB_WORKSPACE") or ".")):
             click.echo(line)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Final
 
 import click
 
 from tltl_runtime.commands.plain import plain
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.retrained import Outcome
 
 _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
+_OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "feasible", "no_way": "no way found"}
 
 
 def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
@@ -24,13 +27,16 @@ def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
 
 
 def sum_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
-    """How many cases have which verdict; ``missing`` were not judged."""
+    """How many cases have which verdict, and what their trainings came to; ``missing`` were not judged."""
     if not reports:
         return "no case was judged" if missing else "no case was to be played"
-    counts = [(sum(each.verdict == verdict for each in reports), verdict) for verdict in _COLORS]
-    return f"{len(reports)} case{'s' * (len(reports) != 1)}: " + ", ".join(
-        f"{count} {verdict}" for count, verdict in counts if count
-    )
+    said = f"{len(reports)} case{'s' * (len(reports) != 1)}: {_counts([each.verdict for each in reports], _COLORS)}"
+    trained = [_OUTCOMES[each.retrained.outcome] for each in reports if each.retrained]
+    return f"{said}; trained anew: {_counts(trained, _OUTCOMES.values())}" if trained else said
+
+
+def _counts(words: Sequence[str], order: Iterable[str]) -> str:
+    return ", ".join(f"{words.count(word)} {word}" for word in order if word in words)
 
 
 def _figures(report: CaseReport) -> str:

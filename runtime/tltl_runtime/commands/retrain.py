@@ -58,9 +58,8 @@ def retrain_cases(asked: Retraining, found: list[Done], *, to_stderr: bool) -> N
         TltlError: TLT0942, a policy lies where a training goes; TLT0730, TLT0850 and TLT0852 of the workers; TLT0005.
     """
     for done in found:
-        if done.report.verdict != "pass" and done.ready and done.ready.outdated:
-            name = plain(done.report.name)
-            click.echo(f"{name}: its policy is not trained further, since it was trained for another spec", err=True)
+        if why := done.useless_training:
+            click.echo(plain(f"{done.report.name}: its policy is not trained further, since {why}"), err=True)
     runs = {
         row: retraining(asked.suite, ready, asked.folder, asked.minutes, asked.pool)
         for row, done in enumerate(found)

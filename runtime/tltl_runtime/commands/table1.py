@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from shlex import join
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,6 +14,7 @@ from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import FiniteRange, output_folder
 from tltl_runtime.commands.workers import all_cores_option
+from tltl_runtime.commands.writable import check_no_training
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -35,6 +37,13 @@ class _Wanted:
     shipped: bool
     minutes: float | None
     workers: Any
+
+    @property
+    def again(self) -> str:
+        """The command that goes on."""
+        words = ["tltlc", "table1", "--out", str(self.folder), *["--shipped"] * self.shipped]
+        words += [] if self.minutes is None else ["--minutes", f"{self.minutes:g}"]
+        return join([*words, "--workers", str(self.workers)] if self.workers else words)
 
 
 @click.command(
@@ -68,8 +77,14 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
 
         title = f"another run of `tltlc table1` is at work in `{folder}`"
         busy = Diagnostic("TLT0931", title, help="wait for its end, or name another folder with --out")
+        check_no_training(folder)
         with held(folder, busy, _ELSEWHERE):
-            text = _table(_Wanted(folder, shipped, minutes, workers))
+            wanted = _Wanted(folder, shipped, minutes, workers)
+            try:
+                text = _table(wanted)
+            except KeyboardInterrupt:
+                click.echo(f"stopped: what is over is kept in `{folder}`; to go on: {wanted.again}", err=True)
+                raise
             click.echo(text, nl=False)
             write_files(folder, {"table1.md": text}, _ELSEWHERE)
         return exits.CLEAN

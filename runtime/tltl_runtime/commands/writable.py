@@ -6,9 +6,12 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryFile
+from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import exists, is_file, reason
+
+_OUTPUT: Final = ("-", "/dev/stdout")
 
 
 def check_writable(files: Mapping[str, Path | None]) -> None:
@@ -45,6 +48,20 @@ def check_apart(files: Mapping[str, Path | None], read: Iterable[Path]) -> None:
             help_ = f"name another place with {option}"
             raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: {taken[place]}", help=help_)])
         taken[place] = f"{option} writes it, too"
+
+
+def check_no_training(folder: Path) -> None:
+    """Raise TltlError, TLT0005, where a folder is that of a training, which is to have its own files alone."""
+    from tltl_runtime.training.run import RUN
+
+    if exists(folder / RUN):
+        title = f"cannot write into `{folder}`: it is the folder of a training"
+        raise TltlError([Diagnostic("TLT0005", title, help="name another folder with --out")])
+
+
+def is_output(path: Path) -> bool:
+    """Whether a file that is asked for is standard output: by `-`, or by its name among the devices."""
+    return str(path) in _OUTPUT
 
 
 def _takes_a_place(path: Path) -> bool:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from shlex import join
 from typing import Any, Final
@@ -17,11 +18,11 @@ from tltl_runtime.stealth.levels.made_for import shown
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
-from tltlc.record import record
+from tltlc.record import EMPTY, record
 from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-baseline"
-VERSION: Final = 2
+VERSION: Final = 3
 MAX_BYTES: Final = 1 << 28
 
 _ROUNDING: Final = 1e-6
@@ -55,18 +56,24 @@ class Identity:
 
 @record
 class Reference:
-    """What was played, and the accounts of its episodes, from number 0 on."""
+    """What was played, the accounts of its episodes, from number 0 on, and the texts of the files that its level was
+    made of, by their names in ``played.files``.
+    """
 
     played: Identity
     accounts: tuple[Account, ...]
+    texts: tuple[tuple[str, str], ...] = ()
 
 
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     """Write the baseline of a suite; raises TltlError, TLT0005."""
-    document = {"format": FORMAT, "version": VERSION, "references": to_json(references)}
-    # A line for each episode, so that what a change of it changes can be read.
-    text = json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    write_file(path, text.replace('{"index":', '\n{"index":') + "\n", "name another place with --output")
+    written = tuple(_Written(each.played, each.accounts) for each in references)
+    document = _json({"format": FORMAT, "version": VERSION, "references": to_json(written)})
+    # A line for each episode and for each line of a text, so that what a change of it changes can be read.
+    episodes = document.removesuffix("}").replace('{"index":', '\n{"index":')
+    texts = {text_sha256(text): text.split("\n") for each in references for _, text in each.texts}
+    lines = ",\n".join(_lines(sha256, each) for sha256, each in texts.items())
+    write_file(path, f'{episodes},\n"texts":{{{lines}}}}}\n', "name another place with --output")
 
 
 def read_baseline(path: Path) -> tuple[Reference, ...]:
@@ -85,10 +92,14 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
         raise _REFUSALS.unreadable(name, "it is something else")
     _REFUSALS.check_version(name, document.get("version"), VERSION)
     try:
-        found = from_json(_Document, document, "baseline").references
+        read = from_json(_Document, document, "baseline")
     except (RecordJsonError, RecursionError) as error:
         raise _REFUSALS.broken(name, str(error)) from None
-    for row, each in enumerate(found):
+    texts = {sha256: "\n".join(lines) for sha256, lines in read.texts.items()}
+    for sha256, text in texts.items():
+        if text_sha256(text) != sha256:
+            raise _REFUSALS.broken(name, f"baseline.texts: what is called `{sha256:.12}` has another SHA-256")
+    for row, each in enumerate(read.references):
         where = f"baseline.references[{row}].accounts"
         # Episodes are compared by their place, and a mean of none is no figure.
         if not each.accounts or any(account.index != place for place, account in enumerate(each.accounts)):
@@ -96,7 +107,26 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
         for account in each.accounts:
             for flaw in _flaws(account):
                 raise _REFUSALS.broken(name, f"{where}[{account.index}]: {flaw}")
-    return found
+    return tuple(Reference(each.played, each.accounts, _texts(each.played, texts)) for each in read.references)
+
+
+def _texts(played: Identity, texts: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """The texts of what was played, those that there are."""
+    return tuple((name, texts[sha256]) for name, sha256 in played.files if sha256 in texts)
+
+
+def _lines(sha256: str, lines: Sequence[str]) -> str:
+    within = ",\n".join(map(_json, lines))
+    return f'"{sha256}":[\n{within}]'
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+
+
+def text_sha256(text: str) -> str:
+    """The SHA-256 of a text, in hexadecimal, as the files of a level have it."""
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _flaws(account: Account) -> Iterator[str]:
@@ -183,10 +213,20 @@ def baseline_command(suite: Suite) -> str:
 
 
 @record
+class _Written:
+    """A reference without its texts, which stand beside all of them: levels and variants share files."""
+
+    played: Identity
+    accounts: tuple[Account, ...]
+
+
+@record
 class _Document:
     format: str
     version: int
-    references: tuple[Reference, ...]
+    references: tuple[_Written, ...]
+    texts: Mapping[str, tuple[str, ...]] = EMPTY
+    """Lines by the SHA-256 of the whole."""
 
 
 def _same(one: Identity, other: Identity, names: tuple[str, ...]) -> bool:

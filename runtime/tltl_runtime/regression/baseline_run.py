@@ -11,6 +11,7 @@ from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Reference, write_baseline
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
+from tltl_runtime.regression.level_texts import level_texts
 from tltl_runtime.regression.play import Ready, Told, episodes, ready
 from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict import Verdict, judge
@@ -44,10 +45,13 @@ def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference,
     yield from _recorded(_groups(suite), pool, told, kept)
 
 
-def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generator[Compared]:
+def write_recorded(
+    suite: Suite, path: Path, pool: Pool, told: Told, older: tuple[Reference, ...] = ()
+) -> Generator[Compared]:
     """Record the baseline of a suite, as :func:`record_baseline` does, and write it to ``path`` when all is over.
 
-    Until then what is over is kept at :func:`kept_at`, so that a recording that was stopped goes on.
+    Until then what is over is kept at :func:`kept_at`, so that a recording that was stopped goes on.  What an ``older``
+    baseline has is not played again where nothing has changed since.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; what :func:`record_baseline` raises.
@@ -56,9 +60,11 @@ def write_recorded(suite: Suite, path: Path, pool: Pool, told: Told) -> Generato
     kept = (partial and read_kept(tuple[Reference, ...], partial, inputs_hash([]))) or ()
     # The place may refuse: better to know before minutes of play.
     _keep(partial, kept)
-    for each in _recorded(groups, pool, told, kept):
+    for each in _recorded(groups, pool, told, (*kept, *older)):
         found.append(each.reference)
-        _keep(partial, (*found, *(other for other in kept if other not in found)))
+        # What is older stays where it is, and whoever wants all afresh goes on without it.
+        new = tuple(reference for reference in found if reference not in older)
+        _keep(partial, (*new, *(other for other in kept if other not in new)))
         yield each
     write_baseline(path, tuple(found))
     if partial:
@@ -118,10 +124,12 @@ def _recorded(
 
 def _played(one: Ready, pool: Pool, told: Told) -> Reference:
     accounts: list[Account] = []
+    # An edit while they are played ends the episodes: the texts of before are those that are played.
+    texts = level_texts(one.setup.level, one.setup.variant, one.played.files)
     for each in episodes(one, pool):
         accounts.append(each.account)
         told(one.case, len(accounts), each.account)
-    return Reference(one.played, tuple(accounts))
+    return Reference(one.played, tuple(accounts), texts)
 
 
 def _keep(path: Path | None, references: tuple[Reference, ...]) -> None:

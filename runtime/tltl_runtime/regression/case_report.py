@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from tltl_runtime.evaluation.figures import Figures, figures_of
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Identity
 from tltl_runtime.regression.explain import Finding, ends, findings
+from tltl_runtime.regression.level_texts import level_texts
 from tltl_runtime.regression.play import Result
 from tltl_runtime.regression.reasons import edits, obstacles, reasons
 from tltl_runtime.regression.retrained import Retrained
@@ -84,11 +85,18 @@ def report_on(result: Result) -> CaseReport:
         causes=(*([outdated] if outdated else []), *said, *blocked),
         told=outdated or next(iter(blocked), None) or _headline(result.judgement, case.thresholds, said, failed),
         explanation=findings(level, setup.fspa, now, before),
-        edits=tuple(edits(result.ready.played, result.reference.played, result.ready.changes)),
+        edits=tuple(_edits(result)),
         played=result.ready.played,
         reference=result.reference.played,
         accounts=tuple(now),
     )
+
+
+def _edits(result: Result) -> Iterator[str]:
+    """What is otherwise than in the baseline; of a file that was edited meanwhile it is not known what."""
+    ready, before = result.ready, result.reference
+    texts = level_texts(ready.setup.level, ready.setup.variant, ready.played.files)
+    return edits(ready.played, before.played, ready.changes, texts, before.texts)
 
 
 def _headline(judgement: Judgement, thresholds: Thresholds, said: Sequence[str], failed: Finding | None) -> str:

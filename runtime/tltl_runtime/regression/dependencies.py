@@ -9,17 +9,18 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from difflib import get_close_matches
 from os.path import normpath
 from pathlib import Path
 from typing import Any, Final
 
-from tltl_runtime.regression.play import policy_file
+from tltl_runtime.regression.named_files import policy_file
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.levels.file import level_path
 from tltl_runtime.stealth.levels.made_for import LEVELS, SPECS
 from tltl_runtime.stealth.levels.place import overlays_of
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import MAX_ARTEFACT_BYTES, is_file, read_source
+from tltlc.files import MAX_ARTEFACT_BYTES, exists, is_file, read_source
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Import
 from tltlc.project import FILE_NAME, project_for
@@ -37,11 +38,15 @@ _SPEC: Final = re.compile(r"(.+\.tltl)(?::\w+)?\Z")
 
 @record
 class Selection:
-    """The cases that depend on what has changed, those that do not, and names on which no case depends."""
+    """The cases that depend on what is said to have changed, those that do not, and names on which no case depends.
+
+    ``slips`` are those of ``unknown`` that are no file but like one, each with the name that may be meant.
+    """
 
     cases: tuple[Case, ...]
-    left_out: tuple[Case, ...]
-    unknown: tuple[str, ...]
+    left_out: tuple[Case, ...] = ()
+    unknown: tuple[str, ...] = ()
+    slips: tuple[tuple[str, str], ...] = ()
 
 
 def select(suite: Suite, changed: Sequence[str]) -> Selection:
@@ -53,10 +58,15 @@ def select(suite: Suite, changed: Sequence[str]) -> Selection:
     of = {case.name: dependencies(suite, case) for case in suite.cases}
     concerned = {case.name for case in suite.cases if any(_is_meant(name, of[case.name]) for name in changed)}
     known = {path for paths in of.values() for path in paths}
+    unknown = tuple(name for name in dict.fromkeys(changed) if not _is_meant(name, known))
+    # What is named already is no other word for a file that was renamed.
+    others = {path for path in known if is_file(path) and not any(_is_meant(name, [path]) for name in changed)}
+    meant = ((name, _like(name, others)) for name in unknown)
     return Selection(
         tuple(case for case in suite.cases if case.name in concerned),
         tuple(case for case in suite.cases if case.name not in concerned),
-        tuple(name for name in dict.fromkeys(changed) if not _is_meant(name, known)),
+        unknown,
+        tuple((name, like) for name, like in meant if like),
     )
 
 
@@ -87,6 +97,17 @@ def _is_meant(name: str, paths: Iterable[Path]) -> bool:
         or any((*path.parts[-len(parts) : -1], bare) == parts for bare in (path.stem, path.name.partition(".")[0]))
         for path in paths
     )
+
+
+def _like(name: str, paths: Iterable[Path]) -> str | None:
+    """What a name of no file that there is may stand for; git names files from a folder above, perhaps."""
+    given = Path(_unquoted(name))
+    here = Path.cwd()
+    if any(exists(folder / given) for folder in (here, *here.parents)):
+        return None
+    stems = sorted({path.stem for path in paths if given.suffix in ("", path.suffix)})
+    close = get_close_matches(given.stem, stems, n=1, cutoff=0.7)
+    return f"{close[0]}{given.suffix}" if close else None
 
 
 def _unquoted(name: str) -> str:

@@ -35,7 +35,7 @@ def document(
     """The report on a suite.
 
     ``complete`` says whether all of its cases were judged, and trained for, that were asked for; ``left_out`` are the
-    names of those that were not, since nothing has changed that they depend on.
+    names of those that were not, since they depend on nothing that was named as changed.
     """
     verdicts = [report.verdict for report in reports]
     return {
@@ -64,6 +64,7 @@ def _case(report: CaseReport) -> dict[str, Any]:
         "rate_interval": list(report.rate_interval),
         "baseline": to_json(report.baseline),
         "changes": to_json(report.changes),
+        "headline": report.headline,
         "reasons": list(report.reasons),
         "explanation": to_json(report.explanation),
         "played": to_json(played),

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Generator
 from contextlib import closing
-from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, results, set_up
@@ -14,15 +13,16 @@ from tltl_runtime.policies.file import MAX_BYTES, from_bytes
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.account import Account, account
 from tltl_runtime.regression.baseline import Identity, Reference
+from tltl_runtime.regression.named_files import policy_file
 from tltl_runtime.regression.suite import Case
 from tltl_runtime.regression.verdict import Judgement, judge
 from tltl_runtime.stealth.episodes.file import from_bytes as episode_from_bytes
 from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.levels.file import level_and_changes
+from tltl_runtime.stealth.levels.file import level_and_changes, load_level
 from tltl_runtime.task import read_spec
 from tltl_runtime.training.versions import versions
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import is_dir, read_bytes
+from tltlc.files import read_bytes
 from tltlc.record import record
 from tltlc.spec_file import split
 
@@ -93,7 +93,8 @@ def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
     """The case's episodes as they are played; closing the iterator ends the workers.
 
     Raises:
-        TltlError: TLT0905, the level is not the one that was made ready; what playing raises.
+        TltlError: TLT0905, the level is not the one that was made ready, or not any more when all are over; what
+            playing raises.
     """
     tasks = [Task(index) for index in range(made.case.episodes)]
     with closing(results(made.setup, tasks, pool)) as playing:
@@ -103,9 +104,16 @@ def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
                 continue
             episode = episode_from_bytes(each.recording, _PLAYER)
             # Each worker has loaded the level for itself.
-            if episode.level.files != made.level.files:
-                raise _edited(made, episode.level)
+            _check_unedited(made, episode.level)
             yield Recorded(account(each.played, episode), each.recording)
+    check_unedited(made)
+
+
+def check_unedited(made: Ready) -> None:
+    """Raise TltlError, TLT0905, where the level was edited since it was made ready, which workers that had loaded it do
+    not see; and what is wrong with it now.
+    """
+    _check_unedited(made, load_level(made.setup.level, made.setup.variant))
 
 
 def judged(made: Ready, reference: Reference, error: float, pool: Pool, told: Callable[[int, Account], None]) -> Result:
@@ -118,24 +126,18 @@ def judged(made: Ready, reference: Reference, error: float, pool: Pool, told: Ca
             now = [recorded.account for recorded in found]
             judgement = judge(now, reference.accounts, made.case.episodes, made.case.thresholds, error)
             if judgement:
+                check_unedited(made)
                 return Result(made, reference, judgement, tuple(found))
     raise AssertionError("the last episode settles every verdict")
 
 
-def policy_file(path: Path) -> Path:
-    """The policy of a case: a file, or that in the folder of a training."""
-    if not is_dir(path):
-        return path
-    from tltl_runtime.training.run import POLICY
-
-    return path / POLICY
-
-
-def _edited(made: Ready, level: Level) -> TltlError:
-    before, now = dict(made.level.files), dict(level.files)
-    names = [f"`{name}`" for name in {**before, **now} if before.get(name) != now.get(name)]
-    title = f"{', '.join(names)} changed while `{made.case.name}` was played"
-    return TltlError([Diagnostic("TLT0905", title, help="give the same command again")])
+def _check_unedited(made: Ready, level: Level) -> None:
+    before, now = made.level.files, level.files
+    if before != now:
+        # Overlays of one name may come from several folders.
+        names = dict.fromkeys(f"`{each[0]}`" for each in (*before, *now) if (each in before) != (each in now))
+        title = f"{', '.join(names)} changed while `{made.case.name}` was played"
+        raise TltlError([Diagnostic("TLT0905", title, help="give the same command again")])
 
 
 def _outdated(case: Case, setup: Setup, level: Level) -> str | None:

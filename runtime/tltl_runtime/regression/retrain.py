@@ -16,7 +16,8 @@ from tltl_runtime.record_json import to_json
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.confidence import rate_interval
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
-from tltl_runtime.regression.play import Ready, episodes, policy_file
+from tltl_runtime.regression.named_files import policy_file
+from tltl_runtime.regression.play import Ready, episodes
 from tltl_runtime.regression.retrained import Best, Retrained, Trained, outcome_of, sentence
 from tltl_runtime.regression.run import WRITABLE, Done, case_folder
 from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite

@@ -77,6 +77,9 @@ def sentence(
 ) -> str:
     """What is told of the outcome."""
     took = f"{duration(trained.seconds)} of training ({trained.steps:,} steps)"
+    if trained.searched:
+        both = f"{trained.searched:,} and {trained.steps:,} steps"
+        took = f"{duration(trained.seconds)} of search and training ({both})"
     count, passed = figures.episodes, round(figures.pass_rate * figures.episodes)
     now = f"the policy meets the spec in {passed} of {count} fresh episodes ({between(rate_interval)} for certain)"
     if outcome == "learned":
@@ -88,7 +91,9 @@ def sentence(
         said.append(f"after {took} {now}, and {percent_exactly(thresholds.pass_rate)} are asked for")
     else:
         broken = "" if trained.complete else ", which the limit broke off,"
-        said = [f"no way found: neither a search of {trained.searched:,} steps{broken} nor {took} met the spec once"]
+        search, training = f"a search of {trained.searched:,} steps{broken}", f"a training of {trained.steps:,} steps"
+        in_all = f"{duration(trained.seconds)} in all"
+        said = [f"no way found: neither {search} nor {training}, {in_all}, met the spec once"]
         said.append("the level is likely infeasible" if trained.complete else "that says little: let it train longer")
     if best is not None:
         which = "the best of the failed ones" if passed else "the best of its episodes"

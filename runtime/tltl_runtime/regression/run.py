@@ -14,6 +14,7 @@ from tltl_runtime.regression.baseline import Reference, baseline_command, check_
 from tltl_runtime.regression.case_report import CaseReport, report_on, report_on_broken, report_on_edited
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.play import Ready, Result, Told, judged, ready
+from tltl_runtime.regression.reasons import is_infeasible
 from tltl_runtime.regression.slugs import slugs
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.episodes.file import SUFFIX
@@ -52,12 +53,26 @@ class Done:
 
     @property
     def to_train(self) -> Ready | None:
-        """What a training could tell more of: a case that was played and did not pass, unless one has done so, or its
-        policy is judged by a spec that nobody asks for any more.
+        """What a training could tell more of: a case that was played and did not pass, unless one has done so, or
+        nothing comes of it.
         """
-        if self.report.verdict == "pass" or self.report.retrained or (self.ready and self.ready.outdated):
+        return None if self.report.retrained or self.useless_training else self._not_passed
+
+    @property
+    def useless_training(self) -> str | None:
+        """Why nothing would come of a training for a case that was played and did not pass; None where it may help."""
+        one = self._not_passed
+        if one is None:
             return None
-        return self.ready
+        if one.outdated:
+            return "it was trained for another spec"
+        if is_infeasible(one.level, one.setup.fspa):
+            return f"nobody can do what `{one.setup.fspa.name}` asks, as was said above"
+        return None
+
+    @property
+    def _not_passed(self) -> Ready | None:
+        return None if self.report.verdict == "pass" else self.ready
 
 
 def check(suite: Suite, cases: Sequence[Case], references: tuple[Reference, ...]) -> None:

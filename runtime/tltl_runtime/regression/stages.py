@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
 from tltl_runtime.stealth.expert.goals import distant_entity
 from tltlc.automaton.fspa import Fspa, Implicant
-from tltlc.expression import Expression, Signal, nodes
+from tltlc.expression import Expression, Param, Signal, nodes
 from tltlc.expression_eval import evaluate
 from tltlc.monitor.tables import tables
+from tltlc.record import EMPTY
 
 REACHES: Final = "reaches "
 """How a deed begins that is to be somewhere."""
@@ -18,6 +19,9 @@ MEETS: Final = "meets the spec"
 
 _FAR: Final = 1e4
 """Metres that no level has."""
+
+_PRECISION: Final = 1e-4
+"""Metres to which it is known from where on one is near."""
 
 
 def target_of(fspa: Fspa, atom: int) -> str | None:
@@ -31,9 +35,24 @@ def target_of(fspa: Fspa, atom: int) -> str | None:
     return distant_entity(name) if near and not far else None
 
 
-def _holds(fspa: Fspa, expression: Expression, distance: str, metres: float) -> bool:
+def near_enough(fspa: Fspa, atom: int, params: Mapping[str, float]) -> float | None:
+    """The metres below which an atom holds that has a target; None where it has none, or other ``params`` decide."""
+    target, expression = target_of(fspa, atom), fspa.atoms[atom].expression
+    if target is None or {node.name for node in nodes(expression) if isinstance(node, Param)} - params.keys():
+        return None
+    near, far = 0.0, _FAR
+    while far - near > _PRECISION:
+        middle = (near + far) / 2
+        near, far = (middle, far) if _holds(fspa, expression, f"distance({target})", middle, params) else (near, middle)
+    return far
+
+
+def _holds(
+    fspa: Fspa, expression: Expression, distance: str, metres: float, params: Mapping[str, float] = EMPTY
+) -> bool:
+    values = {**{param.name: param.value for param in fspa.params}, **params}
     try:
-        return evaluate(expression, {distance: metres}, {param.name: param.value for param in fspa.params}) > 0.0
+        return evaluate(expression, {distance: metres}, values) > 0.0
     except (ArithmeticError, ValueError):
         return False
 

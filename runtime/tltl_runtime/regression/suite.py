@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Final
 
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
+from tltl_runtime.regression.named_files import level_like, policy_faults, policy_for_its_spec, spec_faults
 from tltl_runtime.stealth.levels.file import level_names, level_path, shared_names, variants
 from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.levels.place import level_place, overlays_of, with_overlays
-from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
+from tltl_runtime.stealth.levels.table import REQUIRED, Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import exists, is_file, read_source
@@ -96,14 +97,15 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     Raises:
         TltlError: all that is wrong, as far as it can be told at once.  TLT0801 no TOML; TLT0802 an unknown key;
             TLT0803 a missing key, a value of the wrong kind or out of range; TLT0804 two cases of one name; TLT0805
-            there is no such file; TLT0800 there is no such level or variant; TLT0853 no policy comes with the level.
+            there is no such file; TLT0800 there is no such level or variant; TLT0853 no policy comes with the level;
+            and of the files of policies and specs as of :mod:`~tltl_runtime.regression.named_files`.
     """
     source = read_source(path, shown(path))
     log: list[Diagnostic] = []
     table = Table(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
-    if "case" not in table.entries and {"bounds", "start"} & set(table.entries):
+    if "case" not in table.entries and (other := _something_else(table)):
         help_ = "a suite lists cases that name levels, each under `[[case]]`"
-        raise TltlError([Diagnostic("TLT0803", "this is a level, and no suite", (table.label,), help_)])
+        raise TltlError([Diagnostic("TLT0803", f"this is {other}, and no suite", (table.label,), help_)])
     seed = table.whole("seed", 0, low=0, high=2**31 - 1)
     error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
     episodes = _episodes(table, MOST_EPISODES)
@@ -123,15 +125,21 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     return Suite(path, seed, error, tuple(case for case, _ in filter(None, cases)), baseline or baseline_path(path))
 
 
+def _something_else(table: Table) -> str | None:
+    """What other file this is, by its keys."""
+    kinds = {"an asset": {"type"}, "a level": {"bounds", "start"}, "an overlay": {"change", "add"}}
+    return next((kind for kind, keys in kinds.items() if keys & table.entries.keys()), None)
+
+
 def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> tuple[Case, Label] | None:
     before = len(table.log)
     level, place = _level(table, folder)
-    variant = table.text("variant", "")
+    variant = _text(table, "variant", "")
     overlays = _overlays(table, folder)
-    reference = table.text("reference", "")
+    reference = _text(table, "reference", "")
     spec = _spec(table, folder)
     episodes, thresholds = _episodes(table, episodes), _thresholds(table, thresholds)
-    name = table.text("name", "")
+    name = _text(table, "name", "")
     policy = _policy(table, folder, level)
     table.done()
     if len(table.log) > before or policy is None:
@@ -152,6 +160,14 @@ def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> 
     return Case(name, level, played, reference or there[0], spec, policy, episodes, thresholds, place), table.label
 
 
+def _text(table: Table, key: str, default: str = REQUIRED) -> str:
+    """A text that is not empty."""
+    found, entry = table.text(key, default), table.entries.get(key)
+    if entry is not None and entry.value == "":
+        table.log[-1] = wrong(entry, key, "a text that is not empty")
+    return found
+
+
 def _variants(table: Table, level: str) -> tuple[str, ...]:
     """The variants of a level; of one that does not load any more, which is its case's finding, what is asked for."""
     try:
@@ -163,12 +179,13 @@ def _variants(table: Table, level: str) -> tuple[str, ...]:
 
 def _level(table: Table, folder: Path) -> tuple[str, str]:
     """A level, and its place as seen from the suite where it is a file."""
-    level = table.text("level")
+    level = _text(table, "level")
     if not level:
         return "", ""
     if level.endswith(".toml"):
         if not is_file(folder / level):
-            table.log.append(_missing("level", level, table.place("level")))
+            help_ = level_like(level, folder) or "paths are relative to the suite"
+            table.log.append(Diagnostic("TLT0800", f"there is no level `{level}`", (table.place("level"),), help_))
         return str(folder / level), Path(normpath(level)).as_posix()
     try:
         level_path(level)
@@ -176,8 +193,12 @@ def _level(table: Table, folder: Path) -> tuple[str, str]:
         (found,) = error.diagnostics
         name, variant = level_place(level)
         is_there = name in level_names() or is_file(folder / name)
-        help_ = _apart(name, variant) if variant and is_there else found.help
-        table.log.append(Diagnostic(found.code, found.title, (table.place("level"),), help_))
+        way_out = found.help
+        if variant and is_there:
+            way_out = _apart(name, variant)
+        elif not level.endswith((".tltl", ".json")) and "+" not in level:
+            way_out = level_like(level, folder) or found.help
+        table.log.append(Diagnostic(found.code, found.title, (table.place("level"),), way_out))
     return level, ""
 
 
@@ -192,7 +213,7 @@ def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
     """What is added to the variant: names, or paths from here."""
     entry = table.entries.get("overlay")
     single = entry is not None and not isinstance(entry.value, list)
-    names = (table.text("overlay"),) if single else table.names("overlay", ())
+    names = (_text(table, "overlay"),) if single else table.names("overlay", ())
     found = []
     for name in names:
         path = folder / name
@@ -203,28 +224,35 @@ def _overlays(table: Table, folder: Path) -> tuple[str, ...]:
 
 
 def _spec(table: Table, folder: Path) -> str | None:
-    text = table.text("spec", "")
+    text = _text(table, "spec", "")
     if not text:
         return None
     file, name = split(text)
     if not is_file(folder / file):
         table.log.append(_missing("spec", file, table.place("spec")))
-    return f"{folder / file}:{name}" if name else str(folder / file)
+    spec = f"{folder / file}:{name}" if name else str(folder / file)
+    if is_file(folder / file):
+        table.log += spec_faults(spec, table.place("spec"))
+    return spec
 
 
 def _policy(table: Table, folder: Path, level: str) -> Path | None:
     """The policy's file, or the folder of its training; by default what comes with the level."""
-    named = table.text("policy", "")
+    named = _text(table, "policy", "")
     if not named or named in shipped_policies():
         found = shipped_policy(named or level)
         if found is None and level and not table.log:
             title, label = f"no policy comes with the level `{level}`", table.place("level")
             help_ = f'name one that was trained, e.g. `policy = "training/{Path(level).stem}"`'
+            if other := policy_for_its_spec(level):
+                help_ += f', or the one for the same spec that comes with tltlc: `policy = "{other}"`'
             table.log.append(Diagnostic("TLT0853", title, (label,), help_))
         return found
     path = folder / named
     if not exists(path):
         table.log.append(_missing("policy", named, table.place("policy"), tuple(shipped_policies())))
+    else:
+        table.log += policy_faults(path, table.place("policy"))
     return path
 
 
@@ -244,9 +272,13 @@ def _thresholds(table: Table, defaults: Thresholds) -> Thresholds:
     found.done()
     made = Thresholds(*values)
     if made.fail_rate > made.pass_rate and len(table.log) == before:
-        key = "fail_rate" if "fail_rate" in found.entries else "pass_rate"
-        entry = found.entries[key]
-        table.log.append(wrong(entry, key, f"a `fail_rate` of {made.pass_rate:g}, the `pass_rate`, at the most"))
+        if "fail_rate" in found.entries:
+            expected = f"a `fail_rate` of {made.pass_rate:g}, the `pass_rate`, at the most"
+            table.log.append(wrong(found.entries["fail_rate"], "fail_rate", expected))
+        else:
+            title = f"`pass_rate` is {made.pass_rate:g}, below the `fail_rate`, which is {made.fail_rate:g} by default"
+            help_ = f"give a `fail_rate`, too, of {made.pass_rate:g} at the most"
+            table.log.append(Diagnostic("TLT0803", title, (found.place("pass_rate"),), help_))
     return made
 
 

@@ -62,7 +62,12 @@ def test_the_expert_until_there_are_enough(tltlc: TltlcFunction, here: Path) -> 
     assert names(folder) == [f"cover_and_hide-v0-{seed}" for seed in range(3)]
     assert "seed 2: " in more.out and "seed 1: " not in more.out
     again = tltlc("record", "--spec", "soon.tltl", "--episodes", "3")
-    assert (again.status, len(again.out.splitlines())) == (0, 2)
+    assert (again.status, again.err, len(again.out.splitlines())) == (0, "", 2)
+    assert again.out.startswith("3 of 3 demonstrations are in demonstrations/cover_and_hide-v0-soon\n")
+    fewer = tltlc("record", "--spec", "soon.tltl", "--episodes", "2")
+    assert (fewer.status, fewer.err) == (0, "")
+    there, _ = fewer.out.splitlines()
+    assert there == "3 demonstrations are in demonstrations/cover_and_hide-v0-soon, and 2 are asked for"
 
 
 def test_what_fails_is_not_kept_and_is_told(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811

@@ -15,7 +15,7 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
-from tests.runtime.regression.game import SUITE, write_game
+from tests.runtime.regression.game import SUITE, edit, write_game
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tltl_runtime.commands.baseline import _advice
 from tltl_runtime.regression.baseline import read_baseline
@@ -198,7 +198,7 @@ def test_only_what_a_change_concerns(tltlc: Run, game: Path) -> None:  # noqa: F
     told = found.err.splitlines()
     assert told[:2] == [
         "no case depends on README.md",
-        "left out, since nothing has changed that they depend on: room:v0, room:v1",
+        "left out, since none of the named files concerns them: room:v0, room:v1",
     ]
     said = json.loads(Path("report.json").read_text(encoding="utf-8"))
     assert (said["left_out"], said["complete"], len(said["cases"])) == (NAMES[:2], True, 1)
@@ -212,13 +212,72 @@ def test_where_nothing_is_concerned(tltlc: Run, game: Path, words: list[str]) ->
     found = tltlc("regress", "game.toml", "--junit", "report.xml", *ONE, "--changed", *words)
     assert (found.status, found.out) == (0, "no case was to be played\n")
     # One of an earlier run would be taken for this one's.
-    assert "Left out, since nothing has changed that they depend on" in Path("regression/game/report.html").read_text(
+    assert "Left out, since none of the named files concerns them" in Path("regression/game/report.html").read_text(
         encoding="utf-8"
     )
-    assert f"left out, since nothing has changed that they depend on: {', '.join(NAMES)}" in found.err
+    assert f"left out, since none of the named files concerns them: {', '.join(NAMES)}" in found.err
     assert ("no case depends on README.md, src/game.py" in found.err) == bool(words)
     (tests,) = ET.parse("report.xml").getroot()
     assert tests.get("tests") == "0"
+
+
+def test_a_name_that_is_no_file_may_be_a_slip(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("regress", "game.toml", *ONE, "--changed", "gaurd", "assets/hopeles.toml")
+    assert (found.status, found.out) == (0, "no case was to be played\n")
+    told = found.err.splitlines()
+    assert told[:2] == [
+        "no case depends on gaurd, assets/hopeles.toml",
+        "warning: there is no file `gaurd`: did you mean `guard`?",
+    ]
+    assert "warning" not in told[2]
+    # A file that is there is no slip, and neither is one that was renamed to what is named, too.
+    Path("gaurd.toml").touch()
+    assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "gaurd.toml").err
+    assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "rooms.toml", "room.toml").err
+    said = tltlc("regress", "game.toml", "--github", *ONE, "--changed", "rooms.toml")
+    assert said.out.startswith("::warning title=--changed::there is no file `rooms.toml`: did you mean `room.toml`?\n")
+
+
+def test_what_has_changed_and_is_not_named_is_told(tltlc: Run, game: Path) -> None:  # noqa: F811
+    edit("room.toml", "8.0, 8.0", "8.0, 8.5")
+    found = tltlc("regress", "game.toml", *ONE, "--changed", "soon")
+    warning = (
+        "warning: `room.toml` has changed since the baseline, and is not among the files that are named; left out: "
+    )
+    assert f"{warning}room:v0, room:v1" in found.err.splitlines()
+    found = tltlc("regress", "game.toml", *ONE, "--changed", "README.md")
+    assert f"{warning}room:v0, room:v1, hopeless" in found.err.splitlines() and found.status == 0
+    assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "room").err
+    # Without a baseline nothing can be said of it.
+    Path("game.baseline.json").unlink()
+    assert "warning" not in tltlc("regress", "game.toml", *ONE, "--changed", "README.md").err
+
+
+@pytest.mark.parametrize("option", ["--json", "--junit", "--html"])
+@pytest.mark.parametrize("place", ["-", "/dev/stdout"])
+def test_each_report_can_be_printed_in_place_of_the_text(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    option: str,
+    place: str,
+) -> None:
+    found = tltlc("regress", "game.toml", option, place, *ONE)
+    assert "3 cases: 2 pass, 1 fail" in found.err and "3 cases" not in found.out.splitlines()
+    again = tltlc("regress", "game.toml", option, "report", *ONE)
+    assert found.out == Path("report").read_text(encoding="utf-8")
+    assert "3 cases: 2 pass, 1 fail" in again.out and not Path("-").exists()
+
+
+def test_standard_output_is_for_one_report(tltlc: Run, game: Path) -> None:  # noqa: F811
+    both = "both need standard output: write"
+    for words, said in {
+        ("--json", "-", "--html", "-"): f"`--json -` and `--html -` {both} the page to a file",
+        ("--junit", "/dev/stdout", "--html", "-"): f"`--junit /dev/stdout` and `--html -` {both} the page to a file",
+        ("--github", "--junit", "-"): f"--github and `--junit -` {both} the XML to a file",
+        ("--github", "--json", "-"): f"--github and `--json -` {both} the JSON to a file",
+    }.items():
+        found = tltlc("regress", "game.toml", *words)
+        assert (found.status, found.out) == (2, "") and said in found.err
 
 
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
@@ -332,6 +391,33 @@ def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
     assert (found.status, found.out) == (3, "") and "name another place with --output" in found.err
 
 
+def test_a_baseline_keeps_what_has_not_changed_and_says_what_has(tltlc: Run, game: Path) -> None:  # noqa: F811
+    before = Path("game.baseline.json").read_bytes()
+    found = tltlc("baseline", "game.toml", *ONE)
+    assert found.out == "".join(
+        f"room:v0: {spec} met in {met} of 50 episodes  (as before)\n" for spec, met in (("easy", 50), ("soon", 0))
+    )
+    assert "of 50 episodes" not in found.err
+    assert Path("game.baseline.json").read_bytes() == before
+    edit("game.toml", 'name = "hopeless"', 'name = "hopeless"\nepisodes = 25')
+    found = tltlc("baseline", "game.toml", *ONE)
+    assert found.out.splitlines() == [
+        "room:v0: easy met in 50 of 50 episodes  (as before)",
+        "room:v0: soon met in 0 of 25 episodes; before: 0 of 50",
+    ]
+    edit("room.toml", "8.0, 8.0", "8.0, 8.5")
+    assert tltlc("baseline", "game.toml", *ONE).out.splitlines() == [
+        "room:v0: easy met in 50 of 50 episodes; before: 50 of 50",
+        "room:v0: soon met in 0 of 25 episodes; before: 0 of 25",
+    ]
+    found = tltlc("baseline", "game.toml", "--fresh", *ONE)
+    assert "room:v0: 50 of 50 episodes, 50 met the spec" in found.err.splitlines()
+    assert "as before" not in found.out
+    Path("game.baseline.json").write_text("{}", encoding="utf-8")
+    found = tltlc("baseline", "game.toml", *ONE)
+    assert found.status == 0 and "before" not in found.out, "what is no baseline says nothing"
+
+
 def test_a_case_that_is_always_met_needs_more_episodes_alone() -> None:
     case = Case("room:v0", "room", "v0", "v0", None, Path("bot"), 25, Thresholds(), "")
     assert _advice(1.0, case) == "give it more `episodes` than 25, which are too few to be certain"
@@ -376,6 +462,50 @@ def _lengthen(baseline: Path, episodes: int) -> None:
         known = each["accounts"]
         each["accounts"] = [{**known[index % len(known)], "index": index} for index in range(episodes)]
     baseline.write_text(json.dumps(document), encoding="utf-8")
+
+
+def test_a_first_baseline_that_is_stopped_says_what_there_is(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tltl_runtime.regression.baseline_run._played", stopped)
+    Path("game.baseline.json").unlink()
+    found = tltlc("baseline", "game.toml", *ONE)
+    assert (found.status, found.out) == (130, "")
+    assert found.err == (
+        "stopped: no `game.baseline.json` was written; what is over is kept in `game.baseline.json.partial`: the same "
+        "command goes on with it\n"
+    )
+    assert Path("game.baseline.json.partial").exists()
+
+
+def test_the_folder_of_a_training_is_none_for_a_run(tltlc: Run, game: Path) -> None:  # noqa: F811
+    Path("training/vault").mkdir(parents=True)
+    Path("training/vault/run.json").touch()
+    found = tltlc("regress", "game.toml", "--out", "training/vault", *ONE)
+    assert (found.status, found.out) == (3, "")
+    assert found.err == (
+        "error[TLT0005]: cannot write into `training/vault`: it is the folder of a training\n"
+        "  help: name another folder with --out\n"
+    )
+    assert [path.name for path in Path("training/vault").iterdir()] == ["run.json"]
+
+
+def test_findings_of_the_shipped_suite_are_said_to_be_meant(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    meant = "v1 and v2 of the shipped levels are changed on purpose: see the page"
+    assert meant not in tltlc("regress", "game.toml", *ONE).out
+    monkeypatch.setattr("tltl_runtime.commands.regression_run.SHIPPED", Path("game.toml"))
+    assert tltlc("regress", "game.toml", *ONE).out.splitlines()[-2:] == ["3 cases: 2 pass, 1 fail", meant]
+    assert meant in tltlc("regress", "game.toml", "--json", "-", *ONE).err
+    assert meant not in tltlc("regress", "game.toml", *ONE, "--changed", "easy").out, "all pass"
 
 
 def test_a_baseline_that_is_stopped_leaves_the_old_one(game: Path) -> None:

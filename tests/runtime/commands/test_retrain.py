@@ -43,8 +43,9 @@ def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa: F811
     found = tltlc(*RETRAIN, "--json", "report.json", "--junit", "report.xml")
     assert found.status == 1
-    (told,) = (line for line in found.out.splitlines() if "trained anew" in line)
+    (told,) = (line for line in found.out.splitlines() if line.startswith("hopeless, trained anew"))
     assert told.startswith("hopeless, trained anew: no way found: neither a search of ")
+    assert found.out.splitlines()[-1] == "3 cases: 2 pass, 1 fail; trained anew: 1 no way found"
     reports = "--json report.json --junit report.xml --workers 1"
     again = f"tltlc regress game.toml --out regression/game {reports} --retrain --minutes "
     (longer,) = (line for line in found.out.splitlines() if line.startswith(f"    to train longer: {again}"))

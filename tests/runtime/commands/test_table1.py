@@ -73,6 +73,26 @@ def test_a_folder_is_one_runs(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> No
     assert cells(Path("mine")) == {}
 
 
+def test_the_folder_of_a_training_is_none_for_a_table(tltlc: Run) -> None:  # noqa: F811
+    Path("mine").mkdir()
+    Path("mine/run.json").touch()
+    found = tltlc("table1", "--out", "mine", *ONE)
+    assert (found.status, found.out) == (3, "")
+    assert found.err.startswith("error[TLT0005]: cannot write into `mine`: it is the folder of a training\n")
+
+
+def test_asked_to_end_it_says_how_to_go_on(tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    def stopped(_: object) -> str:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(table1, "_table", stopped)
+    again = "stopped: what is over is kept in `{}`; to go on: tltlc table1 --out {}\n"
+    found = tltlc("table1")
+    assert (found.status, found.out, found.err) == (130, "", again.format("table1", "table1"))
+    words = "mine --shipped --minutes 0.5 --workers 1"
+    assert tltlc("table1", "--out", *words.split()).err == again.format("mine", words)
+
+
 @pytest.mark.parametrize("minutes", ["nan", "inf", "-1"])
 def test_a_limit_is_a_number(tltlc: Run, minutes: str) -> None:  # noqa: F811
     found = tltlc("table1", "--minutes", minutes, *ONE)

@@ -52,10 +52,10 @@ def test_levels_of_one_name_have_a_baseline_each(game: Path) -> None:
 
 
 def test_a_baseline_of_what_cannot_be_played_is_refused_before_anything_is_played(game: Path) -> None:
+    suite, played = read_suite(Path("game.toml")), Played()
     Path("soon.safetensors").write_bytes(b"no policy")
-    played = Played()
     with pytest.raises(TltlError, match="case `hopeless`: "):
-        list(write_recorded(read_suite(Path("game.toml")), Path("new.json"), 1, played))
+        list(write_recorded(suite, Path("new.json"), 1, played))
     assert played.counts == {} and not list(Path().glob("new.json*"))
 
 
@@ -113,4 +113,16 @@ def test_what_was_kept_of_a_baseline_by_other_code_is_played_again(game: Path, m
         next(stopped)
     monkeypatch.setattr("tltl_runtime.regression.kept.sources_hash", lambda: "0" * 64)
     list(write_recorded(suite, path, 1, played := Played()))
+    assert played.counts == {"room:v0": 50, "hopeless": 50}
+
+
+def test_what_an_older_baseline_has_is_taken_where_nothing_has_changed_and_not_kept_beside(game: Path) -> None:
+    suite, path, played = read_suite(Path("game.toml")), Path("new.json"), Played()
+    older = baseline_of(suite)
+    assert tuple(each.reference for each in write_recorded(suite, path, 1, played, older)) == older
+    assert played.counts == {} and read_baseline(path) == older
+    with closing(write_recorded(suite, path, 1, played, older)) as stopped:
+        next(stopped)
+    # Whoever wants all afresh does not go on with it.
+    list(write_recorded(suite, path, 1, played))
     assert played.counts == {"room:v0": 50, "hopeless": 50}

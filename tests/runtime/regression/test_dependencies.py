@@ -57,13 +57,13 @@ def _suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
         "game/edits/wide.toml": "",
         "game/plans.tltl": "import own\nspec careful = F alive\n",
         "game/own.tltl": "signal alive: bool\n",
-        "game/trained/policy.safetensors": "",
         "game/trained/metrics.jsonl": "",
         "README.md": "",
     }
     for name, text in files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
+    shutil.copy(shipped_policy("navigation") or "", tmp_path / "game" / "trained" / "policy.safetensors")
     monkeypatch.chdir(tmp_path)
     return read_suite(Path("game/game.toml"))
 

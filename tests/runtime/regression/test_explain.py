@@ -9,7 +9,7 @@ import pytest
 from tests.runtime.regression.made import ROOM, made
 from tltl_runtime.regression.account import Account, Nearest
 from tltl_runtime.regression.explain import findings
-from tltl_runtime.stealth.level import Level
+from tltl_runtime.stealth.level import Level, Point
 from tltl_runtime.stealth.levels.file import load_level
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
@@ -82,9 +82,16 @@ def test_the_first_stage_that_is_not_as_before_is_told_and_where_it_ends(level: 
     assert stage.episodes == end.episodes == tuple(range(14))
     assert end.text == (
         "dies in the north hall by `guard` in 14 of 25 episodes; before: in 0 of 25 episodes; "
-        "closest approach to `exit`: 3.2 m (`near(exit)` is the limit); "
+        "closest approach to `exit`: 3.2 m (`near(exit)` is the limit, below 1.0 m would do); "
         "in state 3, where this remained: Reach near(exit), and keep alive throughout."
     )
+
+
+def test_of_many_episodes_the_share_is_told_too(level: Level, fspa: Fspa) -> None:
+    now = good(fspa, 40)
+    now[:14] = deaths(fspa, 14)[:14]
+    (stage, *_) = told(level, fspa, now, good(fspa, 40))
+    assert stage.endswith("then reaches `exit` in 26 of 40 episodes (65%); before: in 40 of 40 episodes")
 
 
 def test_ends_are_told_by_kind_and_place_the_most_frequent_first(level: Level, fspa: Fspa) -> None:
@@ -138,19 +145,65 @@ def test_ends_of_two_stages_are_told_apart(level: Level, fspa: Fspa) -> None:
     ]
 
 
+def timed_out(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> Account:
+    return made(index, False, states=to(fspa, stage), place=place)
+
+
+def died(fspa: Fspa, index: int, stage: int, place: Point = MIDDLE) -> Account:
+    return made(index, False, states=to(fspa, stage), place=place, cause="killed", by=("guard",))
+
+
+def last(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account] = ()) -> str:
+    return told(level, fspa, now, before or good(fspa, 40))[-1]
+
+
 def test_ends_of_few_episodes_are_told_together(level: Level, fspa: Fspa) -> None:
     now = good(fspa, 40)
-    for index in range(3):
-        now[index] = made(index, False, states=to(fspa, 1))
-    (_, end) = findings(level, fspa, now, good(fspa, 40))
-    assert "when time is up" in end.text
-    now[0] = made(0, False, states=to(fspa, 0))
+    now[:3] = [timed_out(fspa, index, 1) for index in range(3)]
+    assert "; in state" in last(level, fspa, now)
+    now[0] = timed_out(fspa, 0, 0)
     (_, rest) = findings(level, fspa, now, good(fspa, 40))
-    assert (rest.text, rest.episodes) == ("fails in 3 of 40 episodes; before: in 0 of 40 episodes", (0, 1, 2))
-    now[3:7] = [made(index, False, states=to(fspa, 2)) for index in range(3, 7)]
-    assert findings(level, fspa, now, now)[-1] == replace(
-        rest, text="fails otherwise in 3 of 40 episodes; before: in 3 of 40 episodes"
+    text = "is in the middle when time is up in 3 of 40 episodes; before: in 0 of 40 episodes"
+    assert (rest.text, rest.episodes) == (text, (0, 1, 2))
+    now[1] = timed_out(fspa, 1, 1, NORTH)
+    assert last(level, fspa, now) == text.replace("the middle", "different places")
+    now[2] = died(fspa, 2, 1)
+    assert last(level, fspa, now) == "fails in 3 of 40 episodes; before: in 0 of 40 episodes"
+
+
+def test_ends_that_are_left_say_that_they_are_of_the_cause_of_others(level: Level, fspa: Fspa) -> None:
+    now = good(fspa, 40)
+    now[:4] = [died(fspa, index, 2, NORTH) for index in range(4)]
+    now[4:7] = [died(fspa, index, 1, (2.0 + 4.0 * (index % 2), 5.0, 0.0)) for index in range(4, 7)]
+    # Those of the baseline count that died elsewhere, too, in the same stage.
+    before = good(fspa, 40)
+    before[:4] = [died(fspa, 0, 1), died(fspa, 1, 2), died(fspa, 2, 1, NORTH), timed_out(fspa, 3, 1)]
+    text = "dies elsewhere by `guard` before it reaches `s2` in 3 of 40 episodes; before: in 1 of 40 episodes"
+    assert last(level, fspa, now, before) == text
+    now[4] = died(fspa, 4, 0)
+    assert last(level, fspa, now, before) == (
+        "dies elsewhere by `guard` in 3 of 40 episodes; before: in 2 of 40 episodes"
     )
+
+
+def test_a_cause_that_alone_is_left_is_told_be_it_of_one_episode(level: Level, fspa: Fspa) -> None:
+    now = good(fspa, 40)
+    now[0] = died(fspa, 0, 2, NORTH)
+    assert last(level, fspa, now) == (
+        "dies in the north hall by `guard` in 1 of 40 episodes; before: in 0 of 40 episodes"
+    )
+    # Where others died there, too, it is the stage that differs.
+    now[1:5] = [died(fspa, index, 1, NORTH) for index in range(1, 5)]
+    assert last(level, fspa, now).startswith("dies in the north hall by `guard` before it reaches `exit` in 1 of 40")
+    now[5] = died(fspa, 5, 0, NORTH)
+    assert last(level, fspa, now).startswith("dies in the north hall by `guard` at other stages in 2 of 40")
+
+
+def test_causes_that_are_few_are_told_as_one(level: Level, fspa: Fspa) -> None:
+    now = good(fspa, 40)
+    now[:4] = [died(fspa, index, 2, NORTH) for index in range(4)]
+    now[4:6] = [died(fspa, 4, 1), timed_out(fspa, 5, 1)]
+    assert last(level, fspa, now, now) == "fails otherwise in 2 of 40 episodes; before: in 2 of 40 episodes"
 
 
 def test_ends_as_before_say_so(level: Level, fspa: Fspa) -> None:
@@ -228,7 +281,36 @@ def test_where_no_distance_is_the_limit_the_atom_is_named(level: Level, fspa: Fs
 def test_what_limited_most_episodes_is_told_and_not_what_limited_the_best_one(level: Level, fspa: Fspa) -> None:
     one, most = Nearest("alive", 0.0, MIDDLE), Nearest("near(s1)", -0.4, MIDDLE, "s1", 2.5)
     now = [made(index, False, states=to(fspa, 0), nearest=one if index == 7 else most) for index in range(25)]
-    assert "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit); " in told(level, fspa, now)[1]
+    assert (
+        "; closest approach to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
+        in told(level, fspa, now)[1]
+    )
+
+
+@pytest.mark.parametrize(
+    ("came", "said"),
+    [
+        (1.06, "1.1 m (`near(s1)` is the limit, below 1.0 m would do); "),
+        (1.04, "1.04 m (`near(s1)` is the limit, below 1.00 m would do); "),
+        (1.0, "1.00 m (`near(s1)` is the limit, less would do); "),
+    ],
+)
+def test_near_misses_are_told_with_the_places_that_they_take(level: Level, fspa: Fspa, came: float, said: str) -> None:
+    near = Nearest("near(s1)", -0.01, MIDDLE, "s1", came)
+    now = [made(index, False, states=to(fspa, 0), nearest=near) for index in range(25)]
+    assert f"; closest approach to `s1`: {said}" in told(level, fspa, now)[1]
+
+
+def test_what_is_near_enough_by_a_param_of_its_own_is_not_told(level: Level) -> None:
+    (fspa,) = compile_text(
+        SPEC.replace("near(s1)", "near(s1, close=arm)").replace("spec", "param arm: length = 2 m\nspec")
+    )
+    near = Nearest("near(s1, close=arm)", -0.4, MIDDLE, "s1", 2.5)
+    now = [made(index, False, states=to(fspa, 0), nearest=near) for index in range(25)]
+    assert (
+        "; closest approach to `s1`: 2.5 m (`near(s1, close=arm)` is the limit); "
+        in told(level, fspa, now, good(fspa))[1]
+    )
 
 
 def test_who_was_there_when_the_spec_broke_lacked_nothing_else(level: Level, fspa: Fspa) -> None:
@@ -238,7 +320,8 @@ def test_who_was_there_when_the_spec_broke_lacked_nothing_else(level: Level, fsp
     end = told(level, fspa, now)[1]
     assert "; 14 of them were at `s1` when it broke; in state 0, where this remained: " in end
     few = [replace(each, arrived=each.index < 3) for each in now]
-    assert "; 3 of them were at `s1` when it broke; closest approach to `s1`: 2.5 m (" in told(level, fspa, few)[1]
+    others = "closest approach of the others to `s1`: 2.5 m (`near(s1)` is the limit, below 1.0 m would do); "
+    assert f"; 3 of them were at `s1` when it broke; {others}" in told(level, fspa, few)[1]
 
 
 def test_an_atom_that_should_not_hold_is_told_as_such(level: Level, fspa: Fspa) -> None:

@@ -28,8 +28,8 @@ def said(passed: int, failed: int, reward: float = 0.0) -> list[str]:
     ("passed", "failed", "text"),
     [
         (40, 0, "met in 40 of 40 episodes, before in 40 of 40: certainly in 85% or more"),
-        (2, 30, "met in 2 of 32 episodes, before in 32 of 32: certainly in less than 50%"),
-        (140, 60, "met in 140 of 200 episodes, before in 200 of 200: certainly in 50% to 85%"),
+        (2, 30, "met in 2 of 32 episodes (6%), before in 32 of 32: certainly in less than 50%"),
+        (140, 60, "met in 140 of 200 episodes (70%), before in 200 of 200: certainly in 50% to 85%"),
     ],
 )
 def test_what_is_certain(passed: int, failed: int, text: str) -> None:
@@ -47,7 +47,7 @@ def test_thresholds_are_told_as_they_were_chosen() -> None:
 
 def test_what_is_not_certain() -> None:
     (first, *_) = said(86, 14)
-    assert first.startswith("met in 86 of 100 episodes, before in 100 of 100: ")
+    assert first.startswith("met in 86 of 100 episodes (86%), before in 100 of 100: ")
     assert first.endswith(" can be said for certain, and 85% are asked for")
 
 
@@ -61,6 +61,18 @@ def test_what_may_have_changed() -> None:
     assert rate == "met in 40 of 40 episodes, before in 40 of 40: certainly in 85% or more"
     assert figure == "reward is lower, 0.64 on average; before: 0.70; that is 0.05 or more, but not certain"
     assert len(said(40, 0, -0.04)) == 1
+
+
+def test_what_may_have_changed_is_told_of_the_episodes_that_are_compared() -> None:
+    """The report shows the means of all of the baseline's episodes beside the sentence."""
+    now = [replace(each, reward=0.64) for each in several(40)]
+    before = [*several(40), *(replace(each, reward=0.78) for each in several(60))]
+    judgement = Judgement("review", False, (0.86, 1.0), ())
+    (_, figure) = reasons(judgement, DEFAULT, now, before)
+    assert figure == (
+        "reward is lower, 0.64 on average; before, in the same 40 episodes: 0.70 (in all 100: 0.75); "
+        "that is 0.05 or more, but not certain"
+    )
 
 
 def test_what_has_certainly_changed_is_not_doubted_too() -> None:
@@ -86,27 +98,36 @@ def test_what_nobody_can_reach_is_told_for_certain() -> None:
 
 def test_which_files_have_changed() -> None:
     now = replace(PLAYED, files=(("room.toml", "d" * 64), ("assets/guard.toml", "0" * 64), ("overlays/x.toml", "1")))
-    assert list(edits(now, PLAYED, [])) == ["changed since the baseline: assets/guard.toml, overlays/x.toml"]
+    assert list(edits(now, PLAYED, [])) == ["changed since the baseline: assets/guard.toml, overlay overlays/x.toml"]
     gone = replace(PLAYED, files=PLAYED.files[:1])
     assert list(edits(gone, PLAYED, [])) == ["changed since the baseline: assets/guard.toml"]
     assert list(edits(PLAYED, PLAYED, [])) == []
 
 
+def test_which_keys_have_changed() -> None:
+    now = replace(PLAYED, files=(("room.toml", "1"), ("assets/guard.toml", "2"), ("overlays/x.toml", "3")))
+    new = (("room.toml", "size = 3"), ("assets/guard.toml", "walk_speed = 2.6"), ("overlays/x.toml", "a = 1"))
+    old = (("room.toml", "size = "), ("assets/guard.toml", "walk_speed = 1.6"))
+    assert list(edits(now, PLAYED, [], new, old)) == [
+        "changed since the baseline: room.toml, assets/guard.toml (`walk_speed` 1.6 → 2.6), overlay overlays/x.toml"
+    ]
+
+
 def test_another_variant_differs_by_its_overlays_which_have_not_changed() -> None:
     now = replace(PLAYED, variant="v1", files=(*PLAYED.files, ("overlays/x.toml", "1")))
     assert list(edits(now, PLAYED, ["The way is shut."])) == [
-        "differs from `v0` by overlays/x.toml",
+        "differs from `v0` by overlay overlays/x.toml",
         "The way is shut.",
     ]
-    assert list(edits(PLAYED, now, [])) == ["differs from `v1` by overlays/x.toml"]
+    assert list(edits(PLAYED, now, [])) == ["differs from `v1` by overlay overlays/x.toml"]
     both = replace(now, files=(("room.toml", "2"), *now.files[1:]))
     assert list(edits(both, PLAYED, [])) == [
         "changed since the baseline: room.toml",
-        "differs from `v0` by overlays/x.toml",
+        "differs from `v0` by overlay overlays/x.toml",
     ]
     # An overlay that both have was read twice, and differs.
     other = replace(now, variant="v2", files=(*PLAYED.files, ("overlays/x.toml", "2")))
-    assert list(edits(other, now, [])) == ["changed since the baseline: overlays/x.toml"]
+    assert list(edits(other, now, [])) == ["changed since the baseline: overlay overlays/x.toml"]
 
 
 def test_a_baseline_of_other_versions() -> None:

@@ -26,6 +26,8 @@ from tltl_runtime.regression.retrain import (
 from tltl_runtime.regression.run import Done, regress
 from tltl_runtime.regression.suite import Suite, read_suite
 from tltl_runtime.stealth.episodes.file import read_episode
+from tltl_runtime.stealth.levels.file import load_level
+from tltl_runtime.task import load_task
 from tltl_runtime.training.record import write_record
 from tltl_runtime.training.run import CHECKPOINT, POLICY, RECORD, RUN, Run
 from tltl_runtime.training.train import train
@@ -80,6 +82,17 @@ def test_what_needs_it(game: Suite) -> None:
     assert replace(hopeless, ready=None).to_train is None
     told = retrained(game, hopeless, training_of(game, hopeless), 1, lambda *_: None)
     assert replace(hopeless, report=replace(hopeless.report, retrained=told)).to_train is None
+
+
+def test_what_nobody_can_do_is_not_trained_for(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    assert hopeless.ready and hopeless.useless_training is None
+    level = load_level("navigation", "v2")
+    setup = replace(hopeless.ready.setup, fspa=load_task(level.spec).fspa)
+    shut = replace(hopeless, ready=replace(hopeless.ready, level=level, setup=setup))
+    assert shut.useless_training == "nobody can do what `navigation` asks, as was said above"
+    assert shut.to_train is None
+    assert replace(shut, report=replace(shut.report, verdict="pass")).useless_training is None
 
 
 def test_the_training_is_the_cases(game: Suite) -> None:

@@ -41,26 +41,28 @@ def test_outcomes(low: float, met: int, shortest: int | None, outcome: str) -> N
 
 def test_a_level_that_is_feasible() -> None:
     assert told("learned", 43, 0, shortest=97) == (
-        "feasible: after 5 min 3 s of training (212,992 steps) the policy meets the spec in 43 of 43 fresh episodes "
-        "(89% to 100% for certain)"
+        "feasible: after 5 min 3 s of search and training (200,000 and 212,992 steps) the policy meets the spec in 43 "
+        "of 43 fresh episodes (89% to 100% for certain)"
     )
+    assert "after 5 min 3 s of training (212,992 steps) the policy" in told("learned", 43, 0, searched=0)
     assert "came to progress" not in told("learned", 43, 1)
 
 
 def test_a_level_that_was_not_learned() -> None:
     assert told("feasible", 5, 20, shortest=1_213) == (
         "feasible, but not learned; there are ways, the shortest that is known takes 1,213 steps; after 5 min 3 s of "
-        "training (212,992 steps) the policy meets the spec in 5 of 25 fresh episodes (3% to 51% for certain), and "
-        "85% are asked for; the best of the failed ones came to progress 0.50, where this remained: reach near(exit)"
+        "search and training (200,000 and 212,992 steps) the policy meets the spec in 5 of 25 fresh episodes "
+        "(3% to 51% for certain), and 85% are asked for; the best of the failed ones "
+        "came to progress 0.50, where this remained: reach near(exit)"
     )
     assert "there are ways" not in told("feasible", 0, 25)
 
 
 def test_a_level_that_is_likely_infeasible() -> None:
     assert told("no_way", 0, 25) == (
-        "no way found: neither a search of 200,000 steps nor 5 min 3 s of training (212,992 steps) met the spec once; "
-        "the level is likely infeasible; the best of its episodes came to progress 0.50, where this remained: "
-        "reach near(exit)"
+        "no way found: neither a search of 200,000 steps nor a training of 212,992 steps, 5 min 3 s in all, met the "
+        "spec once; the level is likely infeasible; the best of its episodes came to progress 0.50, where this "
+        "remained: reach near(exit)"
     )
     assert "a search of 9 steps, which the limit broke off, nor" in told("no_way", 0, 25, searched=9, complete=False)
 

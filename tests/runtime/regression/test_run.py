@@ -155,13 +155,10 @@ def test_names_that_reasons_speak_of_are_part_of_what_is_kept(game: Path) -> Non
 def test_a_level_that_is_edited_between_cases_is_played_as_it_is_then(game: Path) -> None:
     suite, before = read_suite(Path("game.toml")), Path("room.toml").read_text(encoding="utf-8")
 
-    class Edits(Played):
-        def __call__(self, case: Case, count: int, last: Account) -> None:
-            super().__call__(case, count, last)
-            if (case.name, count) == ("room:v0", 25):
-                edit("room.toml", "8.0, 8.0", "8.0, 7.5")
-
-    found = list(running(suite, "new", Edits()))
+    run_ = running(suite, "new")
+    found = [next(run_)]
+    edit("room.toml", "8.0, 8.0", "8.0, 7.5")
+    found += run_
     assert [done.kept for done in found] == [False] * 3
     hashes = [done.report.played.level_hash for done in found if done.report.played]
     assert hashes[0] != hashes[1] and hashes[1:] == [level_hash(load_level("room.toml", each)) for each in ("v1", "v0")]
@@ -196,6 +193,33 @@ def test_a_level_that_is_edited_while_it_is_played_is_reviewed_and_not_kept(
     monkeypatch.chdir(game)
     Path("room.toml").write_text(text, encoding="utf-8")
     assert list(run("new")[1]) == ["room:v1", "hopeless"]
+
+
+@pytest.mark.parametrize("name", ["room.toml", "assets/guard.toml"])
+def test_a_level_that_is_edited_when_the_workers_have_loaded_it_is_reviewed(game: Path, name: str) -> None:
+    class Edits(Played):
+        def __call__(self, case: Case, count: int, last: Account) -> None:
+            super().__call__(case, count, last)
+            if (case.name, count) == ("room:v0", 25):
+                Path(name).parent.mkdir(exist_ok=True)
+                text = Path(name).read_text(encoding="utf-8") if Path(name).exists() else GUARD
+                Path(name).write_text(text + "# later\n", encoding="utf-8")
+
+    first, second, _ = running(read_suite(Path("game.toml")), "new", Edits())
+    assert (first.report.verdict, first.report.certain, first.kept) == ("review", False, False)
+    assert first.report.reasons == (
+        f"TLT0905, `{name}` changed while `room:v0` was played (give the same command again)",
+    )
+    assert second.report.verdict == "pass"
+    assert list(run("new")[1]) == ["room:v0"], "nothing of it is kept"
+
+
+def test_a_level_that_is_edited_before_the_last_episode_of_its_baseline_is_over(game: Path) -> None:
+    made = ready(read_suite(Path("game.toml")).cases[0], 3)
+    with pytest.raises(TltlError, match=r"TLT0905: `room\.toml` changed while `room:v0` was played"):
+        for each in episodes(made, 1):
+            if each.account.index == made.case.episodes - 1:
+                edit("room.toml", "8.0, 8.0", "8.0, 7.5")
 
 
 def test_a_level_that_breaks_while_it_is_played_fails_and_the_others_go_on(

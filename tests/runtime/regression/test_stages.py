@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tltl_runtime.regression.stages import deed, deed_of_all, target_of, together
+from tltl_runtime.regression.stages import deed, deed_of_all, near_enough, target_of, together
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 
@@ -92,3 +92,18 @@ def test_to_go_away_is_not_to_reach() -> None:
 def test_what_an_atom_asks_to_come_near_to(atom: str, declared: str, target: str | None) -> None:
     fspa = spec(f"reach {atom}", declared)
     assert [target_of(fspa, each) for each in range(len(fspa.atoms))] == [target]
+
+
+@pytest.mark.parametrize(
+    ("goal", "metres"),
+    [
+        ("near(s1)", 1.0),
+        ("near(s1, 2.5 m)", 2.5),
+        ("inside_sphere(s1, 3 m)", 3.0),
+        ("near(s1, arm)", None),
+        ("facing(s1)", None),
+    ],
+)
+def test_how_near_is_near_enough(goal: str, metres: float | None) -> None:
+    fspa = spec(f"reach {goal}", "entity s1\nparam arm: length = 2 m\n")
+    assert near_enough(fspa, 0, {"level_size": 30.0}) == (None if metres is None else pytest.approx(metres, abs=1e-3))

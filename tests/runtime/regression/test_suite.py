@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,7 @@ from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.regression.suite import MOST_EPISODES, SHIPPED, Case, Thresholds, read_suite
 from tltl_runtime.stealth.levels.file import level_names, variants
+from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltlc.diagnostics.diagnostic import TltlError
 
 POLICY = 'policy = "navigation"\n'
@@ -72,7 +75,8 @@ def test_paths_are_relative_to_the_suite(tmp_path: Path, monkeypatch: pytest.Mon
     game = tmp_path / "game"
     for name in ("levels/vault.toml", "levels/plans.tltl", "edits/wide.toml", "trained/policy.safetensors"):
         (game / name).parent.mkdir(parents=True, exist_ok=True)
-        (game / name).write_text(ROOM, encoding="utf-8")
+        (game / name).write_text("spec careful = F alive" if name.endswith(".tltl") else ROOM, encoding="utf-8")
+    shutil.copy(shipped_policy("navigation") or "", game / "trained" / "policy.safetensors")
     (game / "game.toml").write_text(
         """[[case]]
 level = "levels/vault.toml"
@@ -131,3 +135,95 @@ def test_an_own_level_needs_a_policy_of_ones_own(tmp_path: Path) -> None:
     (tmp_path / "navigation.toml").write_text(ROOM, encoding="utf-8")
     with pytest.raises(TltlError, match=r"no policy comes with the level `.*navigation\.toml`"):
         read(tmp_path, '[[case]]\nlevel = "navigation.toml"\n')
+
+
+def refused(folder: Path, case: str) -> list[tuple[str, str, str | None]]:
+    """Of what is wrong with a suite's case: code, title and help; all of it stands at a key of the suite."""
+    with pytest.raises(TltlError) as error:
+        read(folder, f"[[case]]\n{case}")
+    for found in error.value.diagnostics:
+        assert Path(found.labels[0].source.name).name == "game.toml"
+    return [(found.code, found.title, found.help) for found in error.value.diagnostics]
+
+
+def test_a_spec_that_its_file_does_not_hold_is_the_suites_mistake(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("plans.tltl").write_text("import stealth\nspec calm = F alive\nspec bold = G alive\n", encoding="utf-8")
+    case = 'level = "navigation"\nspec = "plans.tltl'
+    assert refused(Path(), f'{case}:clam"') == [("TLT0720", "`plans.tltl` has no spec `clam`", "did you mean `calm`?")]
+    ((code, title, _),) = refused(Path(), f'{case}"')
+    assert (code, title.partition(",")[0]) == ("TLT0721", "`plans.tltl` holds 2 specs")
+    # A change may have broken it, which is a finding.
+    Path("plans.tltl").write_text("spec calm = ((\n", encoding="utf-8")
+    assert len(read(Path(), f'[[case]]\n{case}:calm"')) == 1
+
+
+def test_a_policy_that_cannot_be_read_is_the_suites_mistake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    data = (shipped_policy("navigation") or Path()).read_bytes()
+    for name, content in {"empty": b"", "cut": data[:-100], "text": b"no policy"}.items():
+        Path(name).write_bytes(content)
+        ((code, title, _),) = refused(Path(), f'level = "navigation"\npolicy = "{name}"')
+        assert (code, f"`{name}`" in title) == ("TLT0840", True)
+    Path("training/vault").mkdir(parents=True)
+    folder = 'level = "navigation"\npolicy = "training'
+    ((code, title, help_),) = refused(Path(), f'{folder}"')
+    assert (code, title) == ("TLT0872", "there is neither a training nor a policy in `training`")
+    Path("training/vault/run.json").write_text("{}", encoding="utf-8")
+    ((_, _, help_),) = refused(Path(), f'{folder}"')
+    assert help_ == "name one of them: `training/vault`"
+    ((code, title, _),) = refused(Path(), f'{folder}/vault"')
+    assert (code, title) == ("TLT0872", "the training in `training/vault` has no policy yet")
+    Path("training/vault/policy.safetensors").write_bytes(data)
+    assert len(read(Path(), f'[[case]]\n{folder}/vault"')) == 1
+
+
+@pytest.mark.parametrize(
+    ("level", "meant"),
+    [
+        ("cover_and_hid", "cover_and_hide"),
+        ("cover_and_hid.toml", "cover_and_hide"),
+        ("levels/vualt.toml", "levels/vault.toml"),
+        ("hall", "hall.toml"),
+        ("hal.toml", "hall.toml"),
+    ],
+)
+def test_a_level_that_there_is_not_may_be_another_one(tmp_path: Path, level: str, meant: str) -> None:
+    for name in ("levels/vault.toml", "hall.toml"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(ROOM, encoding="utf-8")
+    found = refused(tmp_path, f'level = "{level}"\npolicy = "navigation"')
+    assert found == [("TLT0800", f"there is no level `{level}`", f"did you mean `{meant}`?")]
+
+
+def test_a_copy_of_a_shipped_level_is_told_of_its_policy(tmp_path: Path) -> None:
+    shutil.copy(LEVELS / "cover_and_hide.toml", tmp_path / "my_cover.toml")
+    ((code, _, help_),) = refused(tmp_path, 'level = "my_cover.toml"')
+    assert (code, (help_ or "").partition(", or ")[2]) == (
+        "TLT0853",
+        'the one for the same spec that comes with tltlc: `policy = "cover_and_hide"`',
+    )
+
+
+@pytest.mark.parametrize("key", ["name", "variant", "reference", "spec", "policy", "overlay", "level"])
+def test_an_empty_text_is_none(tmp_path: Path, key: str) -> None:
+    keys = {"level": "navigation", key: ""}
+    found = refused(tmp_path, "".join(f"{each} = {json.dumps(value)}\n" for each, value in keys.items()))
+    assert found == [("TLT0803", f'wrong value for `{key}`: ""', "expected a text that is not empty")]
+
+
+def test_a_low_pass_rate_needs_a_fail_rate_below(tmp_path: Path) -> None:
+    found = refused(tmp_path, 'level = "navigation"\nthresholds = { pass_rate = 0.4 }')
+    title = "`pass_rate` is 0.4, below the `fail_rate`, which is 0.5 by default"
+    assert found == [("TLT0803", title, "give a `fail_rate`, too, of 0.4 at the most")]
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [("assets/guard", "an asset"), ("assets/corridor", "an asset"), ("overlays/guard_alert", "an overlay")],
+)
+def test_other_files_of_a_game_are_no_suites(name: str, what: str) -> None:
+    with pytest.raises(TltlError, match=f"TLT0803: this is {what}, and no suite"):
+        read_suite(LEVELS / f"{name}.toml")

@@ -27,7 +27,7 @@ def case_data(case: ReportedCase, slug: str) -> dict[str, Any] | None:
         "map": map_data(level),
         "states": [state.label.english for state in fspa.states],
         "now": _all_of(level.bounds, case.report.accounts),
-        "before": _all_of(level.bounds, case.before),
+        "before": _all_of((case.designed or level).bounds, case.before),
         "episodes": [recorded(index, case.episodes[index]) for index in sorted(case.episodes)],
     }
 

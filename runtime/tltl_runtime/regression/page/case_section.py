@@ -8,23 +8,17 @@ from typing import Final
 
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.explain import Finding
 from tltl_runtime.regression.page.automaton import Drawn, counts_table, picture
+from tltl_runtime.regression.page.case_maps import case_maps
 from tltl_runtime.regression.page.contents import ReportedCase
 from tltl_runtime.regression.page.curves import progress_curves, progress_distribution
-from tltl_runtime.regression.page.level_map import level_map, map_key
+from tltl_runtime.regression.page.episode_links import episode_links
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose
 from tltl_runtime.regression.page.player_panel import player_panel
 from tltl_runtime.regression.page.summary import badge
 from tltl_runtime.regression.page.traffic import Traffic, traffic
-from tltl_runtime.regression.slugs import episode_link
 from tltl_runtime.stealth.episodes.episode import Episode
-from tltl_runtime.stealth.level import Level
-from tltl_runtime.stealth.world.player import DECISION
 from tltlc.automaton.fspa import Fspa
-
-_BEFORE_END: Final = round(4.0 / DECISION)
-"""Decisions before its end at which a failed episode is opened: what led to it is still to come."""
 
 _KEY: Final = (
     "In blue how many episodes visited a state, in red how many failed in it; the more episodes took an edge, the "
@@ -54,7 +48,7 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
             element("h3", "Automaton", class_="automaton-title"),
             *_automaton(fspa, drawn, now, before),
             element("h3", "Map"),
-            element("div", _map(level), player_panel(fspa, case.episodes), class_="stage"),
+            element("div", case_maps(case, level), player_panel(fspa, case.episodes), class_="stage"),
             element("h3", "Progress"),
             element("div", *_curves(case), class_="curves"),
             element("h3", "States"),
@@ -86,7 +80,7 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
 def _why(report: CaseReport, episodes: Mapping[int, Episode], slug: str) -> Iterator[Markup]:
     """The reasons; those that are explanations with links to the episodes that they speak of."""
     lines = [element("li", prose(each)) for each in report.causes]
-    lines += [element("li", prose(each.text), _links(each, episodes, slug)) for each in report.explanation]
+    lines += [element("li", prose(each.text), episode_links(each, episodes, slug)) for each in report.explanation]
     lines += [element("li", prose(each)) for each in report.edits]
     if lines:
         yield element("h3", "Why")
@@ -107,19 +101,6 @@ def _retrained(case: ReportedCase) -> Iterator[Markup]:
         yield element("details", element("summary", "How the training went"), picture_)
 
 
-def _links(finding: Finding, episodes: Mapping[int, Episode], slug: str) -> Markup | None:
-    there = [index for index in finding.episodes if index in episodes]
-    if not there:
-        return None
-    links = []
-    for index in there:
-        episode = episodes[index]
-        step = 0 if episode.success else max(0, len(episode.actions) - _BEFORE_END)
-        words = {"href": episode_link(slug, index, step), "aria_label": f"play episode {index}"}
-        links += [" ", element("a", str(index), class_="episode", **words)]
-    return element("span", " play episode" + "s" * (len(there) > 1), *links, class_="links")
-
-
 def _automaton(fspa: Fspa, drawn: Drawn, now: Traffic, before: Traffic) -> Iterator[Markup]:
     """The picture, and what it does not show."""
     if drawn.svg is not None:
@@ -127,12 +108,6 @@ def _automaton(fspa: Fspa, drawn: Drawn, now: Traffic, before: Traffic) -> Itera
         yield element("div", inside, class_="scroll", tabindex=0, role="group", aria_label="Automaton")
         yield element("p", _KEY, class_="hint")
     yield from (element("p", note, class_="warning") for note in drawn.notes)
-
-
-def _map(level: Level) -> Markup:
-    """The map, the key to its signs, and a legend that the page fills in: it depends on what is shown."""
-    legend = element("ul", class_="legend shown", aria_label="Legend of the map")
-    return element("div", level_map(level), map_key(level), legend)
 
 
 def _toggles(before: Sequence[Account]) -> Markup:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.case_report import CaseReport
+from tltl_runtime.regression.verdict import Verdict
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.level import Level
 from tltlc.automaton.fspa import Fspa
@@ -17,8 +18,9 @@ class ReportedCase:
     """A case with what the page draws of it.
 
     ``level`` and ``fspa`` are what was played, None of a case that cannot be played.  ``episodes`` are the
-    recorded ones by their index, ``before`` the accounts of the baseline, ``curve`` the picture of a training that
-    began with its policy, a PNG, empty where there is none.
+    recorded ones by their index, ``before`` the accounts of the baseline, ``designed`` the level that it was recorded
+    on, None where that is not known any more, ``curve`` the picture of a training that began with its policy, a PNG,
+    empty where there is none.
     """
 
     report: CaseReport
@@ -26,6 +28,7 @@ class ReportedCase:
     fspa: Fspa | None = None
     episodes: Mapping[int, Episode] = EMPTY
     before: tuple[Account, ...] = ()
+    designed: Level | None = None
     curve: bytes = b""
 
 
@@ -35,7 +38,7 @@ class SuiteReport:
 
     ``versions`` are those of what played, by name; ``complete`` says whether all cases were judged, and trained anew,
     that were asked for.  ``missing`` are the names of those that were not judged, ``left_out`` of those that no change
-    concerns.
+    concerns, ``earlier`` what an earlier run said of such.  ``note`` is what whoever reads the page should know first.
     """
 
     suite: str
@@ -46,3 +49,5 @@ class SuiteReport:
     complete: bool = True
     missing: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    earlier: Mapping[str, Verdict] = EMPTY
+    note: str = ""

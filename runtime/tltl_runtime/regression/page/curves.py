@@ -10,16 +10,21 @@ from typing import Final
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.page.markup import Markup, element, short
 from tltl_runtime.stealth.episodes.episode import Episode
+from tltl_runtime.texts import percent
 
 _WIDTH, _HEIGHT = 420, 190
 _LEFT, _RIGHT, _TOP, _BOTTOM = 44, 8, 10, 34
 _BINS: Final = 10
+"""Of the progress of episodes that failed."""
+
+_GAP: Final = 0.5
+"""Between them and the bar of those that met the spec, in widths of a bin."""
 
 
 def progress_curves(episodes: Mapping[int, Episode]) -> Markup:
     """Progress, in [0, 1], over the seconds of each recorded episode, by index."""
     longest = max((each.snapshots[-1].time for each in episodes.values()), default=0.0)
-    frame = _Frame(max(1.0, longest), 1.0)
+    frame = _Frame(max(1.0, longest))
     lines = [
         element(
             "polyline",
@@ -34,33 +39,48 @@ def progress_curves(episodes: Mapping[int, Episode]) -> Markup:
     scale = {"data_left": _LEFT, "data_right": _WIDTH - _RIGHT, "data_seconds": short(frame.x_most)}
     cursor = element("line", class_="cursor", y1=_TOP, y2=_HEIGHT - _BOTTOM, hidden="hidden", **scale)
     words = "Progress over time of the recorded episodes"
-    return _diagram(words, frame, "time, s", [*lines, cursor], frame.x_ticks(whole=True))
+    return _diagram(words, frame, "time, s", [*lines, cursor], frame.x_ticks())
 
 
 def progress_distribution(now: Sequence[Account], before: Sequence[Account]) -> Markup:
-    """The shares of episodes whose best progress lies in each tenth of [0, 1], beside each other."""
-    shares = [_shares([each.progress for each in accounts]) for accounts in (now, before)]
-    frame = _Frame(1.0, max(0.1, *shares[0], *shares[1]))
-    wide = (frame.x(1.0) - frame.x(0.0)) / _BINS
+    """The shares of episodes by their best progress: in tenths of [0, 1] those that failed, then those that did not.
+
+    The bars of now are filled, and those of the baseline are outlines around them.
+    """
+    frame = _Frame(_BINS + _GAP + 1.0)
     bars = []
-    for kind, found, offset in zip(("now", "before"), shares, (0.08, 0.5), strict=True):
-        for place, share in enumerate(found):
+    for kind, accounts in (("now", now), ("before", before)):
+        for place, share in enumerate(_shares(accounts)):
             if share:
-                low = f"progress {place / _BINS:.1f} to {(place + 1) / _BINS:.1f}"
-                top = frame.y(share)
-                bars.append(
-                    element(
-                        "rect",
-                        element("title", f"{low}, {kind}: {share:.0%} of the episodes"),
-                        class_=f"share {kind}",
-                        x=short(frame.x(place / _BINS) + offset * wide),
-                        y=short(top),
-                        width=short(0.42 * wide),
-                        height=short(_HEIGHT - _BOTTOM - top),
-                    )
-                )
+                title = element("title", f"{_bin(place)}, {kind}: {percent(share)} of the episodes")
+                left, top = frame.x(_left(place)), frame.y(share)
+                inset = 0.1 * (frame.x(1.0) - frame.x(0.0))
+                sides = {"x": short(left + inset), "y": short(top), "width": short(8 * inset)}
+                height = short(_HEIGHT - _BOTTOM - top)
+                bars.append(element("rect", title, class_=f"share {kind}", **sides, height=height))
     words = "How progress is distributed over the episodes, now and in the baseline"
-    return _diagram(words, frame, "best progress", bars, frame.x_ticks(whole=False), percent=True)
+    ticks = [(float(place), short(place / _BINS)) for place in range(_BINS)]
+    ticks.append((_left(_BINS) + 0.5, "1 (met)"))
+    return _diagram(words, frame, "best progress", bars, ticks, percent_ticks=True)
+
+
+def _left(place: int) -> float:
+    """Where a bin begins; the one of those that met the spec stands apart."""
+    return place + _GAP * (place == _BINS)
+
+
+def _bin(place: int) -> str:
+    if place == _BINS:
+        return "progress 1, the spec is met"
+    return f"progress {place / _BINS:.1f} to {(place + 1) / _BINS:.1f}"
+
+
+def _shares(accounts: Sequence[Account]) -> list[float]:
+    """Of all episodes those in each bin; one that came to 1 and broke the spec then is not among those that met it."""
+    counts = [0] * (_BINS + 1)
+    for each in accounts:
+        counts[_BINS if each.success else min(_BINS - 1, int(each.progress * _BINS + 1e-9))] += 1
+    return [count / max(1, len(accounts)) for count in counts]
 
 
 def _corners(frame: _Frame, episode: Episode) -> list[tuple[float, float]]:
@@ -74,42 +94,41 @@ def _corners(frame: _Frame, episode: Episode) -> list[tuple[float, float]]:
     return [(frame.x(times[row]), frame.y(values[row])) for row in sorted(rows)]
 
 
-def _shares(values: Sequence[float]) -> list[float]:
-    counts = [0] * _BINS
-    for value in values:
-        counts[min(_BINS - 1, int(value * _BINS + 1e-9))] += 1
-    return [count / max(1, len(values)) for count in counts]
-
-
 class _Frame:
-    """The axes of a diagram, which begin at 0."""
+    """The axes of a diagram, which begin at 0; upwards they end at 1."""
 
-    def __init__(self, x_most: float, y_most: float) -> None:
-        self.x_most, self.y_most = x_most, y_most
+    def __init__(self, x_most: float) -> None:
+        self.x_most = x_most
 
     def x(self, value: float) -> float:
         return _LEFT + value / self.x_most * (_WIDTH - _LEFT - _RIGHT)
 
     def y(self, value: float) -> float:
-        return _HEIGHT - _BOTTOM - value / self.y_most * (_HEIGHT - _TOP - _BOTTOM)
+        return _HEIGHT - _BOTTOM - value * (_HEIGHT - _TOP - _BOTTOM)
 
-    def x_ticks(self, *, whole: bool) -> list[float]:
-        step = max(1.0, ceil(self.x_most / 6)) if whole else self.x_most / 5
-        return [tick * step for tick in range(int(self.x_most / step + 1e-9) + 1)]
+    def x_ticks(self) -> list[tuple[float, str]]:
+        """Whole numbers, at most seven of them, and what is written there."""
+        step = max(1, ceil(self.x_most / 6))
+        return [(float(tick), str(tick)) for tick in range(0, int(self.x_most + 1e-9) + 1, step)]
 
 
 def _diagram(
-    words: str, frame: _Frame, x_label: str, inside: Sequence[Markup], ticks: Sequence[float], *, percent: bool = False
+    words: str,
+    frame: _Frame,
+    x_label: str,
+    inside: Sequence[Markup],
+    ticks: Sequence[tuple[float, str]],
+    *,
+    percent_ticks: bool = False,
 ) -> Markup:
     drawn = [element("title", words)]
-    for share in (0.0, 0.5, 1.0):
-        value = share * frame.y_most
+    for value in (0.0, 0.25, 0.5, 0.75, 1.0):
         y = short(frame.y(value))
         drawn.append(element("line", class_="grid", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y, y2=y))
-        text = f"{value:.0%}" if percent else f"{value:.1f}"
+        text = f"{value:.0%}" if percent_ticks else short(value)
         drawn.append(element("text", text, class_="tick y", x=_LEFT - 5, y=short(frame.y(value) + 4)))
     below = _HEIGHT - _BOTTOM + 15
-    drawn += [element("text", short(tick), class_="tick x", x=short(frame.x(tick)), y=below) for tick in ticks]
+    drawn += [element("text", text, class_="tick x", x=short(frame.x(tick)), y=below) for tick, text in ticks]
     middle = short((_LEFT + _WIDTH - _RIGHT) / 2)
     drawn.append(element("text", x_label, class_="tick x", x=middle, y=_HEIGHT - 3))
     return element("svg", *drawn, *inside, class_="diagram", viewBox=f"0 0 {_WIDTH} {_HEIGHT}", role="img")

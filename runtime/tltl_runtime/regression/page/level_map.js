@@ -16,6 +16,16 @@ function draw(parent, name, attributes = {}, title = "") {
   return made;
 }
 
+/** A sentence in which names stand between backquotes, as nodes. */
+function prose(text) {
+  return text.split(/`([^`]+)`/).map((part, place) => {
+    if (place % 2 === 0) return document.createTextNode(part);
+    const code = document.createElement("code");
+    code.textContent = part;
+    return code;
+  });
+}
+
 class LevelMap {
   /** `svg` is the map, `facts` what is known of its level, `colours` those of the automaton's states. */
   constructor(svg, facts, colours) {
@@ -111,6 +121,7 @@ class LevelMap {
     for (const enemy of enemies) {
       const words = `${enemy.facts.name}: ${enemy.mode}${enemy.sees ? ", sees the player" : ""}`;
       this.#body(enemy, `enemy ${enemy.mode}`, 35, "", words);
+      draw(live, "text", { x: enemy.x, y: enemy.y - 45 }).textContent = enemy.facts.name;
     }
     const { player } = episode;
     const crouches = player.crouching[row] === 1;

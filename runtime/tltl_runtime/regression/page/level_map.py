@@ -6,20 +6,19 @@ Its units are centimetres from the north-western corner of the level's bounds, x
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import count
+from itertools import pairwise
 from math import cos, pi, sin
 from typing import Any, Final
 
+from tltl_runtime.regression.page.map_names import Name, is_spoken_of, names
 from tltl_runtime.regression.page.markup import Markup, element
+from tltl_runtime.regression.page.plan import Plan
 from tltl_runtime.stealth.enemies.enemy import EYES
 from tltl_runtime.stealth.level import Box, Level, Mover
 from tltl_runtime.stealth.pictures.plan import patrol
 from tltl_runtime.stealth.world.geometry import around
 
 _MARGIN: Final = 30
-_LETTER: Final = 25
-_LINE: Final = 60
-"""Width of a letter and height of a line of names, at most: they keep their size where the map is small."""
 _LAYERS: Final = ("heat", "ways", "ends", "live")
 """What the page draws into, from below to above."""
 
@@ -34,22 +33,26 @@ _SIGNS: Final = {
     "solid platform": "platform",
     "solid low": "low obstacle",
     "solid wall": "wall",
+    "solid spoken": "a reason speaks of it",
 }
 """What there is on a map, by class, and what it is called."""
 
 
-def level_map(level: Level) -> Markup:
-    """The map of a level with empty layers ``heat``, ``ways``, ``ends`` and ``live``."""
-    plan = _Plan(level.bounds)
+def level_map(level: Level, said: str = "") -> Markup:
+    """The map of a level with empty layers ``heat``, ``ways``, ``ends`` and ``live``.
+
+    What the sentences ``said`` speak of stands out.
+    """
+    plan = Plan(level.bounds)
     width, height = plan.size
     view = f"{-_MARGIN} {-_MARGIN} {width + 2 * _MARGIN} {height + 2 * _MARGIN}"
-    below = [*_ground(level, plan), element("g", class_="heat"), *_entities(level, plan)]
+    below = [*_ground(level, plan, said), element("g", class_="heat"), *_entities(level, plan)]
     above = [element("g", class_=layer) for layer in _LAYERS[1:]]
     return element(
         "svg",
         *below,
         *above[:-1],
-        element("g", *_names(level, plan), class_="names"),
+        element("g", *map(_name, names(level, plan, said)), class_="names"),
         above[-1],
         class_="plan map",
         viewBox=view,
@@ -58,7 +61,7 @@ def level_map(level: Level) -> Markup:
     )
 
 
-def map_key(level: Level) -> Markup:
+def map_key(level: Level, said: str = "") -> Markup:
     """What the signs of a map mean, those that there are in it."""
     solids, barriers = ({each.kind for each in entities} for entities in (level.solids, level.barriers))
     there = {
@@ -68,6 +71,7 @@ def map_key(level: Level) -> Markup:
         "mover-way": level.movers,
         **{f"barrier {kind}": kind in barriers for kind in ("solid", "laser")},
         **{f"solid {kind}": kind in solids for kind in ("platform", "low", "wall")},
+        "solid spoken": any(is_spoken_of(each.name, said) for each in level.solids),
     }
     rows = [element("li", _sign(kind), _SIGNS[kind]) for kind in _SIGNS if there.get(kind, True)]
     return element("ul", *rows, class_="legend signs", aria_label="Signs of the map")
@@ -79,7 +83,7 @@ def map_data(level: Level) -> dict[str, Any]:
     ``blocks`` are what stops sight: sides on the map, and heights, in centimetres; ``movers`` do, too.
     ``reach`` and ``angle``, in degrees, are those of an enemy's cone of sight, ``eyes`` the height of its eyes.
     """
-    plan = _Plan(level.bounds)
+    plan = Plan(level.bounds)
     return {
         "blocks": [_block(plan, solid.box) for solid in level.solids if solid.kind != "floor"],
         "barriers": [{"kind": barrier.kind, "block": _block(plan, barrier.box)} for barrier in level.barriers],
@@ -117,35 +121,18 @@ def _sign(kind: str) -> Markup:
     return element("svg", inside, class_="plan", viewBox="-8 -8 16 16", aria_hidden="true")
 
 
-class _Plan:
-    """Where on the map something is."""
-
-    def __init__(self, bounds: Box) -> None:
-        (self.west, south, _), (east, self.north, _) = bounds.low, bounds.high
-        self.size = (round(100 * (east - self.west)), round(100 * (self.north - south)))
-
-    def at(self, point: Sequence[float]) -> tuple[int, int]:
-        return round(100 * (point[0] - self.west)), round(100 * (self.north - point[1]))
-
-    def sides(self, box: Box) -> dict[str, int]:
-        (left, bottom), (right, top) = self.at(box.low), self.at(box.high)
-        return {"x": left, "y": top, "width": right - left, "height": bottom - top}
-
-    def line(self, points: Iterable[Sequence[float]]) -> str:
-        return " ".join(f"{x},{y}" for x, y in map(self.at, points))
-
-
-def _ground(level: Level, plan: _Plan) -> Iterable[Markup]:
-    for solid in sorted(level.solids, key=lambda each: each.box.high[2]):
-        yield element("rect", element("title", solid.name), class_=f"solid {solid.kind}", **plan.sides(solid.box))
+def _ground(level: Level, plan: Plan, said: str) -> Iterable[Markup]:
+    for solid in sorted(level.solids, key=lambda each: (is_spoken_of(each.name, said), each.box.high[2])):
+        kind = f"solid {solid.kind}{' spoken' * is_spoken_of(solid.name, said)}"
+        yield element("rect", element("title", solid.name), class_=kind, **plan.sides(solid.box))
     for region in level.regions:
         yield element("rect", class_="region", **plan.sides(region.box))
 
 
-def _entities(level: Level, plan: _Plan) -> Iterable[Markup]:
+def _entities(level: Level, plan: Plan) -> Iterable[Markup]:
     for enemy in level.enemies:
         title = element("title", f"route of {enemy.name}")
-        yield element("polyline", title, class_="route", points=plan.line(patrol(level, enemy)))
+        yield element("path", title, class_="route", d=_there_and_back([*map(plan.at, patrol(level, enemy))]))
     for mover in level.movers:
         title = element("title", f"way of {mover.name}")
         yield element("polyline", title, class_="mover-way", points=plan.line(mover.path))
@@ -164,25 +151,17 @@ def _entities(level: Level, plan: _Plan) -> Iterable[Markup]:
     yield element("circle", element("title", "start"), class_="start", cx=x, cy=y, r=14)
 
 
-def _names(level: Level, plan: _Plan) -> Iterable[Markup]:
-    placed: list[tuple[int, int, int, int]] = []
-    for region in level.regions:
-        x, y = plan.at((region.box.low[0], region.box.high[1]))
-        end = x + _LETTER * len(region.name)
-        # Names that would run into each other stand below each other.
-        taken = {line for left, right, top, line in placed if left < end and x < right and abs(y - top) < _LINE}
-        line = next(each for each in count(1) if each not in taken)
-        placed.append((x, end, y, line))
-        words = {"dx": "0.4em", "dy": f"{1.2 * line:.1f}em"}
-        yield element("text", region.name.replace("_", " "), class_="region-name", x=x, y=y, **words)
-    named = [(switch.name, switch.position, 35) for switch in level.switches]
-    named += [(way_out.name, way_out.position, 35) for way_out in level.exits]
-    for barrier in level.barriers:
-        low, high = barrier.box.low, barrier.box.high
-        named.append((barrier.name, ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]), 0))
-    for name, place, above in named:
-        x, y = plan.at(place)
-        yield element("text", name, x=x, y=y - above)
+def _name(name: Name) -> Markup:
+    lines = [element("tspan", line, x=name.x, dy="1.1em" if row else 0) for row, line in enumerate(name.lines)]
+    return element("text", *lines, class_=f"{name.kind}{' spoken' * name.spoken}", x=name.x, y=name.y)
+
+
+def _there_and_back(way: Sequence[tuple[int, int]]) -> str:
+    """A way round as a path that goes each of its stretches once: dashes on dashes would fill their gaps."""
+    found: dict[frozenset[tuple[int, int]], str] = {}
+    for (x, y), (to_x, to_y) in pairwise(way):
+        found.setdefault(frozenset({(x, y), (to_x, to_y)}), f"M{x},{y}L{to_x},{to_y}")
+    return "".join(found.values())
 
 
 def _star(x: int, y: int, radius: float = 40.0) -> str:
@@ -193,7 +172,6 @@ def _star(x: int, y: int, radius: float = 40.0) -> str:
     return " ".join(corners)
 
 
-def _block(plan: _Plan, box: Box) -> list[int]:
-    """Left, top, right and bottom on the map, and from which height to which, in centimetres."""
-    (left, bottom), (right, top) = plan.at(box.low), plan.at(box.high)
-    return [left, top, right, bottom, round(100 * box.low[2]), round(100 * box.high[2])]
+def _block(plan: Plan, box: Box) -> list[int]:
+    """Its rectangle on the map, and from which height to which it is, in centimetres."""
+    return [*plan.rect(box), round(100 * box.low[2]), round(100 * box.high[2])]

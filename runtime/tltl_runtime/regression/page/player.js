@@ -22,7 +22,7 @@ class Player {
     this.bars = ["progress", "health"].map((name) => [name, find(`meter.${name}`), find(`meter.${name} ~ .number`)]);
     this.atoms = [...section.querySelectorAll(".atoms tbody tr")].map((row) => [
       row,
-      row.querySelector("meter"),
+      row.querySelector(".signed .length"),
       row.querySelector(".number"),
     ]);
     this.groups = new Map();
@@ -78,21 +78,24 @@ class Player {
     const seconds = (episode.time[this.row] / 1000).toFixed(2);
     this.moment.textContent = `step ${this.row} of ${this.last}, ${seconds} s`;
     this.scrub.setAttribute("aria-valuetext", `${this.moment.textContent}, state ${state}`);
-    this.stateText.textContent = this.row < this.last
-      ? `State ${state}: ${this.facts.states[state]}`
-      : `State ${state}: ${this.facts.states[state]} The end: ${episode.why}.`;
+    const end = this.row < this.last ? "" : ` The end: ${episode.why}.`;
+    this.stateText.replaceChildren(...prose(`State ${state}: ${this.facts.states[state]}${end}`));
     this.stateText.style.setProperty("--state", this.map.colours[state]);
     const values = { progress: episode.progress[this.row] / 1000, health: episode.health[this.row] / 100 };
     for (const [name, meter, number] of this.bars) {
       meter.value = values[name];
       number.textContent = values[name].toFixed(2);
     }
-    this.atoms.forEach(([line, meter, number], place) => {
+    this.atoms.forEach(([line, bar, number], place) => {
       // The moment of the reset is not judged.
       const value = this.row ? episode.atoms[place][this.row - 1] / 100 : null;
-      meter.value = value ?? 0;
-      number.textContent = value === null ? "–" : value.toFixed(2);
+      // From the middle, to the right where the atom holds; a length of 1 fills its half.
+      const half = 50 * Math.min(1, Math.abs(value ?? 0));
+      bar.style.left = `${value < 0 ? 50 - half : 50}%`;
+      bar.style.width = `${half}%`;
+      number.textContent = value === null ? "–" : `${value > 0 ? "+" : ""}${value.toFixed(2)}`;
       line.classList.toggle("holds", value !== null && value > 0);
+      line.classList.toggle("fails", value !== null && value <= 0);
     });
     this.map.showMoment(episode, this.row, share);
     this.#highlight(state);
@@ -106,6 +109,7 @@ class Player {
   }
 
   play() {
+    this.pause();
     if (this.row >= this.last) this.show(0);
     this.#label(true);
     const { time } = this.episode;

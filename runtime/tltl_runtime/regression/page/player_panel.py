@@ -89,13 +89,13 @@ def _atoms(fspa: Fspa) -> Markup:
         element(
             "tr",
             element("th", atom.name, scope="row"),
-            # Below 0, where the atom does not hold, is the colour for what is not well.
-            element("td", element("meter", min=-1, max=1, low=0, optimum=1, value=0, aria_label=atom.name)),
+            element("td", element("div", element("div", class_="length"), class_="signed", aria_hidden="true")),
             element("td", class_="number"),
         )
         for atom in fspa.atoms
     ]
-    return element("table", element("caption", "Robustness of the atoms"), element("tbody", *rows), class_="atoms")
+    caption = "Robustness of the atoms: those above 0 hold, to the right; those of 0 or less do not"
+    return element("table", element("caption", caption), element("tbody", *rows), class_="atoms")
 
 
 def _outcome(episode: Episode) -> str:

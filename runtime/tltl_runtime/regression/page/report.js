@@ -6,8 +6,10 @@ class CaseView {
   constructor(facts, colours, moved) {
     this.facts = facts;
     this.section = document.getElementById(facts.slug);
-    this.map = new LevelMap(this.section.querySelector(".map"), facts.map, colours);
-    this.player = new Player(this.section, facts, this.map, moved);
+    const [map, other] = [...this.section.querySelectorAll(".map")].map((svg) => new LevelMap(svg, facts.map, colours));
+    // Of the level that the baseline was recorded on there is a map of its own where it looks otherwise.
+    this.maps = { now: map, before: other ?? map };
+    this.player = new Player(this.section, facts, map, moved);
     this.legend = this.section.querySelector(".legend.shown");
     this.isDrawn = false;
     this.section.querySelector(".toggles").addEventListener("change", () => {
@@ -36,15 +38,15 @@ class CaseView {
     const all = this.facts[when];
     if (shown === "ways") {
       const recorded = new Set(when === "now" ? this.facts.episodes.map((each) => each.index) : []);
-      this.map.showWays(all.ways, (index) => (recorded.has(index) ? `#${this.facts.slug}/${index}/0` : ""));
+      this.maps[when].showWays(all.ways, (index) => (recorded.has(index) ? `#${this.facts.slug}/${index}/0` : ""));
       this.#legendOfWays(all);
     } else {
       // One scale for now and before, so that their maps can be compared.
       const most = Math.max(this.facts.now[shown].most, this.facts.before[shown].most) || 1;
-      this.map.showHeat(all[shown], most, shown);
+      this.maps[when].showHeat(all[shown], most, shown);
       const unit = shown === "time" ? `${most.toFixed(1)} s an episode` : `${most} failed episode${most === 1 ? "" : "s"}`;
-      const none = all[shown].cells.length ? "" : " (none here)";
-      this.#fillLegend([[`cell ${shown}`, "", `strongest: ${unit}${none}`]]);
+      const said = all[shown].cells.length ? `strongest: ${unit}` : "no episode failed";
+      this.#fillLegend([[`cell ${shown}`, "", said]]);
     }
   }
 
@@ -52,7 +54,9 @@ class CaseView {
     const isOpen = this.player.open(index, step);
     if (isOpen) {
       this.isDrawn = false;
-      this.#fillLegend(this.#states([...new Set(this.player.episode.state)]));
+      // It was played now, on the level as it is.
+      this.section.dataset.when = "now";
+      this.#legendOfEpisode(this.player.episode);
     }
     return isOpen;
   }
@@ -66,21 +70,35 @@ class CaseView {
     ]);
   }
 
-  #states(states) {
-    return states.map((state) => ["way", this.map.colours[state], `state ${state}: ${this.facts.states[state]}`]);
+  #legendOfEpisode({ state, enemies, movers }) {
+    const modes = [...new Set(enemies.flatMap((enemy) => enemy.mode))];
+    this.#fillLegend([
+      ...this.#states([...new Set(state)]),
+      ["body player-body", this.maps.now.colours[state[0]], "the player, in the colour of the state; small: it crouches"],
+      ...modes.map((mode) => [`body enemy ${mode}`, "", `an enemy: ${mode}`]),
+      ...(enemies.length ? [["cone", "", "what an enemy sees"]] : []),
+      ...(enemies.some((enemy) => enemy.sees.includes(1)) ? [["cone sees", "", "… while it sees the player"]] : []),
+      ...(movers.length ? [["mover", "", "a moving obstacle"]] : []),
+    ]);
   }
 
-  /** Rows of a class, a colour and a text; marks of ends are drawn, all else is a patch of colour. */
+  #states(states) {
+    return states.map((state) => ["way", this.maps.now.colours[state], `state ${state}: ${this.facts.states[state]}`]);
+  }
+
+  /** Rows of a class, a colour and a text; marks of ends and bodies are drawn, all else is a patch of colour. */
   #fillLegend(rows) {
     this.legend.replaceChildren(
       ...rows.map(([kind, colour, text]) => {
         const row = document.createElement("li");
-        const sign = draw(row, "svg", { viewBox: "-8 -8 16 16", "aria-hidden": "true" });
+        const sign = draw(row, "svg", { class: "plan", viewBox: "-8 -8 16 16", "aria-hidden": "true" });
         const end = kind.startsWith("end ") && MARKS[kind.slice(4)];
+        const filled = colour && { fill: colour };
         if (end) draw(sign, "path", { class: kind, d: end.path });
-        else draw(sign, "rect", { class: `patch ${kind}`, x: -8, y: -5, width: 16, height: 10, ...(colour && { fill: colour }) });
+        else if (kind.startsWith("body ")) draw(draw(sign, "g", { class: kind }), "circle", { r: 6, ...filled });
+        else draw(sign, "rect", { class: `patch ${kind}`, x: -8, y: -5, width: 16, height: 10, ...filled });
         const words = document.createElement("span");
-        words.textContent = text;
+        words.append(...prose(text));
         row.append(words);
         return row;
       }),
@@ -136,6 +154,8 @@ class Report {
     else if (view?.player.episode) view.showAll();
     // The keys of the player are for whoever opened it by a link.
     if (isOpen && followed) view.player.scrub.focus({ preventScroll: true });
+    const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (isOpen && followed?.matches(".links .episode") && !isStill) view.player.play();
     // Who chose the episode on the map or in the list looks at it already.
     if (isHere) return;
     (isOpen ? section.querySelector(".automaton-title") : section).scrollIntoView();

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
 
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.page.contents import SuiteReport
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose, short
+from tltl_runtime.regression.retrained import Outcome
 from tltl_runtime.regression.verdict import Verdict
+from tltl_runtime.texts import percent
 
 _VERDICTS: tuple[Verdict, ...] = ("pass", "review", "fail")
 _HEADS = ("Verdict", "Met", "Progress", "Reward", "Why")
 """Of the columns behind the name of the case."""
+
+_OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "feasible", "no_way": "no way found"}
 
 
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
@@ -30,13 +35,15 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
         *(f"{name} {version}" for name, version in suite.versions.items()),
     ]
     rows = [_row(report, slug) for report, slug in zip(reports, slugs, strict=True)]
+    rows += [_earlier(name, suite.earlier[name]) for name in suite.left_out if name in suite.earlier]
     head = element("thead", element("tr", *(element("th", each, scope="col") for each in ("Case", *_HEADS))))
     return joined(
         (
             element("h1", f"Regression report: {suite.suite}"),
+            element("p", suite.note) if suite.note else None,
             None if suite.complete else least,
             _named("Not judged", suite.missing),
-            _named("Left out, since nothing has changed that they depend on", suite.left_out),
+            _named("Left out, since none of the named files concerns them", suite.left_out),
             element("ul", *counts, class_="counts-of-verdicts", aria_label="Verdicts"),
             element("p", " · ".join(facts), class_="facts"),
             element("h2", "Verdicts"),
@@ -62,8 +69,9 @@ def badge(verdict: Verdict) -> Markup:
 
 def _row(report: CaseReport, slug: str) -> Markup:
     now, before = report.figures, report.baseline
+    retrained = element("small", f"trained anew: {_OUTCOMES[report.retrained.outcome]}") if report.retrained else None
     cells = (
-        badge(report.verdict),
+        joined((badge(report.verdict), retrained)),
         _met(now, before) if now else "–",
         _against(now.progress.mean, before.progress.mean if before else None) if now else "–",
         _against(now.reward.mean, before.reward.mean if before else None) if now else "–",
@@ -77,17 +85,23 @@ def _row(report: CaseReport, slug: str) -> Markup:
     return element("tr", name, *written, data_verdict=report.verdict)
 
 
+def _earlier(name: str, verdict: Verdict) -> Markup:
+    """A row for a case that was left out, and what an earlier run said of it."""
+    said = element("td", f"not played now; earlier: {verdict}", colspan=len(_HEADS))
+    return element("tr", element("th", name, scope="row"), said, class_="earlier", data_verdict=verdict)
+
+
 def _met(now: Figures, before: Figures | None) -> Markup:
     """The pass rate as a bar with its interval of 95 %, and the baseline's below it."""
     words = f"{_rate_words(now)}; before: {_rate_words(before)}" if before else _rate_words(now)
     bars = [*_rate(now, "now", top=0, height=12)]
     if before:
         bars += _rate(before, "before", top=15, height=7)
-    small = element("small", f"before {_of(before)}") if before else None
+    small = element("small", f"before {_with_share(before)}") if before else None
     # It is stretched to the width that there is.
     manner = {"viewBox": "0 0 100 22", "role": "img", "preserveAspectRatio": "none"}
     bar = element("svg", element("title", words), *bars, class_="bar", **manner)
-    return joined((bar, element("span", _of(now), class_="number"), small))
+    return joined((bar, element("span", _with_share(now), class_="number"), small))
 
 
 def _rate(figures: Figures, kind: str, top: int, height: int) -> Iterator[Markup]:
@@ -108,6 +122,10 @@ def _rate_words(figures: Figures) -> str:
 def _of(figures: Figures) -> str:
     """How many of how many episodes met the spec."""
     return f"{round(figures.pass_rate * figures.episodes)} of {figures.episodes}"
+
+
+def _with_share(figures: Figures) -> str:
+    return f"{_of(figures)} · {percent(figures.pass_rate).replace('%', ' %')}"
 
 
 def _against(now: float, before: float | None) -> Markup:

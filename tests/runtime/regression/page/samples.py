@@ -112,7 +112,7 @@ def reported(
         accounts=tuple(accounts),
     )
     indices = range(len(now)) if recorded is None else recorded
-    return ReportedCase(report, level, fspa, {index: now[index] for index in indices}, tuple(used))
+    return ReportedCase(report, level, fspa, {index: now[index] for index in indices}, tuple(used), before[0].level)
 
 
 @cache

@@ -11,6 +11,7 @@ import pytest
 
 from tests.runtime.regression.page import chromium, samples
 from tltl_runtime.regression.page.page import html_report
+from tltl_runtime.stealth.level import Box, Solid
 from tltlc.record import replace
 
 if TYPE_CHECKING:
@@ -78,7 +79,15 @@ def test_the_filter_leaves_findings(tab: Tab) -> None:
     assert all(each.is_visible() for each in tab.locator("section.case").all())
 
 
-def test_a_link_in_an_explanation_opens_its_episode(tab: Tab) -> None:
+@pytest.fixture(name="still")
+def _still(browser: Browser, file: Path) -> Iterator[Tab]:
+    """The page for people who want nothing to move by itself."""
+    with chromium.opened(browser, file, reduced_motion="reduce", **WIDE) as opened:
+        yield opened
+
+
+def test_a_link_in_an_explanation_opens_its_episode(still: Tab) -> None:
+    tab = still
     link = tab.locator(f"#{CASE} .reasons a.episode").first
     _, index, step = (link.get_attribute("href") or "").split("/")
     assert int(step) > 0
@@ -92,7 +101,21 @@ def test_a_link_in_an_explanation_opens_its_episode(tab: Tab) -> None:
     assert tab.locator(f"#{CASE} .stage").evaluate("each => each.getBoundingClientRect().top < innerHeight")
 
 
-def test_keys_are_the_players_after_a_link_and_the_link_leads_there_again(tab: Tab) -> None:
+def test_a_link_in_an_explanation_plays_its_episode(tab: Tab) -> None:
+    link = tab.locator(f"#{CASE} .reasons a.episode").first
+    _, index, step = (link.get_attribute("href") or "").split("/")
+    assert link.get_attribute("title") == f"play the end of episode {index}"
+    for _ in range(2):
+        link.click()
+        expect(tab.locator(f"#{CASE} .play")).to_have_attribute("aria-label", "pause")
+        moment = tab.locator(f"#{CASE} .moment")
+        expect(moment).not_to_contain_text(f"step {step} of ")
+    expect(moment).to_have_text(re.compile(r"step (\d+) of \1,"), timeout=8000)
+    expect(tab.locator(f"#{CASE} .play")).to_have_attribute("aria-label", "play")
+
+
+def test_keys_are_the_players_after_a_link_and_the_link_leads_there_again(still: Tab) -> None:
+    tab = still
     link = tab.locator(f"#{CASE} .reasons a.episode").first
     step = int((link.get_attribute("href") or "").split("/")[2])
     link.click()
@@ -116,7 +139,7 @@ def test_scrubbing_shows_the_state_the_values_and_the_map_of_a_step(browser: Bro
     assert changes
     with chromium.opened(browser, file, f"#{CASE}/0/0", **WIDE) as tab:
         assert current(tab) == "0"
-        place = tab.locator(f"#{CASE} .player-body circle")
+        place = tab.locator(f"#{CASE} .map .player-body circle")
         start = place.get_attribute("cx")
         for row in (*changes, len(states) - 1):
             scrub(tab, row)
@@ -173,7 +196,7 @@ def test_episodes_are_chosen_and_left(tab: Tab) -> None:
     which.scroll_into_view_if_needed()
     tab.locator(f"#{CASE} .map .ways polyline").first.wait_for(state="attached")
     which.select_option("1")
-    tab.locator(f"#{CASE} .player-body").wait_for(state="attached")
+    tab.locator(f"#{CASE} .map .player-body").wait_for(state="attached")
     assert tab.locator(f"#{CASE} .map .ends path").count() == 0
     which.select_option("")
     tab.locator(f"#{CASE} .map .ends path").first.wait_for(state="attached")
@@ -207,6 +230,80 @@ def test_the_map_shows_now_or_the_baseline(tab: Tab) -> None:
     assert section.locator(".map .cell.failed").count() == 0  # nothing failed before
     section.get_by_label("now", exact=True).check()
     assert section.locator(".map .cell.failed").count() > 0
+
+
+@pytest.fixture(scope="module")
+def changed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a case whose level has a wall that the baseline's had not."""
+    path = tmp_path_factory.mktemp("changed") / "report.html"
+    case = samples.suite().cases[1]
+    assert case.level is not None
+    wall = Solid("new_wall", "wall", Box((9.0, 1.0, 0.0), (10.0, 2.0, 3.0)))
+    level = replace(case.level, solids=(*case.level.solids, wall))
+    path.write_text(html_report(replace(samples.suite(), cases=(replace(case, level=level),))), encoding="utf-8")
+    return path
+
+
+def test_the_ways_of_the_baseline_are_shown_on_its_level(browser: Browser, changed: Path) -> None:
+    with chromium.opened(browser, changed, f"#{CASE}", **WIDE) as tab:
+        now, before = (tab.locator(f"#{CASE} .drawn.{when}") for when in ("now", "before"))
+        wall = "rect:has(title:text-is('new_wall'))"
+        expect(now).to_be_visible()
+        expect(before).to_be_hidden()
+        assert (now.locator(wall).count(), before.locator(wall).count()) == (1, 0)
+        expect(now).to_contain_text("The level as it is now: cover_and_hide v0.")
+        tab.locator(f"#{CASE}").get_by_label("baseline").check()
+        expect(now).to_be_hidden()
+        expect(before).to_be_visible()
+        expect(before).to_contain_text("The level as it was when the baseline was recorded: cover_and_hide v0.")
+        assert before.locator(".way").count() > 0
+        tab.locator(f"#{CASE}").get_by_label("time spent").check()
+        assert before.locator(".cell.time").count() > 0
+        # Episodes are recorded now.
+        tab.locator(f"#{CASE} .which").select_option("1")
+        expect(now.locator(".player-body")).to_be_attached()
+        expect(now).to_be_visible()
+        expect(before).to_be_hidden()
+        tab.locator(f"#{CASE} .which").select_option("")
+        expect(before).to_be_visible()
+
+
+def test_an_atom_that_does_not_hold_looks_so(browser: Browser, file: Path) -> None:
+    case = samples.suite().cases[1]
+    assert case.fspa is not None
+    with chromium.opened(browser, file, f"#{CASE}/0/0", **WIDE) as tab:
+        rows = tab.locator(f"#{CASE} .atoms tbody tr")
+        assert not rows.locator("..").locator(".holds, .fails").count(), "the moment of the reset is not judged"
+        for step in (1, len(case.episodes[0].actions)):
+            scrub(tab, step)
+            for row, value in zip(rows.all(), case.episodes[0].atoms[step - 1].tolist(), strict=True):
+                bar, track = (row.locator(name).bounding_box() for name in (".length", ".signed"))
+                assert bar is not None and track is not None
+                middle, half = track["x"] + track["width"] / 2, track["width"] / 2
+                assert bar["width"] == pytest.approx(half * min(1.0, abs(value)), abs=0.02 * half)
+                left = middle if value > 0 else middle - bar["width"]
+                assert bar["x"] == pytest.approx(left, abs=1.0)
+                assert ("holds" in (row.get_attribute("class") or "")) == (value > 0)
+                assert ("fails" in (row.get_attribute("class") or "")) == (value <= 0)
+                assert row.locator(".number").inner_text().startswith("+") == (value > 0)
+        alive = rows.nth([atom.name for atom in case.fspa.atoms].index("alive"))
+        assert alive.locator(".number").inner_text() == "0.00", "the player is dead"
+        assert alive.get_attribute("class") == "fails"
+
+
+def test_names_in_texts_of_the_player_stand_out(browser: Browser, file: Path) -> None:
+    last = len(samples.suite().cases[1].episodes[0].actions)
+    with chromium.opened(browser, file, f"#{CASE}/0/{last}", **WIDE) as tab:
+        state = tab.locator(f"#{CASE} .state")
+        assert "`" not in state.inner_text()
+        assert "guard" in state.locator("code").all_inner_texts()
+
+
+def test_the_legend_of_an_episode_tells_who_is_who(browser: Browser, file: Path) -> None:
+    with chromium.opened(browser, file, f"#{CASE}/0/5", **WIDE) as tab:
+        legend = " ".join(tab.locator(f"#{CASE} .legend.shown li").all_inner_texts())
+        assert all(words in legend for words in ("the player", "an enemy: patrol", "what an enemy sees"))
+        assert "a moving obstacle" not in legend, "there is none"
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -25,17 +25,30 @@ def test_a_curve_for_each_recorded_episode() -> None:
 
 def test_shares_add_up() -> None:
     known = samples.account_of(0, samples.navigation()[0])
-    now = [replace(known, progress=value) for value in (0.0, 0.3, 0.3, 1.0)]
-    root = ElementTree.fromstring(progress_distribution(now, now[:1]))
-    titles = [each.findtext("title") or "" for each in root.iter("rect")]
-    assert titles == [
+    failed = [replace(known, success=False, progress=value) for value in (0.0, 0.58, 1.0)]
+    root = ElementTree.fromstring(progress_distribution([*failed, known], [known]))
+    bars = list(root.iter("rect"))
+    assert [each.findtext("title") for each in bars] == [
         "progress 0.0 to 0.1, now: 25% of the episodes",
-        "progress 0.3 to 0.4, now: 50% of the episodes",
+        "progress 0.5 to 0.6, now: 25% of the episodes",
         "progress 0.9 to 1.0, now: 25% of the episodes",
-        "progress 0.0 to 0.1, before: 100% of the episodes",
+        "progress 1, the spec is met, now: 25% of the episodes",
+        "progress 1, the spec is met, before: 100% of the episodes",
     ]
-    heights = [float(each.get("height", "nan")) for each in root.iter("rect")]
-    assert heights[1] == pytest.approx(2 * heights[0], abs=0.02) and heights[3] == max(heights)
+    (*_, met, before) = bars
+    assert (met.get("x"), met.get("width")) == (before.get("x"), before.get("width"))
+    assert float(before.get("height", "nan")) == pytest.approx(4 * float(met.get("height", "nan")), abs=0.04)
+
+
+def test_bars_stand_where_their_values_are_written() -> None:
+    known = samples.account_of(0, samples.navigation()[0])
+    root = ElementTree.fromstring(progress_distribution([replace(known, success=False, progress=0.58), known], []))
+    ticks = {each.text: float(each.get("x", "nan")) for each in root.iter("text") if "tick x" in each.get("class", "")}
+    (failed, met) = [(float(each.get("x", "nan")), float(each.get("width", "nan"))) for each in root.iter("rect")]
+    assert ticks["0.5"] < failed[0] and sum(failed) < ticks["0.6"]
+    assert met[0] < ticks["1 (met)"] == pytest.approx(met[0] + met[1] / 2, abs=0.01)
+    shares = [each.text for each in root.iter("text") if "tick y" in each.get("class", "")]
+    assert shares == ["0%", "25%", "50%", "75%", "100%"]
 
 
 def test_no_baseline_is_no_fault() -> None:

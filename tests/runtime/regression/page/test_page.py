@@ -14,12 +14,14 @@ import pytest
 
 from tests.runtime.regression.made import several
 from tests.runtime.regression.page import samples
+from tests.runtime.regression.page.test_packing import unstepped
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.explain import Finding
 from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
 from tltl_runtime.regression.page.page import html_report
 from tltl_runtime.regression.retrained import Retrained, Trained
+from tltl_runtime.stealth.level import Box
 from tltlc.record import replace
 
 EVIL = "</script><b onclick='x'>`$title`&amp;<!--"
@@ -79,7 +81,7 @@ def test_there_is_a_row_and_a_section_for_each_case() -> None:
 def test_cases_that_are_not_on_the_page_are_named() -> None:
     found = Page(html_report(replace(samples.suite(), complete=False, missing=("a", "b"), left_out=("<c>",))))
     assert "Not judged: a, b." in found.texts
-    assert "Left out, since nothing has changed that they depend on: <c>." in found.texts
+    assert "Left out, since none of the named files concerns them: <c>." in found.texts
     assert not [text for text in page().texts if text.startswith(("Not judged", "Left out"))]
 
 
@@ -189,6 +191,56 @@ def test_a_training_is_told_with_its_curve() -> None:
     assert picture["src"] == "data:image/png;base64," + base64.b64encode(b"a curve").decode()
     assert picture["alt"]
     assert not Page(html_report(suite)).all("img")
+
+
+def test_outcomes_of_trainings_stand_below_their_verdicts() -> None:
+    trained = Trained("minutes", 4096, 60.0, 200_000, True, None)
+    told = Retrained("no_way", "no", trained, figures_of(several(0, 2)), (0.0, 0.5), None, "a/p", None)
+    suite = samples.suite()
+    case = replace(suite.cases[1], report=replace(suite.cases[1].report, retrained=told))
+    texts = Page(html_report(replace(suite, cases=(suite.cases[0], case)))).texts
+    assert texts.count("trained anew: no way found") == 1
+    assert not any(text.startswith("trained anew") for text in page().texts)
+
+
+def test_pass_rates_are_told_in_percent() -> None:
+    suite = samples.suite()
+    report = replace(suite.cases[1].report, figures=figures_of(several(121, 179)), baseline=figures_of(several(299, 1)))
+    texts = Page(html_report(replace(suite, cases=(replace(suite.cases[1], report=report),)))).texts
+    assert "121 of 300 · 40 %" in texts and "before 299 of 300 · 99 %" in texts
+
+
+def test_what_an_earlier_run_said_stands_in_the_table() -> None:
+    suite = replace(samples.suite(), left_out=("a", "b"), earlier={"b": "review"}, note="As planned.")
+    found = Page(html_report(suite))
+    assert "As planned." in found.texts
+    (row,) = [each for each in found.all("tr") if each.get("class") == "earlier"]
+    assert row["data-verdict"] == "review"
+    assert "not played now; earlier: review" in found.texts and "not played now; earlier: pass" not in found.texts
+
+
+def test_there_is_a_second_map_where_the_level_of_the_baseline_looks_otherwise() -> None:
+    def maps(case: ReportedCase) -> tuple[int, str]:
+        text = html_report(SuiteReport("maps", 0, 0.05, {}, (case,)))
+        return len([each for each in Page(text).all("svg") if (each["class"] or "").endswith(" map")]), text
+
+    case = samples.suite().cases[1]
+    assert case.level is not None and case.designed is not None
+    assert maps(case)[0] == 1 and "as it was" not in maps(case)[1]
+    # Who sees how far is on no map, nor is what the variant is called.
+    kinds = tuple(replace(each, kind=replace(each.kind, walk_speed=9.0)) for each in case.level.enemies)
+    assert maps(replace(case, level=replace(case.level, enemies=kinds, variant="v7")))[0] == 1
+    wide = replace(case.designed, bounds=Box((-5.0, 0.0, -2.0), case.designed.bounds.high))
+    count, text = maps(replace(case, designed=wide))
+    assert count == 2 and "The level as it was when the baseline was recorded: cover_and_hide v0." in text
+    (data,) = Page(text).data["cases"]
+    first = [
+        sum(unstepped(data[when]["ways"][0]["x"])[:1]) * data[when]["ways"][0]["unit"] for when in ("now", "before")
+    ]
+    assert first[1] - first[0] == pytest.approx(500, abs=100), "its ways are on its map"
+    unknown = maps(replace(case, designed=None))
+    assert unknown[0] == 1 and "what it was then is not known any more" in unknown[1]
+    assert "not known any more" not in maps(replace(case, designed=None, before=()))[1]
 
 
 def test_a_case_that_cannot_be_played_has_its_reasons_alone() -> None:

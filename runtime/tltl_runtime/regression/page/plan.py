@@ -1,0 +1,42 @@
+"""Where on the map of a level something is: centimetres from the north-western corner of its bounds, x eastwards, y
+southwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from tltl_runtime.stealth.level import Box
+
+Rect = tuple[int, int, int, int]
+"""Left, top, right and bottom."""
+
+
+class Plan:
+    """From the metres of a level to the centimetres of its map, whose width and height are ``size``."""
+
+    def __init__(self, bounds: Box) -> None:
+        (self.west, south, _), (east, self.north, _) = bounds.low, bounds.high
+        self.size = (round(100 * (east - self.west)), round(100 * (self.north - south)))
+
+    def at(self, point: Sequence[float]) -> tuple[int, int]:
+        """A point, seen from above."""
+        return round(100 * (point[0] - self.west)), round(100 * (self.north - point[1]))
+
+    def middle(self, box: Box) -> tuple[int, int]:
+        """The middle of a box."""
+        return self.at([(low + high) / 2 for low, high in zip(box.low, box.high, strict=True)])
+
+    def rect(self, box: Box) -> Rect:
+        """A box, seen from above."""
+        (left, bottom), (right, top) = self.at(box.low), self.at(box.high)
+        return left, top, right, bottom
+
+    def sides(self, box: Box) -> dict[str, int]:
+        """A box, seen from above, as attributes of SVG."""
+        left, top, right, bottom = self.rect(box)
+        return {"x": left, "y": top, "width": right - left, "height": bottom - top}
+
+    def line(self, points: Iterable[Sequence[float]]) -> str:
+        """Points as SVG has those of a line."""
+        return " ".join(f"{x},{y}" for x, y in map(self.at, points))

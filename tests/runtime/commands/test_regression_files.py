@@ -1,0 +1,70 @@
+"""The page that a run leaves: what it calls the suite, and what it knows of the baseline and of earlier runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.runtime.regression.game import Played, edit
+from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
+from tltl_runtime.commands.regression_files import Outcome, json_text, write_reports
+from tltl_runtime.regression.baseline import baseline_of
+from tltl_runtime.regression.run import Done, regress
+from tltl_runtime.regression.suite import SHIPPED, Suite, read_suite
+from tltlc.record import replace
+
+NAMES = ("room:v0", "room:v1", "hopeless")
+
+
+@pytest.fixture(name="suite")
+def _suite(game: Path) -> Suite:
+    return read_suite(Path("game.toml"))
+
+
+def page(outcome: Outcome) -> str:
+    found = write_reports(outcome, {})
+    assert found is not None
+    return found.read_text(encoding="utf-8")
+
+
+def judged(suite: Suite, count: int) -> tuple[Done, ...]:
+    return tuple(regress(suite, suite.cases[:count], baseline_of(suite), Path("run"), 1, Played()))
+
+
+def test_cases_that_were_left_out_have_their_earlier_verdicts(suite: Suite) -> None:
+    text = page(Outcome(suite, Path("run"), (), True, NAMES))
+    assert text.count("not played now; earlier: pass") == 2 and text.count("not played now; earlier: fail") == 1
+    assert "not played now" not in page(Outcome(suite, Path("elsewhere"), (), True, NAMES))
+
+
+@pytest.mark.parametrize(
+    "kept", ["", "[]", "{}", '{"content": 3}', '{"content": {"verdict": ["pass"]}}', "[" * 100_000]
+)
+def test_what_cannot_be_read_of_an_earlier_run_is_left_out(suite: Suite, kept: str) -> None:
+    Path("run/cases/hopeless/case.json").write_text(kept, encoding="utf-8")
+    text = page(Outcome(suite, Path("run"), (), True, NAMES))
+    assert text.count("not played now; earlier: pass") == 2 and "earlier: fail" not in text
+
+
+def test_the_level_of_the_baseline_is_drawn_where_it_looks_otherwise(suite: Suite) -> None:
+    words = "The level as it was when the baseline was recorded: room v0."
+    assert words not in page(Outcome(suite, Path("run"), judged(suite, 1), True))
+    edit("room.toml", "at = [8.0, 8.0, 0.0]", "at = [8.0, 7.0, 0.0]")
+    text = page(Outcome(suite, Path("run"), judged(suite, 1), True))
+    assert words in text and "not known any more" not in text
+    edit("room.toml", "at = [8.0, 7.0, 0.0]", "at = [8.0, 6.0, 0.0]")
+    references = tuple(replace(each, texts=()) for each in baseline_of(suite))
+    cases = tuple(regress(suite, suite.cases[:1], references, Path("run"), 1, Played()))
+    text = page(Outcome(suite, Path("run"), cases, True))
+    assert words not in text and "what it was then is not known any more" in text
+
+
+def test_the_shipped_suite_is_called_so_and_explains_its_findings(tmp_path: Path, suite: Suite) -> None:
+    shipped = Outcome(read_suite(SHIPPED), tmp_path, (), True)
+    text = page(shipped)
+    assert "<h1>Regression report: shipped</h1>" in text
+    assert "Its variants v1 and v2 were changed on purpose" in text
+    assert '"suite": "suite.toml"' in json_text(shipped), "the file's name"
+    own = page(Outcome(suite, tmp_path, (), True))
+    assert "<h1>Regression report: game</h1>" in own and "on purpose" not in own

@@ -1,0 +1,44 @@
+"""Links say which episodes they play, and from where."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.runtime.regression.page import samples
+from tltl_runtime.regression.explain import Finding
+from tltl_runtime.regression.page.episode_links import episode_links
+
+FAILED = dict(enumerate(samples.cover_and_hide_failed()))
+MET = dict(enumerate(samples.cover_and_hide_met()))
+
+
+@pytest.mark.parametrize(
+    ("text", "episodes", "words"),
+    [
+        ("dies by `guard` in 3 of 25 episodes; before: in 0 of 25", (0, 1, 2), "play the end of episodes: 0 1 2"),
+        ("dies by `guard` in 1 of 25 episodes; before: in 24 of 25", (1,), "play the end of episode: 1"),
+        ("reaches `exit` in 22 of 25 episodes (88%)", (0, 1, 2), "those that do not, play the end of episodes: 0 1 2"),
+        ("reaches `exit` in 24 of 25 episodes", (2,), "one that does not, play the end of episode: 2"),
+        ("reaches `exit` in 3 of 6 episodes", (0, 1, 2), "those that do not, play the end of episodes: 0 1 2"),
+        ("dies by `guard` in 3 of 6 episodes", (0, 1, 2), "play the end of episodes: 0 1 2"),
+        ("fails otherwise", (0, 9), "play the end of episode: 0"),
+    ],
+)
+def test_what_links_play(text: str, episodes: tuple[int, ...], words: str) -> None:
+    found = episode_links(Finding(text, episodes), FAILED, "a")
+    assert found is not None and re.sub(r"<.*?>", "", found).strip() == words
+    for index in re.findall(r"\d", words.partition(":")[2]):
+        assert f'title="play the end of episode {index}"' in found
+
+
+def test_successes_are_played_from_their_start() -> None:
+    found = episode_links(Finding("successes are longer", (0, 1)), MET, "a")
+    assert found is not None and re.sub(r"<.*?>", "", found).strip() == "play episodes: 0 1"
+    assert re.findall(r'href="#(.*?)"', found) == ["a/0/0", "a/1/0"]
+    assert 'title="play episode 1"' in found
+
+
+def test_what_is_not_recorded_has_no_links() -> None:
+    assert episode_links(Finding("fails", (7,)), FAILED, "a") is None

@@ -1,0 +1,72 @@
+"""Which keys of a file have changed, in words."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltl_runtime.regression.changed_keys import changed_keys
+
+GUARD = """doc = "A guard."
+type = "enemy"
+sight_range = 8.0
+walk_speed = 1.6
+branches = []
+[look]
+tilt = 5
+"""
+ROOM = """[[solid]]
+name = "block_1"
+at = [1.0, 0.0, 0.0]
+[[solid]]
+name = "block_2"
+at = [4.0, 0.0, 0.0]
+[[use]]
+asset = "crates"
+[[use]]
+asset = "crates"
+at = [0.0, 0.0, 0.0]
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("walk_speed = 1.6", "walk_speed = 2.6", "`walk_speed` 1.6 → 2.6"),
+        ('type = "enemy"', 'type = "part"', '`type` "enemy" → "part"'),
+        ("branches = []", "branches = []\nhears = true", "`hears` new: true"),
+        ("sight_range = 8.0\n", "", "`sight_range` gone"),
+        ("[look]\ntilt = 5", "[look]\ntilt = 7", "`look.tilt` 5 → 7"),
+        ("[look]\ntilt = 5", "look = 5", '`look` {"tilt": 5} → 5'),
+    ],
+)
+def test_what_has_changed(old: str, new: str, said: str) -> None:
+    assert old in GUARD
+    assert changed_keys(GUARD, GUARD.replace(old, new)) == said
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("at = [4.0, 0.0", "at = [4.0, 1.5", "`solid.block_2.at` [4.0, 0.0, 0.0] → [4.0, 1.5, 0.0]"),
+        ("block_2", "block_3", "`solid.block_3` new, `solid.block_2` gone"),
+        ('"crates"\nat', '"boxes"\nat', '`use.2.asset` "crates" → "boxes"'),
+        ('"block_2"', '"block_1"', '`solid.2.name` "block_2" → "block_1"'),
+    ],
+)
+def test_tables_in_lists_go_by_their_names_else_by_their_positions(old: str, new: str, said: str) -> None:
+    assert old in ROOM
+    assert changed_keys(ROOM, ROOM.replace(old, new)) == said
+
+
+def test_long_values_are_not_shown_nor_more_than_three_keys() -> None:
+    assert changed_keys('doc = "A guard."', f'doc = "{"A guard that walks. " * 3}"') == "`doc`"
+    old, new = ("".join(f"key_{row} = {row + more}\n" for row in range(7)) for more in (0, 1))
+    assert changed_keys(old, new) == "`key_0` 0 → 1, `key_1` 1 → 2, `key_2` 2 → 3 and 4 more"
+
+
+def test_where_no_value_has_changed_that_is_said() -> None:
+    assert changed_keys(GUARD, f"# Slow.\n{GUARD.replace(' = ', '=')}") == "no value of it"
+
+
+def test_of_what_is_no_toml_nothing_is_said() -> None:
+    assert changed_keys(GUARD, "walk_speed = ") == changed_keys("?", GUARD) == ""
