@@ -20,7 +20,7 @@ def judged(**verdicts: str) -> dict[str, Record]:
         figures = {"progress": 1.0, "reward": 0.7}
         reasons = ["the way ends at `corridor_block_2`"] if name == "navigation:v2" else ["met"]
         told = {"verdict": asked[-1], "certain": True, "episodes": 50, "pass_rate": 0.98, "reasons": reasons}
-        cases[name] = {**told, **figures, "before": figures}
+        cases[name] = {**told, "headline": reasons[0], **figures, "before": figures}
     for name, verdict in verdicts.items():
         cases[":".join(name.rsplit("_", 1))]["verdict"] = verdict
     return {suite.COMMAND: {"cases": cases, "source": "0"}}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 from typing import get_args
 
@@ -12,6 +13,7 @@ import pytest
 from tests.docs.blocks import DOCS, blocks
 from tests.runtime.regression.made import ROOM, case, several, suite
 from tltl_runtime.evaluation.figures import Figures, figures_of
+from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.regression import confidence
 from tltl_runtime.regression import suite as suite_module
 from tltl_runtime.regression.case_report import CaseReport
@@ -38,6 +40,7 @@ def rows(heading: str) -> dict[str, str]:
 def test_every_key_of_a_suite_is_told_and_no_other() -> None:
     source = Path(suite_module.__file__).read_text(encoding="utf-8")
     read = set(re.findall(r"(?:table|found)\.(?:number|whole|text|names|tables?)\(\"(\w+)\"", source))
+    read |= set(re.findall(r"\b_text\(table, \"(\w+)\"", source))
     read |= set(Thresholds.__match_args__)
     told = {*rows("key"), *rows("key of a case"), *rows("key of thresholds")}
     assert {name.rpartition(".")[2] for name in told} == read
@@ -64,6 +67,7 @@ def test_the_suites_of_the_page_are_suites(tmp_path: Path) -> None:
     for name in files:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(ROOM, encoding="utf-8")
+    shutil.copy(shipped_policies()["cover_and_hide"], tmp_path / files[-1])
     texts = [block.text for block in blocks(DOCS / "regression.md") if block.kind == "toml"]
     assert len(texts) == 2
     for text in texts:
