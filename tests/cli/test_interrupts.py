@@ -18,7 +18,7 @@ _SLOW = """
 import sys, time
 print("imports", flush=True)
 try:
-    time.sleep(1.0)
+    time.sleep(0.3)
 except BaseException:
     raise ImportError("a library that says something else") from None
 """
@@ -44,6 +44,13 @@ def test_an_import_is_over_before_its_interrupt_comes(tmp_path: Path) -> None:
     assert (status, err) == (130, "")
     # Where the machine is slow, the interrupt may come right behind the import.
     assert out in ("", "imported\n")
+
+
+def test_an_import_that_does_not_end_ends_with_the_process(tmp_path: Path) -> None:
+    (tmp_path / "endless.py").write_text("import slow, time\nwhile True:\n    time.sleep(0.01)\n", encoding="utf-8")
+    script = "print('begins', flush=True)\nwith interrupts_end():\n    import endless"
+    status, _, err = _ended(tmp_path, script, "begins\n")
+    assert (status, err) == (130, "")
 
 
 def test_an_interrupt_at_the_very_end_changes_nothing(tmp_path: Path) -> None:

@@ -74,11 +74,8 @@ def missing_component(wanted_by: str, module: str, requirement: str) -> TltlErro
     return TltlError([Diagnostic("TLT0730", title, help=way_out if own else f"pip install '{requirement}'")])
 
 
-def report(error: Exception, *, interrupted: bool = False) -> int:
-    """Say on standard error what went wrong and return the exit status.
-
-    Of a command that was ``interrupted`` what nobody foresaw comes of that, and is not told.
-    """
+def report(error: Exception) -> int:
+    """Say on standard error what went wrong and return the exit status."""
     if isinstance(error, BrokenPipeError):
         error = StopQuietlyError(CLOSED_PIPE)
     if isinstance(error, StopQuietlyError):
@@ -103,7 +100,16 @@ def report(error: Exception, *, interrupted: bool = False) -> int:
 
         show(error.diagnostics, "text", sys.stderr)
         return status_of(error.diagnostics)
-    return INTERRUPTED if interrupted else _bug(error)
+    return INTERRUPTED if is_interrupted(error) else _bug(error)
+
+
+def is_interrupted(error: BaseException | None) -> bool:
+    """Whether an exception is what a library has made of an interrupt."""
+    while error is not None:
+        if isinstance(error, KeyboardInterrupt):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def _usage(error: click.ClickException) -> Diagnostic:

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from _thread import interrupt_main
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from threading import Timer, main_thread
+from time import monotonic
 from types import FrameType
-from typing import Final
+from typing import Final, NoReturn
 
 from tltlc.cli import exits
 
 _AGAIN_S: Final = 0.05
 """From an interrupt that came in the middle of an import to the next attempt."""
 
-_heard: Final[list[int]] = []
+_PATIENCE_S: Final = 1.0
+"""From the first one to the end of the process, if by then nothing but imports has gone on."""
+
+_came: Final[dict[int, float]] = {}
+"""When the interrupts came that wait for the end of an import, by their signals."""
 
 
 @contextmanager
@@ -39,20 +45,25 @@ def interrupts_end() -> Iterator[None]:
 def interrupt(number: int, frame: FrameType | None) -> None:
     """The handler of a signal: raises KeyboardInterrupt, as soon as no module is being imported.
 
-    Half-imported modules turn it into errors of their own, or lose it.
+    Half-imported modules turn it into errors of their own, or lose it.  Imports that take long end with the process.
     """
-    _heard.append(number)
-    if _is_importing(frame):
-        again = Timer(_AGAIN_S, _send_again, (number,))
-        again.daemon = True
-        again.start()
-        return
-    raise KeyboardInterrupt
+    if not _is_importing(frame):
+        _came.pop(number, None)
+        raise KeyboardInterrupt
+    if monotonic() - _came.setdefault(number, monotonic()) > _PATIENCE_S:
+        _end(128 + number)
+    again = Timer(_AGAIN_S, _send_again, (number,))
+    again.daemon = True
+    again.start()
 
 
-def was_heard() -> bool:
-    """Whether this process has been interrupted, so that a fault that nobody foresaw may be no fault."""
-    return bool(_heard)
+def _end(status: int) -> NoReturn:
+    """End at once, with what was printed."""
+    for stream in (sys.stdout, sys.stderr):
+        # Whoever reads it may have gone.
+        with suppress(OSError, ValueError):
+            stream.flush()
+    os._exit(status)
 
 
 def _is_importing(frame: FrameType | None) -> bool:

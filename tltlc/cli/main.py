@@ -14,7 +14,7 @@ from typing import Any, Final, NoReturn
 import click
 
 from tltlc.cli import exits, plugins
-from tltlc.cli.interrupts import interrupts_end, was_heard
+from tltlc.cli.interrupts import interrupts_end
 
 BUILT_IN: Final = {
     "compile": "Compile the specs of a file to artefacts and monitors.",
@@ -70,7 +70,7 @@ class CommandLine(click.Group):
             status = super().main(None if args is None else list(args), **extra) or 0
             sys.stdout.flush()
         except Exception as error:
-            status = exits.report(error, interrupted=was_heard())
+            status = exits.report(error)
         sys.exit(status)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:

@@ -44,7 +44,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     """Record the figures of the policies of a suite on the levels as they are now, for `tltlc regress`.
 
     Of each level that is the variant with which its cases are compared, by default the first one.  What the file has
-    already is not played again where level, policy, spec, seed and versions are as they were.  Without SUITE, the
+    already is not played again where level, policy, spec, seed, versions and code are as they were.  Without SUITE, the
     levels that come with tltlc are played, and `shipped.baseline.json` is written.
     """
     with Report() as report, learning_for("`tltlc baseline`"), requests_heard():
@@ -60,7 +60,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
         there, older = exists(wrote), _older(wrote)
         try:
             with RegressionDisplay() as display:
-                for each in write_recorded(read, wrote, workers, display, () if fresh else older):
+                for each in write_recorded(read, wrote, workers, display, older, fresh=fresh):
                     display.over()
                     _tell(read, each, older, fresh=fresh)
         except KeyboardInterrupt:
@@ -109,7 +109,7 @@ def _tell(suite: Suite, compared: Compared, older: tuple[Reference, ...], *, fre
     for case in compared.cases:
         verdict = verdict_as_it_is(suite, case, reference) if case.variant == case.reference else "pass"
         if verdict != "pass":
-            advice = _advice(passed / count, case)
+            advice = _advice(passed / count, case, suite.error / len(suite.cases))
             click.echo(plain(f"    `{case.name}` is `{verdict}` even if nothing changes: {advice}"), err=True)
 
 
@@ -126,10 +126,13 @@ def _before(reference: Reference, older: tuple[Reference, ...]) -> Reference | N
     return its[0] if its else same[0] if len(same) == 1 else None
 
 
-def _advice(pass_rate: float, case: Case) -> str:
+def _advice(pass_rate: float, case: Case, error: float) -> str:
     """What makes a case pass of whose baseline's episodes this share met the spec."""
     if pass_rate == 1.0:
-        return f"give it more `episodes` than {case.episodes}, which are too few to be certain"
+        from tltl_runtime.regression.baseline_run import enough_episodes
+
+        enough = enough_episodes(case.thresholds.pass_rate, error)
+        return f"{case.episodes} `episodes` are too few to be certain, give it {enough} at least"
     if pass_rate < case.thresholds.pass_rate:
         return "train its policy further, or lower its `pass_rate`"
     return "train its policy further, lower its `pass_rate`, or give it more `episodes`"

@@ -25,8 +25,8 @@ def requests_heard() -> Iterator[None]:
     before = {number: signal.signal(number, request) for number in _REQUESTS}
     try:
         yield
-    except KeyboardInterrupt:
-        if heard:
+    except BaseException as error:
+        if heard and exits.is_interrupted(error):
             raise exits.StopQuietlyError(128 + heard[0]) from None
         raise
     finally:

@@ -95,7 +95,9 @@ def command(
     printed = {name: f"`--{name} {path}`" for name, path in files.items() if path is not None and is_output(path)}
     if printed and len(users := [*["--github"] * github, *printed.values()]) > 1:
         *_, last = (_REPORTS[name] for name in printed)
-        raise click.UsageError(f"{users[0]} and {users[1]} both need standard output: write {last} to a file")
+        way_out = f"write {last} to a file" if len(users) == 2 else "write the reports to files"
+        both = "both" if len(users) == 2 else "all"
+        raise click.UsageError(f"{', '.join(users[:-1])} and {users[-1]} {both} need standard output: {way_out}")
     if minutes is not None and not retrain:
         raise click.UsageError("--minutes are those of --retrain")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):

@@ -212,11 +212,17 @@ def _tell_too(outcome: Outcome, wanted: Wanted) -> None:
         exits.report(error)
 
 
+def _are_meant(outcome: Outcome) -> bool:
+    """Whether there are findings, and all of variants that were changed."""
+    found = {done.report.name for done in outcome.cases if done.report.verdict != "pass"}
+    return bool(found) and all(case.variant != case.reference for case in outcome.suite.cases if case.name in found)
+
+
 def _tell(outcome: Outcome, wanted: Wanted) -> None:
     """Sum up, and write what was asked for."""
     reports = [done.report for done in outcome.cases]
     click.echo(sum_line(reports, outcome.missing), err=wanted.printed is not None)
-    if outcome.suite.path == SHIPPED and any(report.verdict != "pass" for report in reports):
+    if outcome.suite.path == SHIPPED and _are_meant(outcome):
         click.echo(_MEANT, err=wanted.printed is not None)
     if wanted.printed is not None:
         # The bytes of the file that it would be, whatever the letters of the terminal.

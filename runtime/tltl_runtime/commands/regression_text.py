@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Final
+from collections.abc import Iterable, Iterator, Sequence
 
 import click
 
 from tltl_runtime.commands.plain import plain
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.retrained import Outcome
+from tltl_runtime.regression.retrained import OUTCOMES
 
 _COLORS = {"pass": "green", "review": "yellow", "fail": "red"}
-_OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "feasible", "no_way": "no way found"}
 
 
 def case_lines(report: CaseReport, width: int, *, kept: bool) -> Iterator[str]:
@@ -31,8 +29,8 @@ def sum_line(reports: Sequence[CaseReport], missing: Sequence[str] = ()) -> str:
     if not reports:
         return "no case was judged" if missing else "no case was to be played"
     said = f"{len(reports)} case{'s' * (len(reports) != 1)}: {_counts([each.verdict for each in reports], _COLORS)}"
-    trained = [_OUTCOMES[each.retrained.outcome] for each in reports if each.retrained]
-    return f"{said}; trained anew: {_counts(trained, _OUTCOMES.values())}" if trained else said
+    trained = [OUTCOMES[each.retrained.outcome] for each in reports if each.retrained]
+    return f"{said}; trained anew: {_counts(trained, OUTCOMES.values())}" if trained else said
 
 
 def _counts(words: Sequence[str], order: Iterable[str]) -> str:

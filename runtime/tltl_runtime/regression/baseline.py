@@ -57,17 +57,18 @@ class Identity:
 @record
 class Reference:
     """What was played, the accounts of its episodes, from number 0 on, and the texts of the files that its level was
-    made of, by their names in ``played.files``.
+    made of, by their names in ``played.files``.  ``sources`` is the hash of the code that played, empty if not known.
     """
 
     played: Identity
     accounts: tuple[Account, ...]
     texts: tuple[tuple[str, str], ...] = ()
+    sources: str = ""
 
 
 def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     """Write the baseline of a suite; raises TltlError, TLT0005."""
-    written = tuple(_Written(each.played, each.accounts) for each in references)
+    written = tuple(_Written(each.played, each.accounts, each.sources) for each in references)
     document = _json({"format": FORMAT, "version": VERSION, "references": to_json(written)})
     # A line for each episode and for each line of a text, so that what a change of it changes can be read.
     episodes = document.removesuffix("}").replace('{"index":', '\n{"index":')
@@ -107,7 +108,9 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
         for account in each.accounts:
             for flaw in _flaws(account):
                 raise _REFUSALS.broken(name, f"{where}[{account.index}]: {flaw}")
-    return tuple(Reference(each.played, each.accounts, _texts(each.played, texts)) for each in read.references)
+    return tuple(
+        Reference(each.played, each.accounts, _texts(each.played, texts), each.sources) for each in read.references
+    )
 
 
 def _texts(played: Identity, texts: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
@@ -218,6 +221,7 @@ class _Written:
 
     played: Identity
     accounts: tuple[Account, ...]
+    sources: str = ""
 
 
 @record

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import os
 from collections.abc import Generator, Sequence
+from itertools import count
 from pathlib import Path
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import Reference, write_baseline
+from tltl_runtime.regression.confidence import rate_interval
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.level_texts import level_texts
 from tltl_runtime.regression.play import Ready, Told, episodes, ready
 from tltl_runtime.regression.suite import LEAST_EPISODES, Case, Suite
 from tltl_runtime.regression.verdict import Verdict, judge
+from tltl_runtime.sources import sources_hash
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.files import exists, is_file
 from tltlc.record import record, replace
@@ -46,25 +49,28 @@ def record_baseline(suite: Suite, pool: Pool, told: Told, kept: tuple[Reference,
 
 
 def write_recorded(
-    suite: Suite, path: Path, pool: Pool, told: Told, older: tuple[Reference, ...] = ()
+    suite: Suite, path: Path, pool: Pool, told: Told, older: tuple[Reference, ...] = (), *, fresh: bool = False
 ) -> Generator[Compared]:
     """Record the baseline of a suite, as :func:`record_baseline` does, and write it to ``path`` when all is over.
 
     Until then what is over is kept at :func:`kept_at`, so that a recording that was stopped goes on.  What an ``older``
-    baseline has is not played again where nothing has changed since.
+    baseline has is not played again where nothing has changed since, nor the code that plays, unless all is to be
+    ``fresh``, which goes on with what such a recording has left alone.
 
     Raises:
         TltlError: TLT0005, a file cannot be written; what :func:`record_baseline` raises.
     """
     groups, partial, found = _groups(suite), kept_at(path), list[Reference]()
-    kept = (partial and read_kept(tuple[Reference, ...], partial, inputs_hash([]))) or ()
+    inputs = inputs_hash([fresh])
+    kept = (partial and read_kept(tuple[Reference, ...], partial, inputs)) or ()
     # The place may refuse: better to know before minutes of play.
-    _keep(partial, kept)
-    for each in _recorded(groups, pool, told, (*kept, *older)):
+    _keep(partial, inputs, kept)
+    known = () if fresh else tuple(each for each in older if each.sources == sources_hash())
+    for each in _recorded(groups, pool, told, (*kept, *known)):
         found.append(each.reference)
-        # What is older stays where it is, and whoever wants all afresh goes on without it.
-        new = tuple(reference for reference in found if reference not in older)
-        _keep(partial, (*new, *(other for other in kept if other not in new)))
+        # What is older stays where it is.
+        new = tuple(reference for reference in found if reference not in known)
+        _keep(partial, inputs, (*new, *(other for other in kept if other not in new)))
         yield each
     write_baseline(path, tuple(found))
     if partial:
@@ -83,10 +89,15 @@ def kept_at(path: Path) -> Path | None:
 def verdict_as_it_is(suite: Suite, case: Case, reference: Reference) -> Verdict:
     """The verdict of a case whose episodes are those of its reference, one by one."""
     accounts, error = reference.accounts, suite.error / len(suite.cases)
-    for count in range(LEAST_EPISODES, case.episodes + 1):
-        if found := judge(accounts[:count], accounts, case.episodes, case.thresholds, error):
+    for played in range(LEAST_EPISODES, case.episodes + 1):
+        if found := judge(accounts[:played], accounts, case.episodes, case.thresholds, error):
             return found.verdict
     raise AssertionError("the last episode settles every verdict")
+
+
+def enough_episodes(pass_rate: float, error: float) -> int:
+    """Episodes in which a spec has to be met, if it always is, for its pass rate to be certain at that error."""
+    return next(met for met in count(LEAST_EPISODES) if rate_interval(met, 0, error)[0] >= pass_rate)
 
 
 def _groups(suite: Suite) -> list[list[Ready]]:
@@ -129,9 +140,9 @@ def _played(one: Ready, pool: Pool, told: Told) -> Reference:
     for each in episodes(one, pool):
         accounts.append(each.account)
         told(one.case, len(accounts), each.account)
-    return Reference(one.played, tuple(accounts), texts)
+    return Reference(one.played, tuple(accounts), texts, sources_hash())
 
 
-def _keep(path: Path | None, references: tuple[Reference, ...]) -> None:
+def _keep(path: Path | None, inputs: str, references: tuple[Reference, ...]) -> None:
     if path:
-        write_file(path, kept_text(inputs_hash([]), references), _ADVICE)
+        write_file(path, kept_text(inputs, references), _ADVICE)

@@ -50,6 +50,8 @@ class CaseReport:
     """What a training from its policy came to, None where none was asked for or needed."""
     told: str = ""
     """The headline where it is none of the reasons as they stand; empty: the first of them."""
+    fault_at: tuple[str, int] | None = None
+    """Of a case that cannot be played, the file and the line, from 1 on, of what is wrong."""
 
     @property
     def headline(self) -> str:
@@ -82,7 +84,7 @@ def report_on(result: Result) -> CaseReport:
         figures=figures_of(now),
         baseline=figures_of(before),
         changes=result.judgement.changes,
-        causes=(*([outdated] if outdated else []), *said, *blocked),
+        causes=(*([outdated] if outdated else []), *said[:1], *blocked, *said[1:]),
         told=outdated or next(iter(blocked), None) or _headline(result.judgement, case.thresholds, said, failed),
         explanation=findings(level, setup.fspa, now, before),
         edits=tuple(_edits(result)),
@@ -111,7 +113,8 @@ def report_on_broken(case: Case, error: TltlError) -> CaseReport:
     said = ("it cannot be played", *map(_said, error.diagnostics))
     # As a level that loads calls it: the place of an overlay's file is no part of a report.
     variant = shown_variant(case.variant)
-    return CaseReport(case.name, Path(case.level).stem, variant, "fail", said, told=": ".join(said[:2]))
+    name = Path(case.level).stem
+    return CaseReport(case.name, name, variant, "fail", said, told=": ".join(said[:2]), fault_at=_place(error))
 
 
 def report_on_edited(case: Case, error: TltlError) -> CaseReport:
@@ -123,8 +126,15 @@ def report_on_edited(case: Case, error: TltlError) -> CaseReport:
 
 def _said(found: Diagnostic) -> str:
     """A diagnostic in one line, with its place."""
-    where = ""
+    where = message = ""
     if found.labels:
         label = found.labels[0]
         where = f"{label.source.name}:{label.source.position(label.span.start)[0]}: "
-    return f"{where}{found.code}, {found.title}" + (f" ({found.help})" if found.help else "")
+        message = f": {label.message}" if label.message else ""
+    return f"{where}{found.code}, {found.title}{message}" + (f" ({found.help})" if found.help else "")
+
+
+def _place(error: TltlError) -> tuple[str, int] | None:
+    """The file and the line of the first fault that has a place."""
+    label = next((each.labels[0] for each in error.diagnostics if each.labels), None)
+    return (label.source.name, label.source.position(label.span.start)[0]) if label else None

@@ -28,7 +28,7 @@ def changed_keys(before: str, now: str) -> str:
         old, new = (parse(SourceFile("", text), "TLT0801", "") for text in (before, now))
     except TltlError:
         return ""
-    return listed(list(_changes((), old, new)), _MOST) or "no value of it"
+    return listed(list(_changes((), old, new)), _MOST) or "its layout"
 
 
 def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
@@ -43,9 +43,12 @@ def _changes(path: tuple[str, ...], old: Mapping[str, Any], new: Mapping[str, An
         elif isinstance(before, dict) and isinstance(now, dict):
             yield from _changes(here, before, now)
         elif _are_tables(before) and _are_tables(now):
-            called = _names if _have_names(before) and _have_names(now) else _positions
-            yield from _changes(here, called(before), called(now))
-        elif before != now:
+            named = _have_names(before) and _have_names(now)
+            old_tables, new_tables = map(_names if named else _positions, (before, now))
+            if named and before != now and old_tables == new_tables:
+                yield f"the order of {name}"
+            yield from _changes(here, old_tables, new_tables)
+        elif (type(before), before) != (type(now), now):
             values = _shown(" ", before), _shown(" → ", now)
             yield name + "".join(values) if all(values) else name
 

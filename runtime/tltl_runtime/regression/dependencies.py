@@ -100,10 +100,9 @@ def _is_meant(name: str, paths: Iterable[Path]) -> bool:
 
 
 def _like(name: str, paths: Iterable[Path]) -> str | None:
-    """What a name of no file that there is may stand for; git names files from a folder above, perhaps."""
+    """What a word that a person wrote may stand for; one with a folder is what git calls a file, deleted perhaps."""
     given = Path(_unquoted(name))
-    here = Path.cwd()
-    if any(exists(folder / given) for folder in (here, *here.parents)):
+    if len(given.parts) > 1 or exists(given):
         return None
     stems = sorted({path.stem for path in paths if given.suffix in ("", path.suffix)})
     close = get_close_matches(given.stem, stems, n=1, cutoff=0.7)

@@ -33,10 +33,11 @@ _FEW: Final = 3
 
 @record
 class Finding:
-    """A sentence, and the indices of the episodes that it speaks of."""
+    """A sentence, and the indices of the episodes that it speaks of; ``others``: of all that do not do what it says."""
 
     text: str
     episodes: tuple[int, ...]
+    others: bool = False
 
 
 def findings(level: Level, fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> tuple[Finding, ...]:
@@ -66,7 +67,7 @@ def _stages(fspa: Fspa, now: Sequence[Account], before: Sequence[Account]) -> It
         failed = tuple(each.index for each in now if each not in came)
         counts = [counted(len(some), len(all_), "episodes") for some, all_ in ((came, now), (used, before))]
         text = f"{first}{what} in {counts[0]}; before: in {counts[1]}"
-        yield Finding(text, failed)
+        yield Finding(text, failed, others=True)
         return
     if done:
         yield Finding(f"{together(done)} as before", ())

@@ -135,8 +135,10 @@ def _told(level: Level, end: End, accounts: Sequence[Account]) -> str:
         return f"dies {end.where}{by}{broke}{saw}" + "," * bool(broke or saw)
     if end.cause == "violated":
         return f"breaks the spec {end.where} ({_names(end.by)}){saw}" + "," * bool(saw)
-    stopped = in_the_way(level, [(each.place, each.shut) for each in accounts])
-    return f"is {end.where} when time is up" + (f", at {_names(stopped)}," if stopped else "")
+    ends = [(each.place, each.shut) for each in accounts]
+    stopped = in_the_way(level, ends)
+    mostly = "" if all(set(stopped) <= set(in_the_way(level, [each])) for each in ends) else "mostly "
+    return f"is {end.where} when time is up" + (f", {mostly}at {_names(stopped)}," if stopped else "")
 
 
 def _mostly(what: str, named: Sequence[Sequence[str]]) -> str:

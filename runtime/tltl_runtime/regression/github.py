@@ -19,16 +19,17 @@ _COMMANDS: Final = {"fail": "error", "review": "warning"}
 def findings_as_commands(suite: Suite, reports: Sequence[CaseReport], root: Path) -> Iterator[str]:
     """An ``::error`` for each case that fails, a ``::warning`` for each to be reviewed.
 
-    The file is one that has changed since the baseline, else the level that does not load, else the suite; its path
-    is relative to ``root``, the top of the checkout, where it lies inside.
+    The file is the one with the fault for which a level does not load, with its line; else one that has changed since
+    the baseline, else the suite; its path is relative to ``root``, the top of the checkout, where it lies inside.
     """
     cases = {case.name: case for case in suite.cases}
     for report in reports:
         if report.verdict in _COMMANDS:
-            file = _inside(_blamed(suite, cases[report.name], report), root)
+            path, line = report.fault_at or (_blamed(suite, cases[report.name], report), None)
+            place = {"file": _inside(Path(path), root), **({"line": str(line)} if line else {})}
             title = f"{report.name}: {report.verdict}"
             text = "\n".join(report.reasons)
-            yield workflow_command(_COMMANDS[report.verdict], text, {"file": file, "title": title})
+            yield workflow_command(_COMMANDS[report.verdict], text, {**place, "title": title})
 
 
 def _blamed(suite: Suite, case: Case, report: CaseReport) -> Path:

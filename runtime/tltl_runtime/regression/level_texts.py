@@ -14,7 +14,7 @@ from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.levels.place import overlays_of
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import read_source
+from tltlc.files import is_file, read_source
 
 Texts = tuple[tuple[str, str], ...]
 """Names of files, as the files of a :class:`~tltl_runtime.stealth.level.Level` have them, and what is in them."""
@@ -38,6 +38,12 @@ def level_texts(name_or_path: str, variant: str, files: Texts) -> Texts:
     return tuple(found)
 
 
+def text_now(name_or_path: str, variant: str, name: str) -> str | None:
+    """The text of a file that a level would be made of now; None where it cannot be read."""
+    path = level_path(name_or_path)
+    return _text(next(filter(is_file, _places(path, variant, name)), path))
+
+
 def designed(reference: Reference) -> Level | None:
     """The level as it was when a baseline was recorded; None where its texts do not make one any more."""
     played, texts = reference.played, dict(reference.texts)
@@ -48,10 +54,12 @@ def designed(reference: Reference) -> Level | None:
         for name, text in texts.items():
             path = Path(folder, name)
             path.parent.mkdir(exist_ok=True)
-            # What it was made for lies elsewhere, and is no part of what is to be seen.
-            path.write_text(_SPEC.sub("", text, count=1), encoding="utf-8", newline="\n")
+            path.write_text(text, encoding="utf-8", newline="\n")
+        level = Path(folder, played.files[0][0])
+        # What it was made for lies elsewhere, and is no part of what is to be seen.
+        level.write_text(_SPEC.sub("", texts[level.name], count=1), encoding="utf-8", newline="\n")
         try:
-            return load_level(str(Path(folder, played.files[0][0])), played.variant)
+            return load_level(str(level), played.variant)
         except TltlError:
             return None
 

@@ -12,6 +12,9 @@ from tltl_runtime.stealth.level import Box, Level, Point, fixed_places
 _NEAR: Final = 2.5
 """Metres to an entity beside which a place is."""
 
+_BESIDE: Final = 0.99
+"""Of the way from a player to a box: what is met later is beside it."""
+
 _TOUCHING: Final = 0.7
 """Metres from the middle of a player to a solid that is in its way."""
 
@@ -42,8 +45,10 @@ def in_the_way(level: Level, ends: Sequence[tuple[Point, Sequence[str]]]) -> lis
     barriers = {each.name: each.box for each in level.barriers}
     touched: dict[str, list[float]] = {}
     for feet, shut in ends:
-        for name, box in (solids | {name: barriers[name] for name in shut if name in barriers}).items():
-            if (away := _beside(feet, box)) <= _TOUCHING:
+        there = solids | {name: barriers[name] for name in shut if name in barriers}
+        near = {name: away for name, box in there.items() if (away := _beside(feet, box)) <= _TOUCHING}
+        for name, away in near.items():
+            if not any(_hides(there[other], feet, there[name]) for other in near if near[other] < away):
                 touched.setdefault(name, []).append(away)
     often = [name for name, each in touched.items() if 2 * len(each) > len(ends)]
     return sorted(often, key=lambda name: (-len(touched[name]), fmean(touched[name])))
@@ -53,6 +58,20 @@ def _beside(feet: Point, box: Box) -> float:
     """From a player to a box beside it, on the plan; far from what is below the feet, such as a box to stand on."""
     body = (*feet[:2], max(feet[2], box.low[2]))
     return _distance(body, box) if box.high[2] > feet[2] + 0.1 else float("inf")
+
+
+def _hides(box: Box, feet: Point, other: Box) -> bool:
+    """Whether a box stands between a player and another box: on the plan, and not above or below that."""
+    first, last = 0.0, 1.0
+    for at, low, high, near, far in zip(feet[:2], box.low, box.high, other.low, other.high, strict=False):
+        way = min(max(at, near), far) - at
+        if way == 0.0:
+            first, last = (first, last) if low <= at <= high else (1.0, 0.0)
+        else:
+            enters, leaves = sorted(((low - at) / way, (high - at) / way))
+            first, last = max(first, enters), min(last, leaves)
+    # What is met where the way ends is beside it.
+    return first <= last and first < _BESIDE and box.low[2] < other.high[2] and other.low[2] < box.high[2]
 
 
 def _distance(point: Point, box: Box) -> float:

@@ -10,6 +10,7 @@ from typing import Final
 from tltl_runtime.evaluation.evaluate import Pool, results, set_up
 from tltl_runtime.evaluation.player import Setup, Task
 from tltl_runtime.policies.file import MAX_BYTES, from_bytes
+from tltl_runtime.policies.fit import differences
 from tltl_runtime.policies.identity import level_hash, spec_hash
 from tltl_runtime.regression.account import Account, account
 from tltl_runtime.regression.baseline import Identity, Reference
@@ -148,7 +149,9 @@ def _outdated(case: Case, setup: Setup, level: Level) -> str | None:
     name = split(level.spec)[1]
     if case.spec is not None or name != setup.fspa.name:
         return None
-    if spec_hash(read_spec(level.spec)[0]) == spec_hash(setup.fspa):
+    now = read_spec(level.spec)[0]
+    if spec_hash(now) == spec_hash(setup.fspa):
         return None
+    how = f"({differences(setup.fspa, now)})"
     help_ = "train it again, or name the new one as the case's `spec`"
-    return f"the spec `{name}` has changed since the policy was trained, and its old one judges: {help_}"
+    return f"the spec `{name}` has changed since the policy was trained {how}, and its old one judges: {help_}"

@@ -67,10 +67,9 @@ def _apart(figure: str, now: Sequence[Account], before: Sequence[Account]) -> st
 
 
 def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
-    """What nobody can reach in the level, whoever plays."""
-    for warning in reach_warnings(level, fspa):
-        if warning.code == "TLT0814":
-            yield f"{warning.title}: {warning.help}"
+    """What nobody can reach in the level, whoever plays; of what is shut off by the same, the first."""
+    found = [each for each in reach_warnings(level, fspa) if each.code == "TLT0814"]
+    yield from {each.help: f"{each.title}: {each.help}" for each in reversed(found)}.values()
 
 
 def is_infeasible(level: Level, fspa: Fspa) -> bool:

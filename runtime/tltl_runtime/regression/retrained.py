@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import Final, Literal
 
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.suite import Thresholds
@@ -10,6 +11,9 @@ from tltl_runtime.texts import between, duration, number, percent_exactly
 from tltlc.record import record
 
 Outcome = Literal["learned", "feasible", "no_way"]
+
+OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "feasible", "no_way": "no way found"}
+"""What outcomes are called."""
 
 
 @record

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from pathlib import Path
 
 from tltl_runtime.regression.baseline import Reference, text_sha256
 from tltl_runtime.regression.dependencies import dependencies
+from tltl_runtime.regression.level_texts import text_now
 from tltl_runtime.regression.suite import Case, Suite
 from tltl_runtime.stealth.levels.file import level_path
-from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.levels.place import shown_variant
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import is_file, read_source
 
 
 def unnamed(suite: Suite, left_out: Sequence[Case], references: Sequence[Reference]) -> dict[str, tuple[str, ...]]:
@@ -35,19 +32,10 @@ def _changed(suite: Suite, case: Case, references: Sequence[Reference]) -> Itera
     paths = dependencies(suite, case)
     for name, sha256 in files:
         parts = Path(name).parts
-        if any(path.parts[-len(parts) :] == parts for path in paths) and _sha256(case, name) != sha256:
-            yield name
-
-
-def _sha256(case: Case, name: str) -> str | None:
-    """That of a file of the level as it is now, by its name there; None where it cannot be read."""
-    level = level_path(case.level)
-    places = [level] if name == level.name else [level.parent / name, LEVELS / name]
-    with suppress(TltlError):
-        text = read_source(next(filter(is_file, places), level)).text
-        # As levels do, whatever line ends version control writes.
-        return text_sha256(text.replace("\r\n", "\n"))
-    return None
+        if any(path.parts[-len(parts) :] == parts for path in paths):
+            text = text_now(case.level, case.variant, name)
+            if text is None or text_sha256(text) != sha256:
+                yield name
 
 
 def _place(reference: Reference) -> tuple[str, str, str]:

@@ -21,6 +21,7 @@ from tltl_runtime.commands.baseline import _advice
 from tltl_runtime.regression.baseline import read_baseline
 from tltl_runtime.regression.run import CASES, case_folder
 from tltl_runtime.regression.suite import Case, Thresholds, read_suite
+from tltl_runtime.sources import sources_hash
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Run = Callable[..., Outcome]
@@ -405,6 +406,9 @@ def test_a_baseline_keeps_what_has_not_changed_and_says_what_has(tltlc: Run, gam
         "room:v0: easy met in 50 of 50 episodes  (as before)",
         "room:v0: soon met in 0 of 25 episodes; before: 0 of 50",
     ]
+    text = Path("game.baseline.json").read_text(encoding="utf-8")
+    Path("game.baseline.json").write_text(text.replace(sources_hash(), "0" * 64), encoding="utf-8")
+    assert "as before" not in tltlc("baseline", "game.toml", *ONE).out, "other code has played them"
     edit("room.toml", "8.0, 8.0", "8.0, 8.5")
     assert tltlc("baseline", "game.toml", *ONE).out.splitlines() == [
         "room:v0: easy met in 50 of 50 episodes; before: 50 of 50",
@@ -420,8 +424,8 @@ def test_a_baseline_keeps_what_has_not_changed_and_says_what_has(tltlc: Run, gam
 
 def test_a_case_that_is_always_met_needs_more_episodes_alone() -> None:
     case = Case("room:v0", "room", "v0", "v0", None, Path("bot"), 25, Thresholds(), "")
-    assert _advice(1.0, case) == "give it more `episodes` than 25, which are too few to be certain"
-    assert _advice(0.9, case) == "train its policy further, lower its `pass_rate`, or give it more `episodes`"
+    assert _advice(1.0, case, 0.05) == "25 `episodes` are too few to be certain, give it 29 at least"
+    assert _advice(0.9, case, 0.05) == "train its policy further, lower its `pass_rate`, or give it more `episodes`"
 
 
 @pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
@@ -503,6 +507,8 @@ def test_findings_of_the_shipped_suite_are_said_to_be_meant(
     meant = "v1 and v2 of the shipped levels are changed on purpose: see the page"
     assert meant not in tltlc("regress", "game.toml", *ONE).out
     monkeypatch.setattr("tltl_runtime.commands.regression_run.SHIPPED", Path("game.toml"))
+    assert meant not in tltlc("regress", "game.toml", *ONE).out, "the finding is of a level as it was designed"
+    edit("game.toml", 'name = "hopeless"', 'name = "hopeless"\nvariant = "v1"')
     assert tltlc("regress", "game.toml", *ONE).out.splitlines()[-2:] == ["3 cases: 2 pass, 1 fail", meant]
     assert meant in tltlc("regress", "game.toml", "--json", "-", *ONE).err
     assert meant not in tltlc("regress", "game.toml", *ONE, "--changed", "easy").out, "all pass"

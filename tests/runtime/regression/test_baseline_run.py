@@ -116,6 +116,17 @@ def test_what_was_kept_of_a_baseline_by_other_code_is_played_again(game: Path, m
     assert played.counts == {"room:v0": 50, "hopeless": 50}
 
 
+def test_what_is_recorded_afresh_goes_on_with_its_own_alone(game: Path) -> None:
+    suite, path = read_suite(Path("game.toml")), Path("new.json")
+    with closing(write_recorded(suite, path, 1, Played())) as stopped:
+        next(stopped)
+    for first in (True, False):
+        played = Played()
+        with closing(write_recorded(suite, path, 1, played, fresh=True)) as stopped:
+            next(stopped)
+        assert bool(played.counts) == first
+
+
 def test_what_an_older_baseline_has_is_taken_where_nothing_has_changed_and_not_kept_beside(game: Path) -> None:
     suite, path, played = read_suite(Path("game.toml")), Path("new.json"), Played()
     older = baseline_of(suite)

@@ -65,7 +65,7 @@ def test_long_values_are_not_shown_nor_more_than_three_keys() -> None:
 
 
 def test_where_no_value_has_changed_that_is_said() -> None:
-    assert changed_keys(GUARD, f"# Slow.\n{GUARD.replace(' = ', '=')}") == "no value of it"
+    assert changed_keys(GUARD, f"# Slow.\n{GUARD.replace(' = ', '=')}") == "its layout"
 
 
 def test_of_what_is_no_toml_nothing_is_said() -> None:

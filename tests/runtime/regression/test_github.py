@@ -74,3 +74,9 @@ def test_paths_begin_at_the_top_of_the_checkout(suite: Suite) -> None:
     assert annotated(suite, report, ".")[1] == "levels/room.toml"
     # A path outside cannot be shown beside anything, and is told as it is.
     assert annotated(suite, report, "levels/assets")[1] == "levels/room.toml"
+
+
+def test_of_a_level_that_does_not_load_the_line_is_named(suite: Suite) -> None:
+    report = CaseReport(NAME, "room", "v0", "fail", ("why",), fault_at=("levels/assets/guard.toml", 6))
+    (line,) = findings_as_commands(suite, [report], Path(".."))
+    assert line.startswith("::error file=game/levels/assets/guard.toml,line=6,title=")

@@ -6,8 +6,9 @@ import pytest
 
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.regression.places import in_the_way, nearest_entity, place_name
-from tltl_runtime.stealth.level import Level, Point
+from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.file import load_level
+from tltlc.record import replace
 
 MORE = """[[region]]
 name = "dark_corner"
@@ -86,3 +87,14 @@ def test_a_gate_is_in_the_way_while_it_is_shut() -> None:
     at_gate = gate.box.low[0] - 0.4, (gate.box.low[1] + gate.box.high[1]) / 2, gate.box.low[2]
     assert gate.name in in_the_way(level, [(at_gate, (gate.name,))])
     assert gate.name not in in_the_way(level, [(at_gate, ())])
+
+
+def test_what_stands_behind_another_is_not_in_the_way(level: Level) -> None:
+    pillar = next(each for each in level.solids if each.name == "pillar")
+    low = (pillar.box.high[0], pillar.box.low[1], 0.0)
+    behind = replace(pillar, name="behind", box=Box(low, (low[0] + 1.0, pillar.box.high[1], 3.0)))
+    thin = replace(pillar, box=Box((low[0] - 0.2, low[1], 0.0), pillar.box.high))
+    both = replace(level, solids=(*(each for each in level.solids if each is not pillar), thin, behind))
+    before = (low[0] - 0.5, 5.0, 0.0)
+    assert in_the_way(both, ends(before)) == ["pillar"]
+    assert in_the_way(replace(both, solids=both.solids[-1:]), ends(before)) == ["behind"]

@@ -86,12 +86,12 @@ def test_what_has_certainly_changed_is_not_doubted_too() -> None:
 def test_what_nobody_can_reach_is_told_for_certain() -> None:
     level = load_level("navigation", "v2")
     task = load_task(level.spec)
-    first, second = obstacles(level, task.fspa)
-    assert first == (
+    # Nobody reaches the exit then either, since the way ends at the same.
+    (told,) = obstacles(level, task.fspa)
+    assert told == (
         "nobody reaches `s2` in `navigation:v2`, so nobody can do what `navigation` asks: "
         "the way ends at `corridor_block_2`, which is 2.2 m high"
     )
-    assert second == first.replace("`s2`", "`exit`")
     open_ = load_level("navigation", "v1")
     assert list(obstacles(open_, task.fspa)) == []
 

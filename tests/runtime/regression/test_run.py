@@ -294,7 +294,7 @@ def test_a_spec_that_has_changed_since_the_training_is_told_and_nothing_passes_b
     assert list(played) == ["room:v0", "room:v1"], "the third has a spec of its own"
     for done in found[:2]:
         assert done.report.verdict == "review"
-        assert done.report.reasons[0].startswith("the spec `easy` has changed since the policy was trained")
+        assert done.report.reasons[0].startswith("the spec `easy` has changed since the policy was trained (")
         assert done.report.headline == done.report.reasons[0]
         assert done.to_train is None, "a training would be for the old spec"
     assert found[2].to_train is not None

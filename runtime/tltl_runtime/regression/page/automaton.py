@@ -25,6 +25,8 @@ _HEIGHT, _MARGIN = 12.0, 4.0
 """Of a letter, and around the picture, in its units."""
 _LETTER: Final = 6.4
 """Width of a figure of a badge, in the units of the picture."""
+_PILL: Final = 16.0
+"""Height of a badge, in the units of the picture."""
 
 
 @record
@@ -80,6 +82,9 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
             group.remove(title)
     _, _, width, height = map(float, _NUMBER.findall(root.get("viewBox", "")))
     top = _top(root)
+    for graph in root:
+        # States come last: no edge runs over their badges.
+        graph[:] = sorted(graph, key=lambda each: each.get("class") == "node")
     root.attrib = {
         "class": "automaton",
         "viewBox": f"0 {short(top)} {short(width)} {short(height - top)}",
@@ -96,8 +101,7 @@ def _mark_state(
     group.set("data-states", " ".join(map(str, states)))
     left, top, right, bottom = _extent(group)
     name = f"State {states[0]}" if len(states) == 1 else f"States {states[0]} to {states[-1]}"
-    # In its other corner stands its distance.
-    _badge(group, "name", name.lower(), left + 6, top, grows=1)
+    _name(group, name.lower(), left, top, right)
     said = []
     for when, seen in (("now", now), ("before", before)):
         visited = max(seen.visited.get(state, 0) for state in states)
@@ -134,18 +138,34 @@ def _mark_edge(
     title.text = f"From state {ends[0]} to state {ends[1]}; {'; '.join(said)}"
 
 
+def _name(group: ElementTree.Element, text: str, left: float, top: float, right: float) -> None:
+    """The badge of a state's name in its upper left corner, and above its distance where it would cover that."""
+    x, y = min(left + 6, right - _width(text)), top
+    # The mark of the distance is a filled path without an outline.
+    for mark in (each for each in group.iter("path") if each.get("stroke") == "none"):
+        mark_left, mark_top, _, _ = _extent(mark)
+        if x + _width(text) > mark_left - 1:
+            y = min(y, mark_top - _PILL / 2 - 1)
+    _badge(group, "name", text, x, y, grows=1)
+
+
+def _width(text: str) -> float:
+    """Of a badge."""
+    return len(text) * _LETTER + 9
+
+
 def _badge(parent: ElementTree.Element, kind: str, text: str, x: float, y: float, grows: int) -> None:
     """A pill on the outline of a state, which begins or ends at ``x``."""
-    width = len(text) * _LETTER + 9
+    width = _width(text)
     left = x if grows > 0 else x - width
     group = ElementTree.SubElement(parent, "g", {"class": f"badge {kind}"})
-    sides = {"x": short(left), "y": short(y - 8), "width": short(width), "height": "16", "rx": "8"}
+    sides = {"x": short(left), "y": short(y - _PILL / 2), "width": short(width), "height": short(_PILL), "rx": "8"}
     ElementTree.SubElement(group, "rect", sides)
     ElementTree.SubElement(group, "text", {"x": short(left + width / 2), "y": short(y + 4)}).text = text
 
 
 def _extent(group: ElementTree.Element) -> tuple[float, float, float, float]:
-    """The least and greatest x and y of a state's outline: left, top, right, bottom."""
+    """The least and greatest x and y of what is drawn there: left, top, right, bottom."""
     points = list(_points(group))
     xs, ys = [x for x, _ in points], [y for _, y in points]
     return min(xs), min(ys), max(xs), max(ys)

@@ -126,7 +126,9 @@ def _choice(legend: str, name: str, choices: Sequence[tuple[str, str]]) -> Marku
 
 def _curves(case: ReportedCase) -> Iterator[Markup]:
     if case.episodes:
-        caption = element("figcaption", "Progress of the recorded episodes: green succeeded, red and dashed failed")
+        caption = element(
+            "figcaption", "Progress of the recorded episodes of now: green succeeded, red and dashed failed"
+        )
         yield element("figure", progress_curves(case.episodes), caption)
     keys = (element("span", "now", class_="key now"), " ", element("span", "baseline", class_="key before"))
     caption = element("figcaption", "Share of episodes by their best progress: ", *(keys if case.before else keys[:1]))

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Final
 
 from tltl_runtime.regression.explain import Finding
 from tltl_runtime.regression.page.markup import Markup, element
 from tltl_runtime.regression.slugs import episode_link
-from tltl_runtime.regression.stages import REACHES
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.world.player import DECISION
 
 _BEFORE_END: Final = round(4.0 / DECISION)
 """Decisions before its end at which a failed episode is opened: what led to it is still to come."""
-
-_COUNTED: Final = re.compile(r" in (\d+) of (\d+)\b")
 
 
 def episode_links(finding: Finding, episodes: Mapping[int, Episode], slug: str) -> Markup | None:
@@ -33,17 +29,6 @@ def episode_links(finding: Finding, episodes: Mapping[int, Episode], slug: str) 
         links += [" ", element("a", str(index), class_="episode", href=address, title=words, aria_label=words)]
     is_end = not all(episodes[index].success for index in there)
     what = f"play {'the end of ' * is_end}episode{'s' * (len(there) > 1)}"
-    if _are_others(finding):
+    if finding.others:
         what = f"those that do not, {what}" if len(there) > 1 else f"one that does not, {what}"
     return element("span", f" {what}:", *links, class_="links")
-
-
-def _are_others(finding: Finding) -> bool:
-    """Whether the episodes are those that do not do what the sentence says."""
-    found = _COUNTED.search(finding.text)
-    if not found:
-        return False
-    count, total = map(int, found.groups())
-    if count == total - count:
-        return finding.text.startswith(REACHES)
-    return len(finding.episodes) == total - count

@@ -46,15 +46,20 @@ class LevelMap {
     for (const each of [...this.barriers, ...this.switches]) each.classList.remove("open", "active");
   }
 
-  /** The ways of episodes, coloured by state, with marks where they ended; `link` gives the address of one, or "". */
+  /**
+   * The ways of episodes, coloured by state, with marks where they ended; `link` gives the address of one, or "".
+   * Returns the set of the states that colour any: of one that an episode ends in there is no way.
+   */
   showWays(ways, link) {
     this.clear();
+    const drawn = new Set();
     const opacity = Math.max(0.15, Math.min(0.9, 6 / Math.max(1, ways.length)));
     for (const way of ways) {
       const [xs, ys] = [way.x, way.y].map((packed) => unstepped(packed).map((each) => each * way.unit));
       let from = 0;
       for (const [state, count] of way.state) {
         const to = Math.min(from + count, xs.length - 1);
+        if (to > from) drawn.add(state);
         this.#line(this.layers.ways, xs.slice(from, to + 1), ys.slice(from, to + 1), state, opacity);
         from += count;
       }
@@ -66,6 +71,7 @@ class LevelMap {
       const mark = this.#mark(way.end, place, `episode ${way.index}: ${way.cause}${by}`, address);
       if (!address) mark.classList.add("unrecorded");
     }
+    return drawn;
   }
 
   /** A heat map; `most` is the value of the strongest colour. */

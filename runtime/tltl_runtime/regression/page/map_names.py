@@ -21,6 +21,9 @@ _ABOVE: Final = 35
 _MARGIN: Final = 12
 """Centimetres from the western side of a region to its name."""
 
+_ROWS: Final = (0, -1, 2, 3, -2)
+"""Lines below the place of a thing that are tried for its name; the first one would be on the thing itself."""
+
 _STEP: Final = 50
 """Centimetres between the places that are tried for a name."""
 
@@ -44,15 +47,16 @@ def names(level: Level, plan: Plan, said: str) -> Iterator[Name]:
     """The names of what is small, of the solids that the sentences ``said`` speak of, and of all regions."""
     taken: list[Rect] = []
     for thing in _things(level, plan, said):
-        name = _apart(thing, taken)
+        name = _apart(thing, taken, plan.size)
         taken.append(_around(name))
         yield name
     taken += [plan.rect(each.box) for each in level.solids if each.kind in ("wall", "low")]
     taken += [plan.rect(each.box) for each in level.barriers]
+    spoken = _regions_spoken_of(level, said)
     for row, region in enumerate(level.regions):
         # A place in several regions is called by the first of them.
         others = [plan.rect(each.box) for each in level.regions[:row]]
-        name = _of_region(region, plan.rect(region.box), others, taken, said)
+        name = _of_region(region, plan.rect(region.box), others, taken, spoken=region.name in spoken)
         taken.append(_around(name))
         yield name
 
@@ -81,16 +85,32 @@ def _things(level: Level, plan: Plan, said: str) -> Iterator[Name]:
             yield Name((name,), kind, middle, y - above, is_spoken_of(name, said))
 
 
-def _apart(name: Name, taken: Sequence[Rect]) -> Name:
-    """The name where no other one is, above or below its place."""
-    tried = [replace(name, y=max(_LINE, name.y + lines * _LINE)) for lines in (0, -1, 2, 3, -2)]
+def _apart(name: Name, taken: Sequence[Rect], size: tuple[int, int]) -> Name:
+    """The name where no other one is on a map of that size: above or below its place, or else beside that."""
+    half = _LETTER * len(name.lines[0]) // 2
+    right, lowest = max(half, size[0] - half), max(_LINE, size[1])
+    tried = [
+        replace(
+            name,
+            x=min(max(half, name.x + side * half), right),
+            y=min(max(_LINE, name.y + row * _LINE), lowest),
+        )
+        for side in (0, 1, -1, 2, -2)
+        for row in _ROWS
+    ]
     return min(tried, key=lambda each: sum(_common(_around(each), other) for other in taken))
 
 
-def _of_region(region: Region, inside: Rect, others: Sequence[Rect], taken: Sequence[Rect], said: str) -> Name:
+def _regions_spoken_of(level: Level, said: str) -> set[str]:
+    """The names of regions of which sentences speak, as *the left part*, which is not *the left*."""
+    called = {each.name.replace("_", " "): each.name for each in level.regions}
+    words = "|".join(map(re.escape, sorted(called, key=len, reverse=True)))
+    return {called[each] for each in re.findall(rf"\bthe ({words})(?![-\w])", said)} if called else set()
+
+
+def _of_region(region: Region, inside: Rect, others: Sequence[Rect], taken: Sequence[Rect], *, spoken: bool) -> Name:
     """In its region, where no other one is, and as near to its north-western corner as there is room."""
     name = region.name.replace("_", " ")
-    spoken = f"the {name}" in said
     best, least = Name((name,), "region-name", inside[0] + _MARGIN, inside[1] + _LINE, spoken), float("inf")
     # A name that is too long for a line has one for each of its words.
     lines = (name,) if _LETTER * len(name) <= inside[2] - inside[0] else tuple(name.split())

@@ -38,14 +38,15 @@ class CaseView {
     const all = this.facts[when];
     if (shown === "ways") {
       const recorded = new Set(when === "now" ? this.facts.episodes.map((each) => each.index) : []);
-      this.maps[when].showWays(all.ways, (index) => (recorded.has(index) ? `#${this.facts.slug}/${index}/0` : ""));
-      this.#legendOfWays(all);
+      const link = (index) => (recorded.has(index) ? `#${this.facts.slug}/${index}/0` : "");
+      this.#legendOfWays(all, this.maps[when].showWays(all.ways, link));
     } else {
       // One scale for now and before, so that their maps can be compared.
       const most = Math.max(this.facts.now[shown].most, this.facts.before[shown].most) || 1;
       this.maps[when].showHeat(all[shown], most, shown);
       const unit = shown === "time" ? `${most.toFixed(1)} s an episode` : `${most} failed episode${most === 1 ? "" : "s"}`;
-      const said = all[shown].cells.length ? `strongest: ${unit}` : "no episode failed";
+      const scale = this.facts.before.ways.length ? `${unit}, of now and baseline` : unit;
+      const said = all[shown].cells.length ? `strongest: ${scale}` : "no episode failed";
       this.#fillLegend([[`cell ${shown}`, "", said]]);
     }
   }
@@ -56,16 +57,18 @@ class CaseView {
       this.isDrawn = false;
       // It was played now, on the level as it is.
       this.section.dataset.when = "now";
+      const now = this.section.querySelector('.toggles [name="when"][value="now"]');
+      if (now) now.checked = true;
       this.#legendOfEpisode(this.player.episode);
     }
     return isOpen;
   }
 
-  #legendOfWays(all) {
-    const states = [...new Set(all.ways.flatMap((way) => way.state.map(([state]) => state)))].sort((a, b) => a - b);
+  /** `states` are those that colour a way. */
+  #legendOfWays(all, states) {
     const ends = Object.keys(MARKS).map((end) => [end, all.ways.filter((way) => way.end === end).length]);
     this.#fillLegend([
-      ...this.#states(states),
+      ...this.#states([...states].sort((a, b) => a - b)),
       ...ends.filter(([, count]) => count).map(([end, count]) => [`end ${end}`, "", `${count} ${MARKS[end].name}`]),
     ]);
   }

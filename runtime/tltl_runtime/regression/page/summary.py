@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.page.contents import SuiteReport
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose, short
-from tltl_runtime.regression.retrained import Outcome
+from tltl_runtime.regression.retrained import OUTCOMES
 from tltl_runtime.regression.verdict import Verdict
 from tltl_runtime.texts import percent
 
@@ -17,7 +17,7 @@ _VERDICTS: tuple[Verdict, ...] = ("pass", "review", "fail")
 _HEADS = ("Verdict", "Met", "Progress", "Reward", "Why")
 """Of the columns behind the name of the case."""
 
-_OUTCOMES: Final[Mapping[Outcome, str]] = {"learned": "learned", "feasible": "feasible", "no_way": "no way found"}
+_WHISKER: Final = "Whisker: 95 % interval, for reading; verdicts use the rule's own."
 
 
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
@@ -52,6 +52,7 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
                 element("label", element("input", type="checkbox", id="page:only-findings"), " only findings"),
                 class_="filter",
             ),
+            element("p", element("small", _WHISKER)) if any(each.figures for each in reports) else None,
             element("table", head, element("tbody", *rows), class_="verdicts"),
         )
     )
@@ -69,7 +70,7 @@ def badge(verdict: Verdict) -> Markup:
 
 def _row(report: CaseReport, slug: str) -> Markup:
     now, before = report.figures, report.baseline
-    retrained = element("small", f"trained anew: {_OUTCOMES[report.retrained.outcome]}") if report.retrained else None
+    retrained = element("small", f"trained anew: {OUTCOMES[report.retrained.outcome]}") if report.retrained else None
     cells = (
         joined((badge(report.verdict), retrained)),
         _met(now, before) if now else "–",
@@ -107,11 +108,13 @@ def _met(now: Figures, before: Figures | None) -> Markup:
 def _rate(figures: Figures, kind: str, top: int, height: int) -> Iterator[Markup]:
     """The bar of a pass rate, in percent, with the whiskers of its interval."""
     low, high = (short(100 * end) for end in figures.pass_interval)
-    above, middle, below = top + height / 4, short(top + height / 2), top + 3 * height / 4
+    above, middle, below = short(top + height / 6), short(top + height / 2), short(top + 5 * height / 6)
     yield element("rect", class_="track", y=top, width=100, height=height)
     yield element("rect", class_=f"rate {kind}", y=top, width=short(100 * figures.pass_rate), height=height)
-    ends = f"M{low},{short(above)}V{short(below)}M{high},{short(above)}V{short(below)}"
-    yield element("path", class_="interval", d=f"M{low},{middle}H{high}{ends}")
+    whisker = f"M{low},{middle}H{high}M{low},{above}V{below}M{high},{above}V{below}"
+    # A seam sets it off from the bar, which is about as dark.
+    yield element("path", class_="seam", d=whisker)
+    yield element("path", class_="interval", d=whisker)
 
 
 def _rate_words(figures: Figures) -> str:

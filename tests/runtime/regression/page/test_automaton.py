@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
+from collections.abc import Callable
 from itertools import pairwise
 from xml.etree import ElementTree
 
@@ -82,6 +84,36 @@ def test_the_picture_can_stand_in_a_page_beside_others(root: ElementTree.Element
     assert not any(each.get("id") for each in root.iter())
     assert {each.tag for each in root.iter()} <= {"svg", "g", "title", "path", "polygon", "ellipse", "text", "rect"}
     assert not any("href" in key for each in root.iter() for key in each.attrib)
+
+
+@pytest.mark.parametrize("episodes", [samples.navigation, samples.cover_and_hide_met, samples.branching])
+def test_names_of_states_cover_no_distance(episodes: Callable[[], tuple[Episode, ...]]) -> None:
+    fspa, empty = episodes()[0].fspa, traffic([])
+    svg = drawn(fspa).svg
+    assert svg is not None
+    seen = 0
+    for group in ElementTree.fromstring(picture(fspa, svg, empty, empty)).iter("g"):
+        if group.get("data-states"):
+            outline, *_, mark = group.iter("path")
+            assert mark.get("stroke") == "none", "the distance"
+            (name,) = group.findall("g[@class='badge name']/rect")
+            x, y, width, height = (float(name.get(key, "nan")) for key in ("x", "y", "width", "height"))
+            mark_left, mark_top, _, _ = extent(mark)
+            left, top, right, _ = extent(outline)
+            assert x + width <= mark_left or y + height <= mark_top
+            assert left - 5 <= x and x + width <= right + 5 and y + height >= top - 5, "it is at its state"
+            seen += 1
+    assert seen == len(fspa.states)
+
+
+def test_no_edge_runs_over_the_badges_of_a_state(root: ElementTree.Element) -> None:
+    kinds = [(each.get("class") or "").split()[0] for graph in root for each in graph if each.get("class")]
+    assert kinds == sorted(kinds) and {"edge", "node"} <= set(kinds)
+
+
+def extent(path: ElementTree.Element) -> tuple[float, float, float, float]:
+    numbers = [float(each) for each in re.findall(r"-?\d+(?:\.\d+)?", path.get("d") or "")]
+    return min(numbers[::2]), min(numbers[1::2]), max(numbers[::2]), max(numbers[1::2])
 
 
 def test_runs_of_states_that_count_are_one_group() -> None:

@@ -230,6 +230,22 @@ def test_the_map_shows_now_or_the_baseline(tab: Tab) -> None:
     assert section.locator(".map .cell.failed").count() == 0  # nothing failed before
     section.get_by_label("now", exact=True).check()
     assert section.locator(".map .cell.failed").count() > 0
+    legend = section.locator(".legend.shown")
+    expect(legend).to_have_text(re.compile(r"^strongest: \d+ failed episodes?, of now and baseline$"))
+
+
+def test_the_legend_of_ways_has_the_states_that_colour_one(tab: Tab) -> None:
+    case = samples.suite().cases[1]
+    section = tab.locator(f"#{CASE}")
+    section.scroll_into_view_if_needed()
+    section.locator(".map .way").first.wait_for(state="attached")
+    colours = section.locator(".map .way").evaluate_all("ways => ways.map((way) => way.getAttribute('stroke'))")
+    patches = section.locator(".legend.shown rect.way")
+    shown = patches.evaluate_all("patches => patches.map((patch) => patch.getAttribute('fill'))")
+    assert set(shown) == set(colours) and len(shown) == len(set(shown))
+    words = section.locator(".legend.shown").inner_text()
+    left_out = {each.arrivals[-1].state for each in case.report.accounts if each.end == "violation"}
+    assert left_out and not any(f"state {state}:" in words for state in left_out)
 
 
 @pytest.fixture(scope="module")
@@ -264,8 +280,19 @@ def test_the_ways_of_the_baseline_are_shown_on_its_level(browser: Browser, chang
         expect(now.locator(".player-body")).to_be_attached()
         expect(now).to_be_visible()
         expect(before).to_be_hidden()
+        when = tab.locator(f"#{CASE}")
+        expect(when.get_by_label("now", exact=True)).to_be_checked()
+        expect(when.locator(".counts.now").first).to_be_visible()
         tab.locator(f"#{CASE} .which").select_option("")
+        expect(when.get_by_label("now", exact=True)).to_be_checked()
+        expect(now.locator(".cell.time").first).to_be_attached()
+        expect(now).to_be_visible()
+        # So it is of one whose link is followed.
+        when.get_by_label("baseline").check()
         expect(before).to_be_visible()
+        tab.locator(f"#{CASE} .reasons a.episode").first.click()
+        expect(now).to_be_visible()
+        expect(when.get_by_label("now", exact=True)).to_be_checked()
 
 
 def test_an_atom_that_does_not_hold_looks_so(browser: Browser, file: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 from tltl_runtime.regression.page.level_map import level_map, map_data, map_key
 from tltl_runtime.regression.page.map_names import is_spoken_of
 from tltl_runtime.regression.places import place_name
-from tltl_runtime.stealth.level import Box
+from tltl_runtime.stealth.level import Box, Solid
 from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltlc.record import replace
 
@@ -106,6 +106,18 @@ def test_names_of_things_do_not_cover_each_other() -> None:
     places = {name: (x, y) for name, kind, x, y in shown if not kind.startswith("region-name")}
     (x, y), (other_x, other_y) = places["guard_2"], places["e_right"]
     assert abs(x - other_x) < 100 and abs(y - other_y) >= 40
+
+
+def test_names_of_things_that_stand_in_one_place_do_not_cover_each_other() -> None:
+    level = load_level("navigation", "v2")
+    box = next(each.box for each in level.solids if each.name == "corridor_block_2")
+    walls = tuple(Solid(f"corridor_block_{number}", "wall", box) for number in range(10, 22))
+    said = " ".join(f"`{wall.name}`" for wall in walls)
+    level = replace(level, solids=(*level.solids, *walls))
+    shown = {name: (x, y) for name, kind, x, y in names_on(ElementTree.fromstring(level_map(level, said)))}
+    places = [shown[wall.name] for wall in walls]
+    for row, (x, y) in enumerate(places):
+        assert not any(abs(x - other_x) < 300 and abs(y - other_y) < 40 for other_x, other_y in places[:row])
 
 
 @pytest.mark.parametrize("name", level_names())

@@ -203,6 +203,13 @@ def test_outcomes_of_trainings_stand_below_their_verdicts() -> None:
     assert not any(text.startswith("trained anew") for text in page().texts)
 
 
+def test_whiskers_are_told_of_where_there_are_any() -> None:
+    said = "Whisker: 95 % interval, for reading; verdicts use the rule's own."
+    assert page().texts.count(said) == 1
+    none = SuiteReport("none", 0, 0.05, {}, tuple(case for case in samples.suite().cases if not case.report.figures))
+    assert none.cases and said not in Page(html_report(none)).texts
+
+
 def test_pass_rates_are_told_in_percent() -> None:
     suite = samples.suite()
     report = replace(suite.cases[1].report, figures=figures_of(several(121, 179)), baseline=figures_of(several(299, 1)))
