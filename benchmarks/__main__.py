@@ -15,6 +15,7 @@ from benchmarks import (
     edits,
     expert,
     game,
+    infinite,
     monitors,
     process,
     report,
@@ -41,6 +42,7 @@ SECTIONS = {
         suite,
         edits,
         table1,
+        infinite,
         compile_table,
     )
 }

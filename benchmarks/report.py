@@ -15,6 +15,7 @@ from benchmarks import (
     expert_report,
     game,
     game_report,
+    infinite,
     monitors,
     process,
     safety,
@@ -69,6 +70,7 @@ def render(store: Store) -> str:
         suite.section(store.section(suite.SECTION)),
         edits_report.section(store.section(edits.SECTION)),
         table1.section(store.section(table1.SECTION)),
+        infinite.section(store.section(infinite.SECTION)),
     ]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
@@ -159,6 +161,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
     yield from suite.goals(store.section(suite.SECTION))
     yield from edits_report.goals(store.section(edits.SECTION))
     yield from table1.goals(store.section(table1.SECTION))
+    yield from infinite.goals(store.section(infinite.SECTION))
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:

@@ -77,19 +77,16 @@ def compile_source(source: SourceFile, options: CompileOptions | None = None) ->
 
 def _build(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diagnostic, ...]]:
     """The automaton of a spec, or None and the errors why not; with warnings."""
-    if spec.semantics == "infinite":
-        return None, (_infinite_traces(spec),)
     try:
-        fspa = build(spec, state_budget=options.state_budget)
+        if spec.semantics == "infinite":
+            from tltlc.rabin.build import build_infinite
+
+            fspa = build_infinite(spec)
+        else:
+            fspa = build(spec, state_budget=options.state_budget)
     except TltlError as error:
         return None, error.diagnostics
     return fspa, _verdict_warnings(spec, fspa)
-
-
-def _infinite_traces(spec: Spec) -> Diagnostic:
-    title = f"`{spec.name}` is about infinite traces, which cannot be compiled yet"
-    way_out = "leave `semantics infinite` out: the spec is then about finite traces"
-    return Diagnostic("TLT0503", title, (Label(spec.source, spec.name_span),), way_out)
 
 
 def pick_specs(specs: tuple[Spec, ...], names: tuple[str, ...], file: str) -> tuple[Spec, ...]:
@@ -210,13 +207,19 @@ def _unsatisfiable(spec: Spec) -> Diagnostic:
     """The warning that no trace satisfies a spec, with the parts that are to blame."""
     from tltlc.automaton.contradiction import contradiction
 
-    parts = contradiction(spec)
+    endless = spec.semantics == "infinite"
+    if endless:
+        from tltlc.rabin.contradiction import unsatisfiable
+
+        parts = contradiction(spec, unsatisfiable)
+    else:
+        parts = contradiction(spec)
     title = f"no trace satisfies `{spec.name}`"
     if len(parts) == 1:
         message, way_out = "this cannot be met", "weaken it"
         if spec.exclusive:
             way_out = "weaken it: atoms that are `exclusive` never hold together"
-        if parts[0].formula.op == "G":
+        if parts[0].formula.op == "G" and not endless:
             way_out = "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
     else:
         message, way_out = "together with the others", "these contradict each other: weaken one of them"

@@ -54,15 +54,12 @@ def load_task(
 
     Raises:
         TltlError: whatever reading and compiling finds; TLT0720 no spec of that name, TLT0721 not exactly one spec,
-            TLT0503 a spec about infinite traces, TLT0307 and TLT0308 for params that do not fit.
+            TLT0307 and TLT0308 for params that do not fit.
         TypeError: ``spec``, ``params`` or ``reward`` is of another type.
     """
     if not isinstance(params, Mapping):
         raise TypeError(f"params map names to numbers, e.g. {{'top_speed': 0.06}}; {params!r:.60} does not")
     fspa, _ = read_spec(spec)
-    if fspa.semantics == "infinite":
-        title = f"`{fspa.name}` is about infinite traces, and an episode ends"
-        raise TltlError([Diagnostic("TLT0503", title, help="compile it without `semantics infinite`")])
     known = {param.name for param in fspa.params}
     values = {name: value for name, value in offered.items() if name in known}
     task = Task(fspa, {**values, **params}, reward_options(reward))

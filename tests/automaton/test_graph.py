@@ -6,9 +6,18 @@ import networkx
 from hypothesis import given, settings
 
 from tests.logic.strategies import formulas
+from tltlc import compile_text
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.graph import to_networkx
 from tltlc.logic.formula import Formula
+
+
+def test_edges_that_only_pairs_tell_apart_are_one() -> None:
+    (fspa,) = compile_text("signal a: bool signal b: bool spec s { semantics infinite reach a require G F b }")
+    graph = to_networkx(fspa)
+    assert list(graph.edges(data="indices")) == [(0, 0, (0,)), (0, 1, (1,)), (1, 1, (2, 3))]
+    assert graph[1][1]["guard"] == "!b | b"
+    assert graph[1][1]["primes"] == (*fspa.edges[2].guard.primes, *fspa.edges[3].guard.primes)
 
 
 @given(formulas(atoms=("a", "b", "c"), max_leaves=8))

@@ -9,6 +9,7 @@ from tests.logic.strategies import formulas
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa, Guard, Text
 from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.rabin.build import build_infinite
 from tltlc.record import replace
 from tltlc.resolve import spec
 
@@ -55,6 +56,19 @@ def automata() -> st.SearchStrategy[Fspa]:
         groups,
     )
     return specs.map(build)
+
+
+def infinite_automata() -> st.SearchStrategy[Fspa]:
+    """The same over infinite traces: with edges that only pairs tell apart."""
+    specs = st.builds(
+        lambda formula, exclusive: replace(
+            spec_from_formula(formula, exclusive=[group for group in exclusive if set(group) <= set(formula.atoms())]),
+            semantics="infinite",
+        ),
+        formulas(max_leaves=5),
+        st.lists(st.sampled_from(EXCLUSIVE), max_size=1),
+    )
+    return specs.map(build_infinite)
 
 
 def finite() -> st.SearchStrategy[float]:

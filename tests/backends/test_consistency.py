@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.backends.strategies import automata
+from tests.backends.strategies import automata, infinite_automata
 from tests.fixtures import cover_and_hide
-from tltlc.automaton.fspa import Edge, Fspa, Guard
-from tltlc.backends.artefact import guards
+from tltlc import compile_text
+from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair
+from tltlc.backends.artefact import consistency, guards
 from tltlc.backends.artefact.consistency import problems
 from tltlc.expression import Param, Signal
 from tltlc.record import replace
@@ -31,7 +32,7 @@ def changed(table: str, index: int, **values: Any) -> Fspa:
 
 
 @settings(max_examples=100, deadline=None)
-@given(automata())
+@given(automata() | infinite_automata())
 def test_what_the_compiler_makes_is_consistent(fspa: Fspa) -> None:
     assert messages(fspa) == []
 
@@ -78,6 +79,78 @@ def test_what_the_compiler_makes_is_consistent(fspa: Fspa) -> None:
 )
 def test_a_contradiction_is_named(fspa: Fspa, expected: str) -> None:
     assert expected in messages(fspa)
+
+
+def again_and_again(**values: Any) -> Fspa:
+    """``F a & G F b`` over infinite traces, with other values: a first state, and a goal with two loops."""
+    (fspa,) = compile_text("signal a: bool signal b: bool spec s { semantics infinite reach a require G F b }")
+    return replace(fspa, **values)
+
+
+def test_the_automaton_that_the_next_tests_damage() -> None:
+    fspa = again_and_again()
+    assert messages(fspa) == []
+    assert [(state.accepting, state.verdict, state.distance) for state in fspa.states] == [
+        (False, "pending", 1),
+        (True, "holding", 0),
+    ]
+    assert [(edge.source, edge.target) for edge in fspa.edges] == [(0, 0), (0, 1), (1, 1), (1, 1)]
+    assert fspa.acceptance == (Pair((), (3,)),)
+
+
+def with_state(index: int, **values: Any) -> Fspa:
+    states = list(again_and_again().states)
+    states[index] = replace(states[index], **values)
+    return again_and_again(states=tuple(states))
+
+
+@pytest.mark.parametrize(
+    ("fspa", "expected"),
+    [
+        (again_and_again(acceptance=(Pair((), (4,)),)), ["there are only 4 edges"]),
+        (again_and_again(acceptance=(Pair((9,), (3,)),)), ["there are only 4 edges"]),
+        (again_and_again(acceptance=()), ["two edges that the same pairs name lead from state 1 to state 1"]),
+        (
+            again_and_again(acceptance=(Pair((), (2, 3)),)),
+            ["two edges that the same pairs name lead from state 1 to state 1"],
+        ),
+        (
+            again_and_again(acceptance=(Pair((3,), (3,)),)),
+            [
+                "the distance of state 0 is null, not 1",
+                "the verdict of state 0 is `violated`, not `pending`",
+                "state 1 lies on no accepted cycle, and is accepting",
+                "the distance of state 1 is null, not 0",
+                "the verdict of state 1 is `violated`, not `holding`",
+                "spec_size is 0, not 1",
+            ],
+        ),
+        (
+            again_and_again(acceptance=(Pair((), (0, 3)),)),
+            [
+                "state 0 lies on an accepted cycle, and is not accepting",
+                "the distance of state 0 is 0, not 1",
+                "the verdict of state 0 is `holding`, not `pending`",
+                "spec_size is 0, not 1",
+            ],
+        ),
+        (
+            again_and_again(acceptance=(Pair((), (3,)), Pair((), (2,)))),
+            ["the verdict of state 1 is `satisfied`, not `holding`"],
+        ),
+        (with_state(0, distance=2), ["the distance of state 0 is 1, not 2"]),
+        (with_state(1, verdict="satisfied"), ["the verdict of state 1 is `holding`, not `satisfied`"]),
+        (with_state(1, accepting=False), ["state 1 lies on an accepted cycle, and is not accepting"]),
+    ],
+)
+def test_a_contradiction_to_what_cycles_say_is_named(fspa: Fspa, expected: list[str]) -> None:
+    assert messages(fspa) == expected
+
+
+def test_cycles_are_followed_only_up_to_the_work_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = with_state(1, verdict="satisfied")
+    monkeypatch.setattr(consistency, "CYCLES_WORK", 3)
+    assert messages(broken) == []
 
 
 def test_a_state_that_no_state_before_it_leads_to_is_found() -> None:

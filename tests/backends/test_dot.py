@@ -7,10 +7,10 @@ import pygraphviz
 import pytest
 from hypothesis import given, settings
 
-from tests.backends.strategies import automata, hostile_automata
+from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
-from tltlc import backends
-from tltlc.automaton.fspa import Fspa, Text
+from tltlc import backends, compile_text
+from tltlc.automaton.fspa import Fspa, Pair, Text
 from tltlc.backends import Options
 from tltlc.backends.dot import FILLS, LINES, graph
 from tltlc.backends.drawing.texts import Guards, visible, wrapped
@@ -72,7 +72,7 @@ def test_notations(notation: backends.Notation, label: str, guard: str) -> None:
 
 
 @settings(max_examples=30, deadline=None)
-@given(automata())
+@given(automata() | infinite_automata())
 def test_every_state_and_edge_is_drawn_once(fspa: Fspa) -> None:
     drawn = parsed(emitted(fspa))
     expected = sorted((str(edge.source), str(edge.target)) for edge in fspa.edges)
@@ -91,6 +91,14 @@ def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
         shown = words_of(attributes["label"]).split()[1:]
         assert shown == visible(" ".join(wrapped(state.label.unicode, 30))).split()
         assert attributes["color"] == LINES[state.verdict]
+
+
+def test_edges_that_pairs_tell_apart_are_both_drawn_with_the_pairs() -> None:
+    (fspa,) = compile_text("signal a: bool spec s { semantics infinite require G F a }")
+    drawn = parsed(emitted(replace(fspa, acceptance=(Pair((0,), (1,)), Pair((), (0,))))))
+    loops = [edge for edge in drawn.edges() if tuple(edge) == ("0", "0")]
+    assert sorted(edge.attr["tooltip"] for edge in loops) == ["a [inf 0]", "¬a [fin 0] [inf 1]"]
+    assert all(words_of(edge.attr["label"]).split() == edge.attr["tooltip"].split() for edge in loops)
 
 
 def test_a_sketch_has_no_guards() -> None:
@@ -129,6 +137,7 @@ def test_comparisons_arguments_and_bounds_stay_on_one_line() -> None:
     assert wrapped("at & !(force > 40) & (speed < 2.5)", 9) == ["at", "& !(force > 40)", "& (speed < 2.5)"]
     assert wrapped("near(a) & placed(cube, tray)", 15) == ["near(a)", "& placed(cube, tray)"]
     assert wrapped("a & F[0,4] b", 8) == ["a", "& F[0,4] b"]
+    assert wrapped("aaaa & b [fin 10] [inf 2]", 8) == ["aaaa & b", "[fin 10] [inf 2]"]
     assert wrapped("Reach near(a, close=3), then b.", 24) == ["Reach near(a, close=3),", "then b."]
     assert wrapped("not aaaa or not bbbb", 9) == ["not aaaa", "or not bbbb"]
     assert wrapped("a - b + c > 0", 4) == ["a - b +", "c > 0"], "no longer than two widths"

@@ -6,13 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.backends.strategies import automata, hostile_automata
+from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
 from tltlc import compile_text
 from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends import Options
 from tltlc.backends.dot import graph
-from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, folded, span, whole
+from tltlc.backends.drawing.folding import LEAST_FOLDED, Drawing, folded, marked, span, whole
 from tltlc.record import replace
 
 
@@ -40,6 +40,17 @@ def counting() -> st.SearchStrategy[Fspa]:
     return st.builds(lambda text, n: automaton(text.format(n=n)), st.sampled_from(COUNTING), st.integers(1, 12))
 
 
+def endless() -> st.SearchStrategy[Fspa]:
+    """Automata of the same formulas over infinite traces."""
+
+    def made(text: str, n: int) -> Fspa:
+        signals = "clock 1 Hz signal a: bool signal b: bool signal c: bool"
+        (fspa,) = compile_text(f"{signals} spec s {{ semantics infinite require {text.format(n=n)} }}")
+        return fspa
+
+    return st.builds(made, st.sampled_from(COUNTING), st.integers(1, 12))
+
+
 @st.composite
 def chains(draw: st.DrawFn) -> Fspa:
     """States in a row, with few guards and targets, so that runs begin, end and are entered anywhere."""
@@ -64,6 +75,7 @@ def edges_of(fspa: Fspa, state: int) -> set[tuple[Guard, int]]:
 def check(fspa: Fspa) -> Drawing:
     """What folding promises, by definition."""
     drawing = folded(fspa)
+    fspa = marked(fspa)
     inner = [state.id for run in drawing.folded.values() for state in run]
     drawn = [state.id for state in drawing.states]
     assert sorted([*(state for state in drawn if state not in drawing.folded), *inner]) == list(range(len(fspa.states)))
@@ -101,7 +113,7 @@ def common(fspa: Fspa, run: list[int]) -> set[tuple[Guard, int]]:
 
 
 @settings(max_examples=60, deadline=None)
-@given(counting() | automata())
+@given(counting() | endless() | automata() | infinite_automata())
 def test_runs_are_folded_and_nothing_else(fspa: Fspa) -> None:
     for run in check(fspa).folded.values():
         distances = [state.distance for state in run]

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.backends.strategies import automata, expressions, finite, hostile_automata
+from tests.backends.strategies import automata, expressions, finite, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
 from tltlc import backends
 from tltlc.automaton.fspa import Fspa
@@ -30,7 +30,7 @@ def test_what_was_written_is_read() -> None:
 
 
 @settings(max_examples=60, deadline=None)
-@given(automata())
+@given(automata() | infinite_automata())
 def test_automata_are_read_as_they_were_written(fspa: Fspa) -> None:
     assert read(emitted(fspa), "x.fspa.json") == fspa
 
@@ -107,11 +107,12 @@ def test_what_is_no_artefact_is_refused(text: str, code: str, title: str) -> Non
     assert title in error.title
 
 
-def test_infinite_traces_are_refused_for_now() -> None:
-    text = emitted(cover_and_hide()).replace('"semantics": "finite"', '"semantics": "infinite"')
-    with pytest.raises(TltlError) as caught:
-        read(text, "x.fspa.json")
-    assert [error.code for error in caught.value.diagnostics] == ["TLT0605"]
+def test_pairs_are_there_over_infinite_traces_and_only_then() -> None:
+    document = json.loads(emitted(cover_and_hide()))
+    with pytest.raises(TltlError, match="TLT0603: the artefact lacks `acceptance`"):
+        read(json.dumps({**document, "semantics": "infinite"}), "x.fspa.json")
+    with pytest.raises(TltlError, match="TLT0603: `semantics` must be `infinite`"):
+        read(json.dumps({**document, "acceptance": {"pairs": []}}), "x.fspa.json")
 
 
 def test_an_error_points_at_the_value() -> None:

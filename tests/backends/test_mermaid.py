@@ -4,7 +4,7 @@ import re
 
 from hypothesis import given, settings
 
-from tests.backends.strategies import automata, hostile_automata
+from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
 from tltlc import backends, compile_text
 from tltlc.automaton.fspa import Fspa
@@ -52,6 +52,15 @@ def test_the_diagram_of_cover_and_hide() -> None:
     assert "    class s4 holding\n" in text
 
 
+def test_edges_that_pairs_tell_apart_are_both_drawn_with_the_pairs() -> None:
+    (fspa,) = compile_text("signal a: bool spec s { semantics infinite require G F a }")
+    assert [line for line in emitted(fspa).splitlines() if EDGE.fullmatch(line)] == [
+        "    s0 --> s0: ¬a",
+        "    s0 --> s0: a #91;inf 0#93;",
+    ]
+    check(fspa)
+
+
 def test_runs_are_folded() -> None:
     (fspa,) = compile_text("signal fast: bool spec quick = eventually within 40 steps fast")
     text = emitted(fspa)
@@ -62,7 +71,7 @@ def test_runs_are_folded() -> None:
 
 
 @settings(max_examples=30, deadline=None)
-@given(automata())
+@given(automata() | infinite_automata())
 def test_automata(fspa: Fspa) -> None:
     check(fspa)
 

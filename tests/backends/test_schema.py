@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.backends.strategies import automata
+from tests.backends.strategies import automata, infinite_automata
 from tests.fixtures import cover_and_hide
+from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends.artefact.encode import encode
 from tltlc.backends.artefact.errors import JsonSchemaValueException
@@ -43,7 +44,7 @@ def test_the_schema_is_a_schema() -> None:
 
 
 @settings(max_examples=30, deadline=None)
-@given(automata())
+@given(automata() | infinite_automata())
 def test_what_the_compiler_makes_fits(fspa: Fspa) -> None:
     document = encode(fspa)
     assert accepts(document)
@@ -58,13 +59,18 @@ def places(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str |
 
 
 DOCUMENT = json.loads(json.dumps(encode(cover_and_hide())))
-PLACES = tuple(places(DOCUMENT))[1:]
+(INFINITE,) = compile_text("signal a: bool signal b: bool spec s { semantics infinite reach a require G F b }")
+DOCUMENTS = (DOCUMENT, json.loads(json.dumps(encode(INFINITE))))
+PLACES = tuple((index, path) for index, document in enumerate(DOCUMENTS) for path in tuple(places(document))[1:])
 
 
 @settings(max_examples=400, deadline=None)
 @given(st.sampled_from(PLACES), st.sampled_from(("remove", "add", *range(len(WRONG)))))
-def test_both_validators_agree_on_damaged_artefacts(path: tuple[str | int, ...], damage: str | int) -> None:
-    document = copy.deepcopy(DOCUMENT)
+def test_both_validators_agree_on_damaged_artefacts(
+    place: tuple[int, tuple[str | int, ...]], damage: str | int
+) -> None:
+    index, path = place
+    document = copy.deepcopy(DOCUMENTS[index])
     parent = document
     for step in path[:-1]:
         parent = parent[step]
@@ -105,6 +111,13 @@ def test_expressions_that_mean_nothing_are_refused(expression: dict[str, Any]) -
     assert not REFERENCE.is_valid(document)
 
 
+@pytest.mark.parametrize(("index", "semantics"), [(0, "infinite"), (1, "finite")])
+def test_pairs_are_there_over_infinite_traces_and_only_then(index: int, semantics: str) -> None:
+    document = {**DOCUMENTS[index], "semantics": semantics}
+    assert not accepts(document)
+    assert not REFERENCE.is_valid(document)
+
+
 @pytest.mark.parametrize("name", ["../x", "a b", "", "a.b", "1a", "a\n", "naïve"])
 def test_names_of_specs_are_plain(name: str) -> None:
     document = copy.deepcopy(DOCUMENT)
@@ -136,8 +149,9 @@ def test_errors_are_in_plain_words(path: tuple[str | int, ...], value: object, t
 
 @settings(max_examples=200, deadline=None)
 @given(st.sampled_from(PLACES), st.sampled_from(WRONG))
-def test_every_error_has_words(path: tuple[str | int, ...], wrong: object) -> None:
-    document = copy.deepcopy(DOCUMENT)
+def test_every_error_has_words(place: tuple[int, tuple[str | int, ...]], wrong: object) -> None:
+    index, path = place
+    document = copy.deepcopy(DOCUMENTS[index])
     parent = document
     for step in path[:-1]:
         parent = parent[step]

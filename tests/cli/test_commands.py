@@ -37,7 +37,7 @@ def test_list_predicates(tltlc, inside: Path) -> None:  # type: ignore[no-untype
 
 def test_list_targets_and_codes(tltlc) -> None:  # type: ignore[no-untyped-def]
     names = {row["name"] for row in json.loads(tltlc("list", "targets", "--json").out)}
-    assert names >= {"json", "dot", "python", "mermaid", "svg", "png"}
+    assert names >= {"json", "dot", "hoa", "python", "mermaid", "svg", "png"}
     assert "TLT0001\ta file cannot be read\n" in tltlc("list", "codes").out
 
 

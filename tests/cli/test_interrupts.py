@@ -48,7 +48,7 @@ def test_an_import_is_over_before_its_interrupt_comes(tmp_path: Path) -> None:
 
 def test_an_import_that_does_not_end_ends_with_the_process(tmp_path: Path) -> None:
     (tmp_path / "endless.py").write_text("import slow, time\nwhile True:\n    time.sleep(0.01)\n", encoding="utf-8")
-    script = "print('begins', flush=True)\nwith interrupts_end():\n    import endless"
+    script = "with interrupts_end():\n    print('begins', flush=True)\n    import endless"
     status, _, err = _ended(tmp_path, script, "begins\n")
     assert (status, err) == (130, "")
 

@@ -50,6 +50,20 @@ def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Pa
     assert not loaded(*arguments, folder=tmp_path) & HEAVY - written
 
 
+def test_only_infinite_traces_load_what_is_for_them(tmp_path: Path) -> None:
+    def rabin(*arguments: str | Path) -> set[str]:
+        return {name for name in loaded(*arguments, folder=tmp_path) if name.startswith("tltlc.rabin")}
+
+    assert not rabin("compile", EXAMPLE, "-t", "json,python,dot")
+    assert not rabin("compile", "cover_and_hide.fspa.json", "-t", "mermaid")
+    endless = tmp_path / "again.tltl"
+    endless.write_text("signal a: bool\nspec again { semantics infinite  require G F a }\n", encoding="utf-8")
+    assert "tltlc.rabin.construct" in rabin("compile", endless, "-t", "json")
+    # What an artefact says is checked, and nothing constructed.
+    assert "tltlc.rabin.cycles" in rabin("compile", "again.fspa.json", "-t", "mermaid")
+    assert "tltlc.rabin.construct" not in rabin("compile", "again.fspa.json", "-t", "mermaid")
+
+
 def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
     modules = {name for name in loaded("--help", folder=tmp_path) if name.startswith("tltlc")}
     line = {"tltlc", "tltlc.cli", "tltlc.cli.main", "tltlc.cli.exits", "tltlc.cli.interrupts", "tltlc.cli.plugins"}

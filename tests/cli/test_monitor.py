@@ -112,6 +112,28 @@ def test_tests_pass_and_fail(tltlc, inside: Path) -> None:  # type: ignore[no-un
     assert "TLT0640" in json.dumps(json.loads(tltlc("test", "hide.tltl", "--format", "json").err))
 
 
+ENDLESS = """
+signal a: bool
+signal p: bool
+spec again { semantics infinite  require G F a  keep p }
+spec first { semantics infinite  reach a  require G F not a }
+test "waiting is no failure" for again { step p expect holding step a, p expect holding step a expect violated }
+test "the first must come" for first { step not a expect pending step a expect holding }
+"""
+
+
+def test_over_infinite_traces_a_trace_is_accepted_that_ends_in_a_goal(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("endless.tltl").write_text(ENDLESS)
+    assert tltlc("test", "endless.tltl").out.endswith("2 passed, 0 failed\n")
+    Path("trace.csv").write_text("a,p\n0,1\n0,1\n")
+    assert tltlc("compile", "endless.tltl", "-t", "json").status == 0
+    for spec in ("endless.tltl:again", "again.fspa.json"):
+        judged = tltlc("monitor", spec, "trace.csv")
+        assert (judged.status, judged.out.splitlines()[-1]) == (0, "accepted: holding after 2 steps")
+    judged = tltlc("monitor", "endless.tltl:first", "trace.csv")
+    assert (judged.status, judged.out.splitlines()[-1]) == (1, "not accepted: pending after 2 steps")
+
+
 def test_a_file_without_tests_is_named(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("tested.tltl").write_text(Path("hide.tltl").read_text() + 'test "t" for hide { step seen expect violated }')
     Path("none").mkdir()

@@ -16,7 +16,7 @@ from tltlc.backends import emit
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ARTEFACTS = Path(__file__).parent / "artefacts"
 SPECS = ("cover_and_hide", "navigation", "branching", "branching_as_printed")
-TARGETS = ("json", "dot", "mermaid", "python")
+TARGETS = ("json", "dot", "hoa", "mermaid", "python")
 
 
 @pytest.mark.parametrize("target", TARGETS)

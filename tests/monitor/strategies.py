@@ -10,6 +10,7 @@ from tests.logic.strategies import formulas
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.rabin.build import build_infinite
 from tltlc.record import replace
 
 SIGNALS, PARAMS = ("x", "y(a, b)"), ("p", 'q"')
@@ -64,9 +65,15 @@ def expressions(draw: st.DrawFn) -> Expression:
 
 @st.composite
 def automata(draw: st.DrawFn, max_leaves: int = 8) -> Fspa:
-    """Automata over the atoms a, b, c, with or without exclusive atoms, a limit, either judge."""
+    """Automata over the atoms a, b, c, with or without exclusive atoms, a limit, over either kind of traces, with
+    either judge.
+    """
     exclusive = draw(st.sampled_from([(), (("a", "b"),), (("a", "b", "c"),)]))
-    fspa = build(spec_from_formula(draw(formulas(max_leaves=max_leaves)), exclusive=exclusive))
+    if draw(st.integers(0, 3)):
+        fspa = build(spec_from_formula(draw(formulas(max_leaves=max_leaves)), exclusive=exclusive))
+    else:
+        spec = spec_from_formula(draw(formulas(max_leaves=5)), exclusive=exclusive)
+        fspa = build_infinite(replace(spec, semantics="infinite"))
     limit = draw(st.none() | st.integers(1, 8))
     return replace(fspa, limit_steps=limit, judge=draw(st.sampled_from(["goal", "limit"])))
 

@@ -15,7 +15,6 @@ from tests.fixtures import cover_and_hide
 from tltl_runtime import load_task
 from tltlc.backends import emit
 from tltlc.monitor import RewardOptions
-from tltlc.record import replace
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TWO = "signal seen: bool\nspec hide = G !seen\nspec show = F seen\n"
@@ -63,7 +62,6 @@ def test_one_line_of_text() -> None:
         ("not here.tltl:one", "TLT0001"),
         ("nowhere", "TLT0001"),
         ("signal seen: bool spec hide = G !seem", "TLT0201"),
-        ("signal a: bool\nspec s { semantics infinite require G F a }", "TLT0503"),
         ("{}", "TLT0601"),
     ],
 )
@@ -81,9 +79,17 @@ def test_an_artefact_has_another_name_than_the_one_asked_for(tmp_path: Path) -> 
         load_task(f"{path}:navigation")
 
 
-def test_an_automaton_over_infinite_traces() -> None:
-    with pytest.raises(tltlc.TltlError, match="TLT0503: `cover_and_hide` is about infinite traces"):
-        load_task(replace(cover_and_hide(), semantics="infinite"))
+def test_an_automaton_over_infinite_traces(tmp_path: Path) -> None:
+    text = "signal a: bool\nspec s { semantics infinite limit 4 steps require G F a }"
+    task = load_task(text)
+    assert (task.fspa.semantics, task.fspa.judge) == ("infinite", "limit")
+    ((name, artefact),) = emit("json", task.fspa).items()
+    (tmp_path / name).write_text(str(artefact), encoding="utf-8")
+    assert load_task(tmp_path / name) == task
+    monitor = task.monitor()
+    steps = [monitor.step({"a": False}) for _ in range(4)]
+    assert [step.done for step in steps] == [False, False, False, True]
+    assert monitor.success
 
 
 def test_a_file_has_the_libraries_of_its_project(tmp_path: Path) -> None:

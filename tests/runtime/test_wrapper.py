@@ -197,6 +197,24 @@ def test_the_limit_truncates() -> None:
     assert total(steps) == pytest.approx(-1)
 
 
+def test_over_infinite_traces_goals_are_judged_at_entry_or_at_the_limit() -> None:
+    signals = "signal a: bool\nsignal p: bool\n"
+    rows = [{"a": 0.0, "p": 1.0}, {"a": 1.0, "p": 1.0}, {"a": 0.0, "p": 1.0}]
+    for_good = episode(played(rows, f"{signals}spec s {{ semantics infinite limit 8 steps reach a keep p }}"))
+    assert (len(for_good), for_good[-1][1:3], for_good[-1][3]["success"]) == (2, (True, False), True)
+    assert total(for_good) == pytest.approx(1 - 2 / 8)
+    again = f"{signals}spec s {{ semantics infinite limit 8 steps require G F a keep p }}"
+    steps = episode(played(rows, again))
+    assert (len(steps), steps[-1][3]["verdict"], steps[-1][3]["success"]) == (8, "holding", True)
+    assert total(steps) == pytest.approx(0)
+    steps = episode(played([*rows, {"a": 0.0, "p": 0.0}], again))
+    assert (len(steps), steps[-1][1:3], steps[-1][3]["success"]) == (4, (True, False), False)
+    assert total(steps) == pytest.approx(3 / 8 - 1)
+    late = f"{signals}spec s {{ semantics infinite limit 8 steps reach a require G F !a }}"
+    steps = episode(played(rows[:1], late))
+    assert (len(steps), steps[-1][3]["verdict"], steps[-1][3]["success"]) == (8, "pending", False)
+
+
 SAMPLES = st.sampled_from(
     [FAR, *({**FAR, name: 0.5} for name in list(FAR)[:3]), {**FAR, "distance(s1)": 7.0}, {**FAR, "health": 0.0}]
 )

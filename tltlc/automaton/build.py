@@ -56,7 +56,7 @@ def minimal_machine(
     diagrams = Diagrams() if diagrams is None else diagrams
     successors = Successors(atoms, diagrams)
     successors.number_variables(normal)
-    allowed = _allowed_letters(diagrams, exclusive)
+    allowed = allowed_letters(diagrams, exclusive)
     return successors, compose(successors, normal, state_budget, allowed), allowed
 
 
@@ -68,8 +68,8 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
         leaf: [target for target in diagrams.leaves(minimal.transitions[diagrams.low[leaf]]) if target != IMPOSSIBLE]
         for leaf in state_leaves(minimal, diagrams)
     }
-    distance = _distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
-    order = _breadth_first(next(iter(targets)), targets, distance)
+    distance = distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
+    order = breadth_first(next(iter(targets)), targets, distance)
     verdicts = _verdicts(targets, distance, accepting=lambda leaf: diagrams.high[leaf] == 1)
     labels = _labels(spec.formula, successors, minimal, order, allowed)
 
@@ -87,7 +87,7 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
     return Fspa(
         name=spec.name,
         doc=spec.doc,
-        formula=_text(spec.formula),
+        formula=text_of(spec.formula),
         level=spec.level,
         limit_steps=spec.limit_steps,
         judge=spec.judge or default_judge(spec.formula),
@@ -134,7 +134,7 @@ def _of_nothing_yet(node: Formula, value: dict[Formula, bool]) -> bool:
     return node.op not in ("false", "F", "U", "M", "X")
 
 
-def _allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> int:
+def allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> int:
     """The letters with at most one atom of each group, as a transition to ``ACCEPT`` or ``REJECT``."""
     allowed = ACCEPT
     for group in exclusive:
@@ -162,7 +162,7 @@ def state_leaves(minimal: Machine, diagrams: Diagrams) -> list[int]:
     return [initial, *(leaf for leaf in reached if leaf not in (initial, IMPOSSIBLE))]
 
 
-def _distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
+def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
     """The least number of transitions to an accepting state, None for traps: backward breadth-first search."""
     sources: dict[int, list[int]] = {state: [] for state in targets}
     for state, successors in targets.items():
@@ -180,7 +180,7 @@ def _distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool
     return distance
 
 
-def _breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
+def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapping[int, int | None]) -> list[int]:
     """The states breadth-first; of several successors those nearer to acceptance first, traps last."""
     position = {state: index for index, state in enumerate(targets)}
 
@@ -202,7 +202,7 @@ def _verdicts(
     targets: Mapping[int, list[int]], distance: Mapping[int, int | None], accepting: Callable[[int], bool]
 ) -> dict[int, Verdict]:
     """``satisfied`` where no rejecting state is in reach, ``violated`` where no accepting one is."""
-    to_rejection = _distances(targets, lambda state: not accepting(state))
+    to_rejection = distances(targets, lambda state: not accepting(state))
 
     def verdict(state: int) -> Verdict:
         if distance[state] is None:
@@ -240,7 +240,7 @@ def _labels(
     own = labels.simplified(source)
     if labels.size(own) <= labels.size(formulas[minimal.initial]):
         formulas[minimal.initial] = own
-    texts = {state: _text(formula) for state, formula in formulas.items()}
+    texts = {state: text_of(formula) for state, formula in formulas.items()}
     return {leaf: _at_the_end(texts[diagrams.low[leaf]], diagrams.high[leaf] == 1) for leaf in order}
 
 
@@ -251,7 +251,8 @@ def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:
     return restored[formula]
 
 
-def _text(formula: Formula) -> Text:
+def text_of(formula: Formula) -> Text:
+    """A formula in the three notations."""
     plain = ascii_text(formula)
     english = english_text(formula) if len(plain) <= _LONGEST_IN_ENGLISH else f"Satisfy {plain}."
     return Text(plain, unicode_text(formula), english)

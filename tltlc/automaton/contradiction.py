@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import minimal_machine
@@ -17,21 +17,27 @@ _STEPS = 50_000
 """Above these, parts are not told apart: a warning must not take longer than the compilation."""
 
 
-def contradiction(spec: Spec) -> tuple[Part, ...]:
+Decision = Callable[[Sequence[Part], Spec], bool]
+"""Whether it is shown that no trace satisfies all of the parts."""
+
+
+def contradiction(spec: Spec, unsatisfiable: Decision | None = None) -> tuple[Part, ...]:
     """Parts of an unsatisfiable spec that are unsatisfiable together, none of which could be left out.
 
-    Where the work gets too much, parts may be among them that could.
+    ``unsatisfiable`` decides it, by default over finite traces.  Where the work gets too much, parts may be among them
+    that could.
     """
+    unsatisfiable = unsatisfiable or _unsatisfiable
     needed = list(spec.parts)
     for part in spec.parts if len(spec.parts) <= _MOST_PARTS else ():
         others = [other for other in needed if other is not part]
-        if others and _unsatisfiable(others, spec):
+        if others and unsatisfiable(others, spec):
             needed = others
     return tuple(needed)
 
 
 def _unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
-    """Whether it is shown that no trace satisfies all of the parts."""
+    """Whether it is shown that no finite trace satisfies all of the parts."""
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]
     try:

@@ -14,6 +14,8 @@ from tltlc.resolve.spec import Atom, Judge, Param, Signal
 Verdict = Literal["satisfied", "holding", "pending", "violated"]
 Implicant = tuple[tuple[int, bool], ...]
 """Pairs of an index into ``Fspa.atoms`` and a polarity."""
+Mark = tuple[int, Literal["fin", "inf"]]
+"""An index into ``Fspa.acceptance``, and one of the two sets of the pair."""
 
 
 @record
@@ -53,7 +55,7 @@ class Guard:
 
 @record
 class Edge:
-    """At most one per (source, target); of the edges that leave a state exactly one guard is true."""
+    """At most one per (source, target) and pairs; of the edges that leave a state exactly one guard is true."""
 
     source: int
     target: int
@@ -61,11 +63,21 @@ class Edge:
 
 
 @record
+class Pair:
+    """A Rabin pair, by indices of edges: none of ``fin`` may be taken infinitely often, one of ``inf`` must be."""
+
+    fin: tuple[int, ...]
+    inf: tuple[int, ...]
+
+
+@record
 class Fspa:
-    """A deterministic, complete, minimal automaton with acceptance on states.
+    """A deterministic, complete automaton; over finite traces minimal, with acceptance on states.
 
     ``states[i].id == i``, state 0 is initial, numbered breadth-first; ``edges`` are sorted by
-    (source, target).  ``spec_size`` is the greatest finite distance, at least 0.
+    (source, target).  ``spec_size`` is the greatest finite distance, at least 0.  Over infinite traces a run is
+    accepted that meets one of the pairs of ``acceptance``; ``accepting`` states lie on an accepted cycle, and edges of
+    one source and target are told apart by their pairs (semantics, section 5).
     """
 
     name: str
@@ -84,7 +96,18 @@ class Fspa:
     states: tuple[State, ...]
     edges: tuple[Edge, ...]
     spec_size: int
+    acceptance: tuple[Pair, ...] = ()
 
     def edges_from(self, state: int) -> tuple[Edge, ...]:
         """The edges that leave a state, in order of target."""
         return tuple(edge for edge in self.edges if edge.source == state)
+
+    def marks(self) -> tuple[tuple[Mark, ...], ...]:
+        """Of each edge the sets of pairs that name it, in order; none over finite traces."""
+        found: list[list[Mark]] = [[] for _ in self.edges]
+        for number, pair in enumerate(self.acceptance):
+            for edge in dict.fromkeys(pair.fin):
+                found[edge].append((number, "fin"))
+            for edge in dict.fromkeys(pair.inf):
+                found[edge].append((number, "inf"))
+        return tuple(map(tuple, found))

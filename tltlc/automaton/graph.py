@@ -11,10 +11,12 @@ if TYPE_CHECKING:
 
 
 def to_networkx(fspa: Fspa) -> networkx.DiGraph:
-    """A directed graph: a node for each state id, an edge for each edge.
+    """A directed graph: a node for each state id, an edge for each source and target.
 
     Nodes carry ``label`` (ASCII), ``accepting``, ``verdict`` and ``distance`` (None for traps), edges
-    ``guard`` (the short text) and ``primes``; the graph carries ``name``, ``initial`` and ``spec_size``.
+    ``guard`` (the short text), ``primes``, and ``indices`` into ``fspa.edges``; the graph carries ``name``, ``initial``
+    and ``spec_size``.  Over infinite traces several edges may be one here, with all their indices: ``guard`` and
+    ``primes`` are then those of all of them, of which any may be true.
 
     >>> import networkx, tltlc
     >>> (fspa,) = tltlc.compile_text("signal a: bool signal b: bool spec s { reach a then b }")
@@ -34,6 +36,12 @@ def to_networkx(fspa: Fspa) -> networkx.DiGraph:
             verdict=state.verdict,
             distance=state.distance,
         )
-    for edge in fspa.edges:
-        graph.add_edge(edge.source, edge.target, guard=edge.guard.text, primes=edge.guard.primes)
+    joined: dict[tuple[int, int], list[int]] = {}
+    for index, edge in enumerate(fspa.edges):
+        joined.setdefault((edge.source, edge.target), []).append(index)
+    for (source, target), indices in joined.items():
+        guards = [fspa.edges[index].guard for index in indices]
+        text = " | ".join(guard.text for guard in guards)
+        primes = tuple(prime for guard in guards for prime in guard.primes)
+        graph.add_edge(source, target, guard=text, primes=primes, indices=tuple(indices))
     return graph

@@ -63,7 +63,8 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
     """The DOT text of a drawing, that of everything if none is given.
 
     Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting
-    states are green with a double outline, traps red, and folded ones dashed.
+    states are green with a double outline, traps red, and folded ones dashed.  Over infinite traces, the pairs that
+    name an edge stand behind its guard: ``a [inf 0]``.
     """
     from graphviz import Digraph
 

@@ -38,7 +38,7 @@ def read(text: str, name: str) -> Fspa:
 
     Raises:
         TltlError: TLT0601 not an artefact, TLT0602 another version, TLT0603 against the schema,
-            TLT0604 it contradicts itself, TLT0605 a kind of automaton that cannot be read yet.
+            TLT0604 it contradicts itself.
     """
     from tltlc.backends.artefact.consistency import problems
 
@@ -83,11 +83,6 @@ def _document(source: SourceFile) -> dict[str, Any]:
         validate(document)
     except JsonSchemaValueException as error:
         raise TltlError([_broken_schema(source, error)]) from None
-    if document["semantics"] == "infinite" or "acceptance" in document:
-        title = "automata over infinite traces cannot be read yet"
-        raise TltlError(
-            [_problem(source, "TLT0605", title, ("semantics",), "compile the spec without `semantics infinite`")]
-        )
     return document
 
 

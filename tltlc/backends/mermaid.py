@@ -1,5 +1,5 @@
 """The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place: in pictures, runs of
-states that count are folded.
+states that count are folded.  Over infinite traces, the pairs that name an edge stand behind its guard.
 """
 
 from __future__ import annotations

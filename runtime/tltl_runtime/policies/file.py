@@ -61,7 +61,7 @@ def read_policy(path: str | os.PathLike[str]) -> Policy:
 
     Raises:
         TltlError: TLT0001 it cannot be read; TLT0840 it is no policy, or is damaged; TLT0841 of another version;
-            TLT0842 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0605.
+            TLT0842 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0604.
     """
     name = os.fspath(path)
     return from_bytes(read_bytes(path, name, MAX_BYTES), name)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Union
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import Final, Union
 
 from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.backends.artefact.guards import guard_problems
@@ -13,6 +13,9 @@ from tltlc.record import record
 from tltlc.resolve import spec
 
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
+
+CYCLES_WORK: Final = 1_000_000
+"""Steps, of some microseconds each, after which what only cycles can tell is left unchecked."""
 
 
 @record
@@ -27,9 +30,10 @@ def problems(fspa: Fspa) -> Iterator[Problem]:
     """Every contradiction; later checks are left out where they would rest on values already found wrong.
 
     The guards of a state (exactly one is true of every sample) are decided exactly, but only for
-    automata that are small enough for it: see :mod:`tltlc.backends.artefact.guards`.
+    automata that are small enough for it: see :mod:`tltlc.backends.artefact.guards`.  So are the states
+    on accepted cycles and the verdicts of automata over infinite traces.
     """
-    for check in (_names, _values, _indices, _numbering, _distances, _guards):
+    for check in (_names, _values, _indices, _parallel, _numbering, _distances, _guards):
         found = False
         for problem in check(fspa):
             found = True
@@ -69,7 +73,7 @@ def _values(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _indices(fspa: Fspa) -> Iterator[Problem]:
-    """Every index names something, states stand in order, edges are sorted and at most one joins a pair."""
+    """Every index names something, states stand in order, edges are sorted."""
     states, atoms = len(fspa.states), len(fspa.atoms)
     for index, state in enumerate(fspa.states):
         if state.id != index:
@@ -82,14 +86,29 @@ def _indices(fspa: Fspa) -> Iterator[Problem]:
         for end, state_index in (("source", edge.source), ("target", edge.target)):
             if state_index >= states:
                 yield Problem(("edges", index, end), f"there is no state {state_index}")
-        if (edge.source, edge.target) == previous:
-            yield Problem(("edges", index), f"two edges lead from state {edge.source} to state {edge.target}")
-        elif (edge.source, edge.target) < previous:
+        if (edge.source, edge.target) < previous:
             yield Problem(("edges", index), "the edges are not sorted by source and target")
         previous = (edge.source, edge.target)
         for prime in edge.guard.primes:
             if any(atom >= atoms for atom, _ in prime):
                 yield Problem(("edges", index, "guard", "primes"), f"there are only {atoms} atoms")
+    for index, pair in enumerate(fspa.acceptance):
+        for kind, edges in (("fin", pair.fin), ("inf", pair.inf)):
+            if any(edge >= len(fspa.edges) for edge in edges):
+                yield Problem(("acceptance", "pairs", index, kind), f"there are only {len(fspa.edges)} edges")
+
+
+def _parallel(fspa: Fspa) -> Iterator[Problem]:
+    """Edges of one source and target differ in the pairs that name them; over finite traces there are no pairs."""
+    named = fspa.marks()
+    seen: set[tuple[object, ...]] = set()
+    for index, edge in enumerate(fspa.edges):
+        key = (edge.source, edge.target, named[index])
+        if key in seen:
+            alike = " that the same pairs name" if fspa.semantics == "infinite" else ""
+            message = f"two edges{alike} lead from state {edge.source} to state {edge.target}"
+            yield Problem(("edges", index), message)
+        seen.add(key)
 
 
 def _numbering(fspa: Fspa) -> Iterator[Problem]:
@@ -108,18 +127,21 @@ def _numbering(fspa: Fspa) -> Iterator[Problem]:
 
 
 def _distances(fspa: Fspa) -> Iterator[Problem]:
-    """Distances, verdicts and the size of the spec are what the edges make them."""
-    accepting = [state.id for state in fspa.states if state.accepting]
-    to_goal = _steps_to(fspa, accepting)
-    to_failure = _steps_to(fspa, (state.id for state in fspa.states if not state.accepting))
+    """Goals, distances, verdicts and the size of the spec are what the edges make them."""
+    goals, verdicts = _by_cycles(fspa) if fspa.semantics == "infinite" else _by_states(fspa)
+    to_goal = _steps_to(fspa, goals)
     for state in fspa.states:
+        if state.accepting != (state.id in goals):
+            lies, accepts = ("no", "is") if state.accepting else ("an", "is not")
+            message = f"state {state.id} lies on {lies} accepted cycle, and {accepts} accepting"
+            yield Problem(("states", state.id, "accepting"), message)
         distance = to_goal.get(state.id)
         if state.distance != distance:
             yield Problem(
                 ("states", state.id, "distance"),
                 f"the distance of state {state.id} is {_said(distance)}, not {_said(state.distance)}",
             )
-        verdict = _verdict(state.accepting, distance, to_failure.get(state.id))
+        verdict = verdicts[state.id]
         if state.verdict != verdict:
             yield Problem(
                 ("states", state.id, "verdict"),
@@ -128,6 +150,26 @@ def _distances(fspa: Fspa) -> Iterator[Problem]:
     size = max(to_goal.values(), default=0)
     if fspa.spec_size != size:
         yield Problem(("spec_size",), f"spec_size is {size}, not {fspa.spec_size}")
+
+
+def _by_states(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
+    """Over finite traces: the accepting states, and the verdict of each state."""
+    goals = [state.id for state in fspa.states if state.accepting]
+    to_goal = _steps_to(fspa, goals)
+    to_failure = _steps_to(fspa, (state.id for state in fspa.states if not state.accepting))
+    return goals, [_verdict(state.accepting, to_goal.get(state.id), to_failure.get(state.id)) for state in fspa.states]
+
+
+def _by_cycles(fspa: Fspa) -> tuple[Collection[int], list[Verdict]]:
+    """Over infinite traces: the states on accepted cycles, and the verdict of each state."""
+    from tltlc.rabin.analysis import analysis_of_fspa
+    from tltlc.rabin.work import OutOfWork, Work
+
+    try:
+        analysis = analysis_of_fspa(fspa, Work(CYCLES_WORK))
+    except OutOfWork:
+        return [state.id for state in fspa.states if state.accepting], [state.verdict for state in fspa.states]
+    return analysis.goals, [analysis.verdict(state.id) for state in fspa.states]
 
 
 def _steps_to(fspa: Fspa, goals: Iterable[int]) -> dict[int, int]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text
+from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State, Text
 from tltlc.expression_json import from_json
 from tltlc.resolve.spec import Atom, Param, Signal
 
@@ -30,7 +30,13 @@ def decode(document: dict[str, Any]) -> Fspa:
         states=tuple(_state(state) for state in document["states"]),
         edges=tuple(_edge(edge) for edge in document["edges"]),
         spec_size=int(document["spec_size"]),
+        acceptance=tuple(_pair(pair) for pair in document.get("acceptance", {"pairs": ()})["pairs"]),
     )
+
+
+def _pair(pair: dict[str, Any]) -> Pair:
+    fin, inf = (tuple(int(edge) for edge in pair[kind]) for kind in ("fin", "inf"))
+    return Pair(fin, inf)
 
 
 def _text(text: dict[str, str]) -> Text:

@@ -33,7 +33,14 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "initial": 0,
         "edges": [_edge(edge) for edge in fspa.edges],
         "spec_size": fspa.spec_size,
+        **_acceptance(fspa),
     }
+
+
+def _acceptance(fspa: Fspa) -> dict[str, Any]:
+    if fspa.semantics == "finite":
+        return {}
+    return {"acceptance": {"pairs": [{"fin": list(pair.fin), "inf": list(pair.inf)} for pair in fspa.acceptance]}}
 
 
 def _text(text: Text) -> dict[str, str]:

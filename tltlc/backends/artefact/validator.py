@@ -20,6 +20,15 @@ def validate(data: object, custom_formats: object = {}, name_prefix: object = No
         data__missing_keys = set(['format', 'version', 'spec', 'semantics', 'signals', 'params', 'atoms', 'exclusive', 'states', 'initial', 'edges', 'spec_size']) - data.keys()
         if data__missing_keys:
             raise JsonSchemaValueException("" + (name_prefix or "data") + " must contain " + (str(sorted(data__missing_keys)) + " properties"), "" + (name_prefix or "data") + "", 'required')
+        if "acceptance" in data:
+            data_is_dict = isinstance(data, dict)
+            if data_is_dict:
+                data_keys = set(data.keys())
+                if "semantics" in data_keys:
+                    data_keys.remove("semantics")
+                    data__semantics = data["semantics"]
+                    if not (isinstance(data__semantics, str) and data__semantics == 'infinite'):
+                        raise JsonSchemaValueException("" + (name_prefix or "data") + ".semantics must be one of ['infinite']", "" + (name_prefix or "data") + ".semantics", 'enum')
         data_keys = set(data.keys())
         if "format" in data_keys:
             data_keys.remove("format")
@@ -533,6 +542,26 @@ def validate(data: object, custom_formats: object = {}, name_prefix: object = No
                                             if isinstance(data__acceptance__pairs_item__inf_item, (int, float)) and not isinstance(data__acceptance__pairs_item__inf_item, bool):
                                                 if data__acceptance__pairs_item__inf_item < 0:
                                                     raise JsonSchemaValueException("" + (name_prefix or "data") + ".acceptance.pairs[{data__acceptance__pairs_x}].inf[{data__acceptance__pairs_item__inf_x}]".format(**locals()) + " must be bigger than or equal to 0", "" + (name_prefix or "data") + ".acceptance.pairs[{data__acceptance__pairs_x}].inf[{data__acceptance__pairs_item__inf_x}]".format(**locals()) + "", 'minimum')
+    try:
+        data_is_dict = isinstance(data, dict)
+        if data_is_dict:
+            data__missing_keys = set(['semantics']) - data.keys()
+            if data__missing_keys:
+                raise JsonSchemaValueException("" + (name_prefix or "data") + " must contain " + (str(sorted(data__missing_keys)) + " properties"), "" + (name_prefix or "data") + "", 'required')
+            data_keys = set(data.keys())
+            if "semantics" in data_keys:
+                data_keys.remove("semantics")
+                data__semantics = data["semantics"]
+                if not (isinstance(data__semantics, str) and data__semantics == 'infinite'):
+                    raise JsonSchemaValueException("" + (name_prefix or "data") + ".semantics must be one of ['infinite']", "" + (name_prefix or "data") + ".semantics", 'enum')
+    except JsonSchemaValueException:
+        pass
+    else:
+        data_is_dict = isinstance(data, dict)
+        if data_is_dict:
+            data__missing_keys = set(['acceptance']) - data.keys()
+            if data__missing_keys:
+                raise JsonSchemaValueException("" + (name_prefix or "data") + " must contain " + (str(sorted(data__missing_keys)) + " properties"), "" + (name_prefix or "data") + "", 'required')
     return data
 
 def validate___definitions_expression(data: object, custom_formats: object = {}, name_prefix: object = None) -> object:

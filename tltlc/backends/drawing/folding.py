@@ -16,7 +16,7 @@ _number = re.compile(r"(\d+)")
 
 @record
 class Drawing:
-    """The states and edges that are drawn, in the automaton's order.
+    """The states and edges that are drawn, in the automaton's order, edges with their marks (:func:`marked`).
 
     ``folded`` has the inner states of each run, by the id of the first of them, which is drawn for
     all; its edge along the run leads to the last state of the run.
@@ -29,7 +29,7 @@ class Drawing:
 
 def whole(fspa: Fspa) -> Drawing:
     """Every state and every edge."""
-    return Drawing(fspa.states, fspa.edges)
+    return Drawing(fspa.states, marked(fspa).edges)
 
 
 def folded(fspa: Fspa) -> Drawing:
@@ -39,6 +39,7 @@ def folded(fspa: Fspa) -> Drawing:
     another state), and all agree in verdict, acceptance and their other edges' guards and targets.
     An inner state is entered only from the one before it, so that distances stay or fall by one.
     """
+    fspa = marked(fspa)
     runs = _inner_states(fspa)
     hidden = {state for run in runs for state, _ in run[1:]}
     shortened = {run[0][1]: run[-1][1].target for run in runs}
@@ -92,6 +93,20 @@ def _onward(edge: Edge, fspa: Fspa, outgoing: list[list[Edge]]) -> Edge | None:
 
 def _without(left_out: Edge, edges: list[Edge]) -> list[tuple[Guard, int]]:
     return [(edge.guard, edge.target) for edge in edges if edge is not left_out]
+
+
+def marked(fspa: Fspa) -> Fspa:
+    """The automaton with the pairs that name an edge behind the text of its guard, ``a & b [fin 0] [inf 1]``.
+
+    Edges that pairs tell apart are not alike then.  Over finite traces it is the same.
+    """
+    if not fspa.acceptance:
+        return fspa
+    edges = []
+    for edge, marks in zip(fspa.edges, fspa.marks(), strict=True):
+        text = " ".join([edge.guard.text, *(f"[{kind} {pair}]" for pair, kind in marks)])
+        edges.append(replace(edge, guard=Guard(text, edge.guard.primes)))
+    return replace(fspa, edges=tuple(edges))
 
 
 def span(first: str, last: str) -> str:

@@ -24,8 +24,9 @@ BREAK_BEFORE = ("∧", "∨", "⇒", "⇔", "𝒰", "&", "|", "->", "<->", "and"
 
 
 _TIES = frozenset({"not", "<", ">", "<=", ">=", "≤", "≥", "+", "-", "*", "/", "^"})
-# The end of a line that goes on inside a bound, `F[0,3] p`, or between the arguments of an atom, `near(a, b)`.
-_tied_end = re.compile(r"\]$|\w\([^()]*,$")
+# The end of a line that goes on inside a bound, `F[0,3] p`, between the arguments of an atom, `near(a, b)`, or inside
+# the mark of a pair, `[inf 0]`.
+_tied_end = re.compile(r"\]$|\w\([^()]*,$|\[(?:fin|inf)$")
 
 
 def label(text: Text, notation: Notation) -> str:

@@ -41,7 +41,8 @@ def command(spec: str, trace: str, as_json: bool, settings: Settings, format: st
     """Run a spec over a recorded trace: CSV with a header of signal names, or JSON lines of objects.
 
     Prints a row per step (state, verdict, progress, reward, the value of each atom) and the verdict of
-    the whole trace.  The exit status is 0 where the trace is accepted, and 1 where it is not.
+    the whole trace.  The exit status is 0 where the trace is accepted, and 1 where it is not.  By a spec about
+    infinite traces, a trace is accepted that ends in a goal state.
     """
     from tltlc.monitor import Monitor
     from tltlc.monitor.run import outcome, run

@@ -104,7 +104,7 @@ def read_episode(path: str | os.PathLike[str]) -> Episode:
 
     Raises:
         TltlError: TLT0001 it cannot be read; TLT0820 it is no episode, or is damaged; TLT0821 of another version;
-            TLT0822 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0605.
+            TLT0822 something in it is not as it must be; what the artefact in it lacks, TLT0601 to TLT0604.
     """
     name = os.fspath(path)
     return from_bytes(read_bytes(path, name, MAX_BYTES), name)

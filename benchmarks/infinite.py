@@ -1,0 +1,135 @@
+"""Rabin automata of formulas over infinite traces: their sizes beside recorded ones of peers, and times."""
+
+from __future__ import annotations
+
+import csv
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from statistics import median
+from typing import Any, Final
+
+from benchmarks.markdown import met_or_missed, table
+from benchmarks.store import Record, Store, measure_missing, source_digest
+from tests.reference_formulas import read_formula
+from tltlc.automaton.blowup import recursion_room
+from tltlc.rabin.analysis import analysis_of_rabin
+from tltlc.rabin.construct import DEFAULT_WORK, rabin
+from tltlc.rabin.work import Work
+
+SECTION = "infinite"
+TABLE: Final = Path(__file__).with_name("infinite.tsv")
+"""Formulas with the states that peers need, as recorded; a cell is empty where a peer was not asked."""
+
+CORPORA: Final[Mapping[str, str]] = {
+    "families": "families of our own, all states",
+    "owl": "Owl's test corpus, without traps, as its own figures are",
+}
+PEERS: Final[Mapping[str, str]] = {
+    "spot_parity_states": "Spot, deterministic parity",
+    "owl_states": "Owl, deterministic Rabin",
+    "rabinizer31_states": "Rabinizer 3.1, Rabin on transitions",
+}
+_TRIAL: Final = 4448
+"""States on Owl's corpus that a trial of this construction needed."""
+_MEDIAN_MS: Final = 10.0
+_SLOWEST_S: Final = 10.0
+
+
+def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
+    """Make the automata of the formulas whose records are not of this code."""
+    code = {"source": source_digest("tltlc")}
+    measure_missing(store, SECTION, CORPORA, lambda name: {**_measured(name), **code}, say, done="rows", like=code)
+
+
+def _measured(corpus: str) -> Record:
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        wanted = [row for row in csv.DictReader(file, delimiter="\t") if row["corpus"] == corpus]
+    return {"rows": [_made(row) for row in wanted]}
+
+
+def _made(row: Mapping[str, str]) -> dict[str, Any]:
+    formula = read_formula(row["formula"])
+    with recursion_room():
+        begun = time.process_time()
+        automaton = rabin(formula)
+        spent = time.process_time() - begun
+    analysis = analysis_of_rabin(automaton, Work(DEFAULT_WORK))
+    traps = sum(analysis.verdict(state) == "violated" for state in range(len(automaton.steps)))
+    peers = {name: int(row[name]) for name in (*PEERS, "rabinizer31_wall_ms") if row[name]}
+    # Of an automaton that has no other state the trap counts.
+    without = max(1, len(automaton.steps) - traps)
+    return {"formula": row["formula"], "states": len(automaton.steps), "without": without, "ms": 1e3 * spent, **peers}
+
+
+def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
+    """Rows of the table of goals, once both corpora were measured."""
+    if any("rows" not in records.get(name, {}) for name in CORPORA):
+        return
+    totals = {name: _totals(name, records[name]["rows"]) for name in CORPORA}
+    less = all(ours < theirs for peers in totals.values() for ours, theirs, *_ in peers.values())
+    said = "; ".join(
+        f"{ours} against {theirs} ({PEERS[peer].partition(',')[0]})"
+        for peers in totals.values()
+        for peer, (ours, theirs, *_) in peers.items()
+    )
+    yield "over infinite traces fewer states in all than Spot, Owl and Rabinizer", said, met_or_missed(less)
+    ours = sum(row["without"] for row in records["owl"]["rows"])
+    yield f"no more than {_TRIAL} states on Owl's corpus", str(ours), met_or_missed(ours <= _TRIAL)
+    times = [row["ms"] for name in CORPORA for row in records[name]["rows"]]
+    said = f"median {median(times):.1f} ms, slowest {max(times) / 1e3:.1f} s"
+    met = median(times) < _MEDIAN_MS and max(times) < 1e3 * _SLOWEST_S
+    yield (
+        f"a Rabin automaton in {_MEDIAN_MS:.0f} ms (median), and none in more than {_SLOWEST_S:.0f} s",
+        said,
+        met_or_missed(met),
+    )
+
+
+def section(records: Mapping[str, Record]) -> str:
+    """The section on infinite traces."""
+    body = []
+    times = []
+    for name, what in CORPORA.items():
+        rows = records.get(name, {}).get("rows", [])
+        for peer, (ours, theirs, smaller, equal, larger) in _totals(name, rows).items():
+            body.append((what, len(rows), ours, PEERS[peer], theirs, f"{smaller} / {equal} / {larger}"))
+        if rows:
+            spent = sorted(row["ms"] for row in rows)
+            rabinizer = [row["rabinizer31_wall_ms"] for row in rows if "rabinizer31_wall_ms" in row]
+            beside = f"{median(rabinizer):.0f}" if rabinizer else "–"
+            times.append(
+                (what, f"{median(spent):.1f}", f"{spent[int(0.95 * len(spent))]:.0f}", f"{spent[-1]:.0f}", beside)
+            )
+    if not body:
+        return ""
+    sizes = table(("corpus", "formulas", "states", "peer", "its states", "smaller / equal / larger"), body)
+    spent_table = table(("corpus", "median, ms", "95 %, ms", "slowest, ms", "Rabinizer's process, median, ms"), times)
+    return f"""
+## Infinite traces
+
+`python -m benchmarks --only {SECTION}` makes the deterministic Rabin automata of two corpora. Peers' figures are
+recorded ones, `benchmarks/infinite.tsv` has them: Spot 2.14, Owl's own for its `symmetric` portfolio, Rabinizer 3.1,
+whose time is that of its whole process, a Java machine included. Ours is CPU time in one process, from a formula in
+memory to the automaton. *Smaller*: formulas for which ours has fewer states.
+
+{sizes}
+
+{spent_table}
+"""
+
+
+def _totals(corpus: str, rows: Sequence[Mapping[str, Any]]) -> dict[str, tuple[int, int, int, int, int]]:
+    """Of each peer that was asked: our states and its, and how often ours are fewer, as many, more."""
+    found = {}
+    for peer in PEERS:
+        pairs = [(row["states" if corpus == "families" else "without"], row[peer]) for row in rows if peer in row]
+        if pairs:
+            found[peer] = (
+                sum(ours for ours, _ in pairs),
+                sum(theirs for _, theirs in pairs),
+                sum(ours < theirs for ours, theirs in pairs),
+                sum(ours == theirs for ours, theirs in pairs),
+                sum(ours > theirs for ours, theirs in pairs),
+            )
+    return found

@@ -1,0 +1,286 @@
+from __future__ import annotations
+
+import itertools
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.automaton.letters import Letter, holds, letters, named
+from tests.backends.hoa_reader import Hoa, read
+from tests.backends.strategies import EXCLUSIVE, automata, hostile_automata, hostile_texts
+from tests.fixtures import cover_and_hide
+from tests.logic.strategies import formulas
+from tltlc import __version__, backends, compile_text
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.diagrams import Diagrams
+from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair
+from tltlc.backends import hoa
+from tltlc.backends.drawing.texts import visible
+from tltlc.logic import oracle
+from tltlc.rabin.build import build_infinite
+from tltlc.rabin.lasso import holds_on_lasso
+from tltlc.record import replace
+from tltlc.resolve.spec import Spec
+
+INFINITE = """
+signal a: bool
+signal b: bool
+signal alive: bool
+/// If a comes again and again, b does, too.
+spec fair { semantics infinite  require (G F a -> G F b) and G alive }
+"""
+
+
+def emitted(fspa: Fspa) -> str:
+    text = backends.emit("hoa", fspa)[f"{fspa.name}.hoa"]
+    assert isinstance(text, str)
+    return text
+
+
+def check(fspa: Fspa) -> Hoa:
+    """The whole file is of the format and says, letter by letter, what the automaton says."""
+    text = emitted(fspa)
+    found = read(text)
+    infinite = fspa.semantics == "infinite"
+    assert text.startswith("HOA: v1\n")
+    assert all(visible(line) == line for line in text.split("\n"))
+    assert found.starts == [0]
+    assert found.atoms == [atom.name for atom in fspa.atoms]
+    assert [found.states[state.id].name for state in fspa.states] == [state.label.ascii for state in fspa.states]
+    assert found.count == len(found.states) == len(fspa.states)
+    assert found.strings["name:"] == [fspa.name]
+    assert found.strings["tool:"] == ["tltlc", __version__]
+    # No header of others that begins with a capital, but for the one that says how to read the automaton.
+    capital = {name: values for name, values in found.strings.items() if name[0].isupper()}
+    assert capital == ({} if infinite else {"Tltlc-semantics:": ["finite"]})
+    pairs = range(len(fspa.acceptance))
+    terms = [f"Fin({2 * pair})&Inf({2 * pair + 1})" for pair in pairs]
+    canonical = {0: "f", 1: "".join(terms)}.get(len(terms), "|".join(f"({term})" for term in terms))
+    expected = (f"Rabin {len(terms)}", 2 * len(terms), canonical) if infinite else ("Buchi", 1, "Inf(0)")
+    assert (found.acceptance_name, found.sets, found.acceptance) == expected
+    same_letters(fspa, found)
+    return found
+
+
+def same_letters(fspa: Fspa, found: Hoa) -> None:
+    """From each state each letter leads to the same state with the same marks; one that is not allowed nowhere."""
+    infinite, allowed = fspa.semantics == "infinite", set(letters(fspa))
+    every = list(itertools.product((False, True), repeat=len(fspa.atoms)))
+    sets = [frozenset[int]() for _ in fspa.edges]
+    for index, pair in enumerate(fspa.acceptance):
+        for number, edges in ((2 * index, pair.fin), (2 * index + 1, pair.inf)):
+            for edge in edges:
+                sets[edge] |= {number}
+    for state in fspa.states:
+        here = found.states[state.id]
+        leaving = [(each, marks) for each, marks in zip(fspa.edges, sets, strict=True) if each.source == state.id]
+        assert len(here.edges) == len(leaving)
+        assert here.sets == ({0} if not infinite and state.accepting else set())
+        for letter in every:
+            expected = [(each.target, marks | here.sets) for each, marks in leaving if holds(each, letter)]
+            assert found.taken(state.id, letter) == (expected if letter in allowed else [])
+            assert len(expected) == 1 or letter not in allowed
+    complete = ["complete"] if len(every) == len(allowed) else []
+    marks = "trans-acc" if infinite else "state-acc"
+    assert found.properties == ["trans-labels", "explicit-labels", marks, "deterministic", *complete]
+
+
+@st.composite
+def specs(draw: st.DrawFn, semantics: str, most: int) -> Spec:
+    """Specs of random formulas, some with exclusive atoms."""
+    formula = draw(formulas(max_leaves=most))
+    groups = draw(st.lists(st.sampled_from(EXCLUSIVE), max_size=2, unique=True))
+    fitting = [group for group in groups if set(group) <= set(formula.atoms())]
+    return replace(spec_from_formula(formula, exclusive=fitting), semantics=semantics)
+
+
+def words(fspa: Fspa, least: int = 0) -> st.SearchStrategy[list[Letter]]:
+    return st.lists(st.sampled_from(letters(fspa)), min_size=least, max_size=4)
+
+
+def test_an_automaton_over_infinite_traces() -> None:
+    (fspa,) = compile_text(INFINITE)
+    assert emitted(fspa) == (
+        "HOA: v1\n"
+        f'tool: "tltlc" "{__version__}"\n'
+        'name: "fair"\n'
+        "/* If a comes again and again, b does, too. */\n"
+        "States: 2\n"
+        "Start: 0\n"
+        'AP: 3 "a" "b" "alive"\n'
+        "acc-name: Rabin 2\n"
+        "Acceptance: 4 (Fin(0)&Inf(1))|(Fin(2)&Inf(3))\n"
+        "properties: trans-labels explicit-labels trans-acc deterministic complete\n"
+        "--BODY--\n"
+        'State: 0 "(G F a -> G F b) & G alive"\n'
+        "[1 & 2] 0 {1}\n"
+        "[0 & !1 & 2] 0 {2}\n"
+        "[!0 & !1 & 2] 0 {3}\n"
+        "[!2] 1\n"
+        'State: 1 "false"\n'
+        "[t] 1\n"
+        "--END--\n"
+    )
+    check(fspa)
+
+
+def test_an_automaton_over_finite_traces() -> None:
+    text = emitted(cover_and_hide())
+    assert "Alias: @allowed !(0&1) & !(0&2) & !(1&2)\n" in text
+    assert "acc-name: Buchi\nAcceptance: 1 Inf(0)\n" in text
+    assert "properties: trans-labels explicit-labels state-acc deterministic\n" in text
+    assert 'Tltlc-semantics: "finite"\n/* A finite trace is accepted where its run ends ' in text
+    assert 'State: 4 "G alive" {0}\n[@allowed & !3] 2\n[@allowed & 3] 4\n--END--\n' in text
+    check(cover_and_hide())
+
+
+@settings(max_examples=60, deadline=None)
+@given(specs("infinite", 5), st.data())
+def test_over_infinite_traces_the_format_accepts_what_the_formula_says(spec: Spec, data: st.DataObject) -> None:
+    fspa = build_infinite(spec)
+    found = check(fspa)
+    for _ in range(10):
+        prefix, cycle = data.draw(words(fspa)), data.draw(words(fspa, 1))
+        expected = holds_on_lasso(spec.formula, named(fspa, prefix), named(fspa, cycle))
+        assert found.accepts_lasso(prefix, cycle) == expected
+
+
+@settings(max_examples=60, deadline=None)
+@given(specs("finite", 6), st.data())
+def test_over_finite_traces_the_last_state_says_what_the_formula_says(spec: Spec, data: st.DataObject) -> None:
+    fspa = build(spec)
+    found = check(fspa)
+    for _ in range(10):
+        trace = data.draw(words(fspa, 1))
+        last = found.run(trace)
+        assert last is not None
+        assert (found.states[last].sets == {0}) == oracle.holds(spec.formula, named(fspa, trace))
+
+
+@pytest.mark.parametrize(
+    ("formula", "name", "acceptance"),
+    [("a and not a", "Rabin 0", "f"), ("a or not a", "Rabin 1", "Fin(0)&Inf(1)")],
+)
+def test_what_nothing_and_what_everything_meets(formula: str, name: str, acceptance: str) -> None:
+    (fspa,) = compile_text(f"signal a: bool spec constant {{ semantics infinite  require {formula} }}")
+    found = check(fspa)
+    assert (found.acceptance_name, found.acceptance) == (name, acceptance)
+
+
+def test_a_trace_with_a_letter_that_is_not_allowed_is_not_accepted() -> None:
+    (fspa,) = compile_text(
+        "signal a: bool signal b: bool exclusive a, b spec one { semantics infinite  require G F a or G F b }"
+    )
+    found = check(fspa)
+    both, first = (True, True), (True, False)
+    assert found.accepts_lasso([], [first])
+    assert not found.accepts_lasso([both], [first])
+    assert not found.accepts_lasso([first], [both, first])
+
+
+def test_an_edge_in_many_sets() -> None:
+    (fspa,) = compile_text("signal a: bool spec again { semantics infinite  require G F a }")
+    fspa = replace(fspa, acceptance=(Pair((), (1,)), Pair((0,), (1,)), Pair((1,), (0,))))
+    assert "[!0] 0 {2 5}\n[0] 0 {1 3 4}\n" in emitted(fspa)
+    check(fspa)
+
+
+def test_a_label_follows_from_the_primes_and_never_from_the_text() -> None:
+    fspa = cover_and_hide()
+    lied = replace(fspa, edges=tuple(replace(edge, guard=Guard("t] 0 [t", edge.guard.primes)) for edge in fspa.edges))
+    assert emitted(lied) == emitted(fspa)
+
+
+@settings(max_examples=40, deadline=None)
+@given(automata())
+def test_a_guard_too_large_for_a_short_label_is_the_sum_of_its_primes(fspa: Fspa) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(hoa, "Diagrams", lambda: Diagrams(step_limit=0))
+        found = read(emitted(replace(fspa, exclusive=())))
+    if not fspa.exclusive:
+        same_letters(fspa, found)
+
+
+def test_an_edge_that_no_letter_takes() -> None:
+    fspa = cover_and_hide()
+    at = [(edge.source, edge.target) for edge in fspa.edges].index((2, 2))
+    edges = (*fspa.edges[:at], Edge(2, 0, Guard("false", ())), *fspa.edges[at:])
+    assert "[@allowed & f] 0\n[@allowed] 2\n" in emitted(replace(fspa, edges=edges))
+    assert "[f] 0\n[t] 2\n" in emitted(replace(fspa, edges=edges, exclusive=()))
+
+
+@settings(max_examples=120, deadline=None)
+@given(hostile_automata(), hostile_texts, st.booleans())
+def test_hostile_texts_stay_texts(fspa: Fspa, doc: str, infinite: bool) -> None:
+    if infinite:
+        fspa = replace(fspa, semantics="infinite", acceptance=(Pair((0,), (11,)),))
+    found = check(replace(fspa, doc=doc))
+    assert len(found.comments) == 1 + (not infinite) + bool(doc.strip())
+
+
+def test_characters_that_are_not_seen_are_escapes_as_in_c() -> None:
+    names = ["\ud800", "\\ud800", "\U000e0001", "\u200b\n"]
+    atoms = tuple(replace(atom, name=name) for atom, name in zip(cover_and_hide().atoms, names, strict=True))
+    fspa = replace(cover_and_hide(), atoms=atoms, doc="\ud800")
+    assert r'AP: 4 "\ud800" "\\ud800" "\U000e0001" "\u200b\u000a"' in emitted(fspa)
+    emitted(fspa).encode()
+    check(fspa)
+
+
+@pytest.mark.parametrize(
+    "doc", ["*/", "/*", "/*/", "*/*", "**/", "//**", "/" * 9 + "*" * 9 + "/", "a*\n/b", "*/ --END-- /*", "*", "/", '"']
+)
+def test_a_comment_ends_where_it_should(doc: str) -> None:
+    comment, *rest = check(replace(cover_and_hide(), doc=doc)).comments
+    assert len(rest) == 2
+    assert comment[2:-2].split() and not {"/*", "*/"} & {comment[2:-2][at : at + 2] for at in range(len(comment))}
+    assert "".join(comment[2:-2].split()) == "".join(doc.split())
+
+
+GOOD = """HOA: v1 /* nested /* comments */ */ States: 2 Start: 0 name: "it \\" stays"
+AP: 2 "a" "b" Alias: @x !(0&1) | f acc-name: Rabin 1 Acceptance: 2 Fin(0)&Inf(1) properties: deterministic
+--BODY-- State: 0 "q" [@x & !0] 0 {0} [!(@x & !0)] 1 State: 1 {1} [t] 1 --END--"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("--END--", ""),
+        ("--END--", "--END-- more"),
+        ("HOA: v1", "HOA: v2"),
+        ("Acceptance: 2 Fin(0)&Inf(1)", ""),
+        ("Start: 0", "Start: 2"),
+        ("Start: 0", "Start: 00"),
+        ("States: 2", "States: 3"),
+        ("States: 2", "States: 2 States: 2"),
+        ("AP: 2", "AP: 3"),
+        ('"b"', '"a"'),
+        ("[@x & !0]", "[@y & !0]"),
+        ("[@x & !0]", "[@x & !2]"),
+        ("[@x & !0]", "[@x & -> 0]"),
+        ("[@x & !0]", "@x & !0"),
+        ("{0}", "{2}"),
+        ("{0}", "{0"),
+        ("] 1 State", "] 7 State"),
+        ("State: 1", "State: 0"),
+        ('\\" stays', '" stays'),
+        ("comments */ */", "comments */"),
+        ("nested /*", "nested"),
+        ("Inf(1)", "Inf(1"),
+        ("Inf(1)", "Sup(1)"),
+    ],
+)
+def test_the_reader_is_strict(old: str, new: str) -> None:
+    read(GOOD)
+    assert old in GOOD
+    with pytest.raises((ValueError, KeyError)):
+        read(GOOD.replace(old, new, 1))
+
+
+def test_the_reader_knows_what_a_lasso_is() -> None:
+    found = read(GOOD)
+    assert found.accepts_lasso([(True, True)], [(False, False)])
+    assert not found.accepts_lasso([], [(False, False)])
+    assert found.strings["name:"] == ['it " stays']
+    assert found.run([(False, True)]) == 0

@@ -1,0 +1,55 @@
+"""Runs of automata over infinite traces, on traces that end in a cycle: slow, and straight from the definition."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+
+from tests.automaton.letters import Letter, holds, letters
+from tests.reference_formulas import read_formula
+from tltlc.automaton.build import spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.logic.formula import Formula
+from tltlc.rabin.build import build_infinite
+from tltlc.record import replace
+
+
+def compiled(formula: Formula | str, *exclusive: tuple[str, ...]) -> Fspa:
+    """The automaton over infinite traces of a formula over free atoms."""
+    if isinstance(formula, str):
+        formula = read_formula(formula)
+    return build_infinite(replace(spec_from_formula(formula, exclusive=exclusive), semantics="infinite"))
+
+
+def accepts(fspa: Fspa, prefix: Sequence[Letter], cycle: Sequence[Letter], state: int = 0) -> bool:
+    """Whether a state accepts ``prefix`` followed by ``cycle`` for ever; asserts that exactly one guard is true."""
+    for letter in prefix:
+        state = fspa.edges[_edge(fspa, state, letter)].target
+    met: dict[int, int] = {}
+    rounds: list[set[int]] = []
+    while state not in met:
+        met[state] = len(rounds)
+        taken = []
+        for letter in cycle:
+            taken.append(_edge(fspa, state, letter))
+            state = fspa.edges[taken[-1]].target
+        rounds.append(set(taken))
+    for_ever = set().union(*rounds[met[state] :])
+    return any(not for_ever & set(pair.fin) and for_ever & set(pair.inf) for pair in fspa.acceptance)
+
+
+def lassos(fspa: Fspa, longest: int) -> list[tuple[tuple[Letter, ...], tuple[Letter, ...]]]:
+    """Every prefix and cycle, both together up to a length."""
+    possible = letters(fspa)
+    return [
+        (prefix, cycle)
+        for before in range(longest)
+        for after in range(1, longest - before + 1)
+        for prefix in product(possible, repeat=before)
+        for cycle in product(possible, repeat=after)
+    ]
+
+
+def _edge(fspa: Fspa, state: int, letter: Letter) -> int:
+    (taken,) = (index for index, edge in enumerate(fspa.edges) if edge.source == state and holds(edge, letter))
+    return taken

@@ -1,0 +1,145 @@
+"""The automaton in the Hanoi omega-automata format, version 1 (http://adl.github.io/hoaf/), for the tools of others.
+
+Over infinite traces a Rabin automaton with marks on edges.  Over finite ones, which the format does not know, a
+Büchi automaton with marks on the accepting states, and a header that says so: the run on a finite trace ends in one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+from tltlc import __version__
+from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.diagrams import ACCEPT, REJECT, Diagrams, OutOfSteps
+from tltlc.automaton.fspa import Fspa, Guard, Implicant
+from tltlc.automaton.guards import Guards, TooManyPrimes
+from tltlc.backends import Files, Options, Target
+from tltlc.backends.drawing.texts import visible
+
+TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
+
+# A capital first letter: a tool that does not know the header has to warn, for it would read another language.
+FINITE_HEADER = 'Tltlc-semantics: "finite"'
+FINITE_COMMENT = "A finite trace is accepted where its run ends in a state of set 0."
+ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @allowed has no edge."
+
+
+def emit(fspa: Fspa, options: Options) -> Files:
+    """``NAME.hoa``; texts are in ASCII notation, atoms numbered as in the artefact."""
+    clashes = sorted({pair for group in fspa.exclusive for pair in combinations(sorted(set(group)), 2)})
+    with recursion_room():
+        lines = [*_header(fspa, clashes), "--BODY--", *_body(fspa), "--END--", ""]
+    return {f"{fspa.name}.hoa": "\n".join(lines)}
+
+
+def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
+    """The lines before the body; ``clashes`` are the pairs of atoms that never hold at once."""
+    yield "HOA: v1"
+    yield f'tool: "tltlc" {_string(__version__)}'
+    yield f"name: {_string(fspa.name)}"
+    if fspa.doc.strip():
+        yield _comment(fspa.doc)
+    yield f"States: {len(fspa.states)}"
+    yield "Start: 0"
+    yield " ".join([f"AP: {len(fspa.atoms)}", *(_string(atom.name) for atom in fspa.atoms)])
+    if clashes:
+        yield f"Alias: @allowed {' & '.join(f'!({one}&{other})' for one, other in clashes)}"
+        yield _comment(ALLOWED_COMMENT)
+    infinite = fspa.semantics == "infinite"
+    yield from _rabin(len(fspa.acceptance)) if infinite else ("acc-name: Buchi", "Acceptance: 1 Inf(0)")
+    marks = "trans-acc" if infinite else "state-acc"
+    yield f"properties: trans-labels explicit-labels {marks} deterministic{'' if clashes else ' complete'}"
+    if not infinite:
+        yield FINITE_HEADER
+        yield _comment(FINITE_COMMENT)
+
+
+def _rabin(pairs: int) -> tuple[str, str]:
+    """The acceptance in the format's canonical form: of pair i the sets 2i, to be left, and 2i + 1, to be met."""
+    terms = [f"Fin({2 * pair})&Inf({2 * pair + 1})" for pair in range(pairs)]
+    condition = "|".join(map("({})".format, terms)) if pairs > 1 else "".join(terms) or "f"
+    return f"acc-name: Rabin {pairs}", f"Acceptance: {2 * pairs} {condition}"
+
+
+def _body(fspa: Fspa) -> Iterator[str]:
+    labels, finite = _Labels(fspa), fspa.semantics == "finite"
+    marks: list[list[int]] = [[] for _ in fspa.edges]
+    for index, pair in enumerate(fspa.acceptance):
+        for number, edges in ((2 * index, pair.fin), (2 * index + 1, pair.inf)):
+            for place in edges:
+                marks[place].append(number)
+    leaving: list[list[str]] = [[] for _ in fspa.states]
+    for edge, numbers in zip(fspa.edges, marks, strict=True):
+        sets = f" {{{' '.join(map(str, numbers))}}}" if numbers else ""
+        leaving[edge.source].append(f"[{labels.label(edge.guard)}] {edge.target}{sets}")
+    for state in fspa.states:
+        yield f"State: {state.id} {_string(state.label.ascii)}{' {0}' if finite and state.accepting else ''}"
+        yield from leaving[state.id]
+
+
+class _Labels:
+    """Guards as expressions over the numbers of atoms, true on exactly the letters that take the edge.
+
+    They are made from the primes, on which everything else stands, too: a guard's text is for reading.
+    """
+
+    def __init__(self, fspa: Fspa) -> None:
+        from tltlc.automaton.build import allowed_letters
+
+        self._diagrams = Diagrams()
+        self._allowed = allowed_letters(self._diagrams, fspa.exclusive)
+        self._guards = Guards(self._diagrams, [str(number) for number in range(len(fspa.atoms))], self._allowed)
+        self._known: dict[tuple[Implicant, ...], str] = {}
+
+    def label(self, guard: Guard) -> str:
+        """The guard as a label, without its square brackets."""
+        if guard.primes not in self._known:
+            self._known[guard.primes] = self._label(guard.primes)
+        return self._known[guard.primes]
+
+    def _label(self, primes: Sequence[Implicant]) -> str:
+        try:
+            text = self._short(primes)
+        except (OutOfSteps, TooManyPrimes):
+            text = " | ".join(map(_product, primes))
+        if self._allowed == ACCEPT:
+            return text
+        # Exclusive atoms leave the primes free on letters that there are not.
+        return "@allowed" if text == "t" else f"@allowed & ({text})" if "|" in text else f"@allowed & {text}"
+
+    def _short(self, primes: Sequence[Implicant]) -> str:
+        """As short as a guard's text, of which it has the structure."""
+        diagrams, function = self._diagrams, REJECT
+        for prime in primes:
+            cube = ACCEPT
+            for atom, polarity in sorted(prime, reverse=True):
+                cube = diagrams.node(atom, REJECT, cube) if polarity else diagrams.node(atom, cube, REJECT)
+            function = diagrams.disjoin(function, cube)
+        text = self._guards.text(diagrams.conjoin(function, self._allowed))
+        return {"": "f", "true": "t"}.get(text, text)
+
+
+def _product(prime: Implicant) -> str:
+    return " & ".join(f"{'' if polarity else '!'}{atom}" for atom, polarity in prime) or "t"
+
+
+def _string(text: str) -> str:
+    r"""A string as in C: quotes and backslashes behind a backslash, what would not be seen as ``\uXXXX``."""
+    return f'"{"".join(map(_character, text))}"'
+
+
+def _character(character: str) -> str:
+    if character in '"\\':
+        return f"\\{character}"
+    if visible(character) == character:
+        return character
+    code = ord(character)
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def _comment(text: str) -> str:
+    """A comment that ends where it should: they nest, so that no end and no beginning may stand inside."""
+    lines = [visible(line.strip()) for line in text.strip().splitlines()]
+    return f"/* {re.sub('(?<=[*])(?=/)|(?<=/)(?=[*])', ' ', chr(10).join(lines))} */"

@@ -1,0 +1,1 @@
+"""Deterministic Rabin automata of formulas over infinite traces (semantics, section 5)."""

@@ -1,0 +1,194 @@
+"""The after-automaton: from what remains to be done to what remains after a letter.
+
+An *obligation* is a Boolean function over literals, ``X``, ``U``, ``W`` and rigid formulas, as a binary decision
+diagram (:class:`~tltlc.automaton.diagrams.Diagrams`), so that formulas that agree as such functions are one state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Final
+
+from tltlc.automaton.diagrams import FALSE, TRUE, Diagrams
+from tltlc.logic import formula as build
+from tltlc.logic.formula import Formula
+from tltlc.rabin.infinite import conjunction, disjunction
+from tltlc.rabin.letters import Letters
+
+_TEMPORAL: Final = ("U", "W", "X")
+
+
+class After:
+    """Successors of obligations; ``letters`` holds them as functions of the letter."""
+
+    def __init__(self, atoms: Sequence[str], letters: Letters[Any]) -> None:
+        self.diagrams = Diagrams()
+        self.letters = letters
+        self.formulas: list[Formula] = []
+        self.atoms = tuple(atoms)
+        self._atoms = {name: index for index, name in enumerate(atoms)}
+        self._variables: dict[Formula, int] = {}
+        self._of_formula: dict[Formula, int] = {}
+        self._obligations: dict[Formula, int] = {}
+        self._of_obligation: dict[int, int] = {FALSE: letters.leaf(FALSE), TRUE: letters.leaf(TRUE)}
+        self._both: dict[tuple[int, int], int] = {}
+        self._either: dict[tuple[int, int], int] = {}
+        self._sources: dict[int, Formula] = {FALSE: build.FALSE, TRUE: build.TRUE}
+
+    def obligation(self, formula: Formula) -> int:
+        """The obligation of a formula in normal form."""
+        found = self._obligations.get(formula)
+        if found is None:
+            found = self._obligations[formula] = self._made(formula)
+            known = self._sources.get(found)
+            if known is None or _weight(formula) < _weight(known):
+                self._sources[found] = formula
+        return found
+
+    def _made(self, formula: Formula) -> int:
+        match formula.op:
+            case "true":
+                return TRUE
+            case "false":
+                return FALSE
+            case "and" | "or":
+                combine = self.diagrams.both if formula.op == "and" else self.diagrams.either
+                result = self.obligation(formula.args[-1])
+                for each in reversed(formula.args[:-1]):
+                    result = combine(self.obligation(each), result)
+                return result
+            case "not":
+                return self.diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
+        result = self.diagrams.obligation(self._variable(formula), FALSE, TRUE)
+        # What holds whenever this does, and what it holds by, so that these make no difference beside it.
+        for weaker in _implied_by(formula):
+            result = self.diagrams.both(result, self.obligation(weaker))
+        for stronger in _that_imply(formula):
+            result = self.diagrams.either(result, self.obligation(stronger))
+        return result
+
+    def _variable(self, formula: Formula) -> int:
+        number = self._variables.get(formula)
+        if number is None:
+            number = self._variables[formula] = len(self.formulas)
+            self.formulas.append(formula)
+        return number
+
+    def after(self, obligation: int) -> int:
+        """What remains after each letter, as a function of the letter."""
+        found = self._of_obligation.get(obligation)
+        if found is not None:
+            return found
+        diagrams, letters = self.diagrams, self.letters
+        formula = self.formulas[diagrams.variable[obligation]]
+        absent, present = self.after(diagrams.absent[obligation]), self.after(diagrams.present[obligation])
+        if formula.op == "atom":
+            atom = self._atoms[formula.name]
+            true, false = letters.leaf(TRUE), letters.leaf(FALSE)
+            holds = self.both(letters.node(atom, false, true), present)
+            found = self.either(self.both(letters.node(atom, true, false), absent), holds)
+        else:
+            # Obligations grow with their temporal variables.
+            found = self.either(absent, self.both(self.of_formula(formula), present))
+        self._of_obligation[obligation] = found
+        return found
+
+    def both(self, x: int, y: int) -> int:
+        """``and`` on every letter."""
+        return self.letters.combined(self.diagrams.both, x, y, self._both)
+
+    def either(self, x: int, y: int) -> int:
+        """``or`` on every letter."""
+        return self.letters.combined(self.diagrams.either, x, y, self._either)
+
+    def of_formula(self, formula: Formula) -> int:
+        """What remains of a formula after each letter."""
+        found = self._of_formula.get(formula)
+        if found is None:
+            found = self._of_formula[formula] = self._expanded(formula)
+        return found
+
+    def _expanded(self, formula: Formula) -> int:
+        letters = self.letters
+        match formula.op:
+            case "true" | "false":
+                return letters.leaf(TRUE if formula.op == "true" else FALSE)
+            case "atom":
+                return letters.node(self._atoms[formula.name], letters.leaf(FALSE), letters.leaf(TRUE))
+            case "not":
+                return letters.node(self._atoms[formula.args[0].name], letters.leaf(TRUE), letters.leaf(FALSE))
+            case "and" | "or":
+                combine = self.both if formula.op == "and" else self.either
+                result = self.of_formula(formula.args[-1])
+                for each in reversed(formula.args[:-1]):
+                    result = combine(self.of_formula(each), result)
+                return result
+            case "X":
+                return letters.leaf(self.obligation(formula.args[0]))
+            case "U" | "W":
+                left, right = map(self.of_formula, formula.args)
+                return self.either(right, self.both(left, letters.leaf(self.obligation(formula))))
+        # Rigid.
+        return letters.leaf(self.obligation(formula))
+
+    # --- obligations as formulas ------------------------------------------------------------------
+
+    def formula(self, obligation: int) -> Formula:
+        """A formula of this obligation: the smallest one that was met, or one from its diagram."""
+        known = self._sources.get(obligation)
+        if known is None:
+            diagrams = self.diagrams
+            variable = self.formulas[diagrams.variable[obligation]]
+            absent, present = self.formula(diagrams.absent[obligation]), self.formula(diagrams.present[obligation])
+            if variable.op == "atom":
+                negative = build.not_(variable)
+                known = disjunction((conjunction((variable, present)), conjunction((negative, absent))))
+            else:
+                known = disjunction((absent, conjunction((variable, present))))
+            self._sources[obligation] = known
+        return known
+
+    def replaced(self, obligation: int, change: Callable[[Formula], int], memo: dict[int, int]) -> int:
+        """The obligation with every temporal formula replaced by the obligation that ``change`` gives for it; ``memo``
+        may be shared by calls with the same ``change``.
+        """
+        if obligation in (FALSE, TRUE):
+            return obligation
+        found = memo.get(obligation)
+        if found is None:
+            diagrams = self.diagrams
+            formula = self.formulas[diagrams.variable[obligation]]
+            absent = self.replaced(diagrams.absent[obligation], change, memo)
+            present = self.replaced(diagrams.present[obligation], change, memo)
+            if formula.op == "atom":
+                holds = self.obligation(formula)
+                fails = self.obligation(build.not_(formula))
+                found = diagrams.either(diagrams.both(holds, present), diagrams.both(fails, absent))
+            else:
+                found = diagrams.either(absent, diagrams.both(change(formula), present))
+            memo[obligation] = found
+        return found
+
+
+def _implied_by(formula: Formula) -> Iterator[Formula]:
+    """Temporal formulas that hold wherever this one does: ``F b`` where ``F(a & X F b)`` does."""
+    left, right = formula.args if formula.op in ("U", "W") else (None, None)
+    if formula.op == "W" and right is build.FALSE and left is not None and left.op in _TEMPORAL:
+        yield left
+    if formula.op == "U" and left is build.TRUE and right is not None and right.op == "and":
+        later = (part.args[0] if part.op == "X" else part for part in right.args)
+        yield from (part for part in later if part.op == "U" and part.args[0] is build.TRUE)
+
+
+def _that_imply(formula: Formula) -> Iterator[Formula]:
+    """Temporal formulas wherever which this one holds."""
+    left, right = formula.args if formula.op in ("U", "W") else (None, None)
+    if right is not None and right.op in _TEMPORAL:
+        yield right
+    if formula.op == "W" and right is build.FALSE and left is not None and left.op == "or":
+        later = (part.args[0] if part.op == "X" else part for part in left.args)
+        yield from (part for part in later if part.op == "W" and part.args[1] is build.FALSE)
+
+
+def _weight(formula: Formula) -> int:
+    return sum(1 for _ in formula.walk())

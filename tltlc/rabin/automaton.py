@@ -1,0 +1,53 @@
+"""Deterministic Rabin automata with acceptance on transitions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+from tltlc.automaton.fspa import Mark
+from tltlc.logic.formula import Formula
+from tltlc.rabin.letters import Letters
+from tltlc.record import record
+
+PairMarks = frozenset[Mark]
+"""What a letter is marked with: ``(pair, "fin")`` and ``(pair, "inf")``."""
+
+NO_MARKS: Final[PairMarks] = frozenset()
+
+
+@record
+class Rabin:
+    """A deterministic, complete automaton: ``steps[q]`` is a function from the letter to a state and marks.
+
+    A run is accepted if of some pair it meets ``fin`` finitely and ``inf`` infinitely often.  State 0 is initial; a
+    step is None on letters that ``exclusive`` rules out.  A state's label is the formula that remains.
+    """
+
+    letters: Letters[Any]
+    steps: tuple[int, ...]
+    labels: tuple[Formula, ...]
+    pairs: int
+
+    def leaves(self, state: int) -> list[tuple[int, PairMarks]]:
+        """Where letters lead from a state, and with which marks."""
+        return [leaf for leaf in self.letters.values(self.steps[state]) if leaf is not None]
+
+    def step(self, state: int, letter: Sequence[bool]) -> tuple[int, PairMarks]:
+        """The state after a letter, and its marks; a letter says of each atom whether it holds."""
+        found: tuple[int, PairMarks] = self.letters.at(self.steps[state], letter.__getitem__)
+        return found
+
+    def accepts_cycle(self, state: int, cycle: Sequence[Sequence[bool]]) -> bool:
+        """Whether a state accepts the trace that goes round a cycle of letters for ever."""
+        met: dict[int, int] = {}
+        rounds: list[set[Mark]] = []
+        while state not in met:
+            met[state] = len(rounds)
+            marks: set[Mark] = set()
+            for letter in cycle:
+                state, said = self.step(state, letter)
+                marks |= said
+            rounds.append(marks)
+        for_ever = set().union(*rounds[met[state] :])
+        return any((pair, "fin") not in for_ever and (pair, "inf") in for_ever for pair in range(self.pairs))

@@ -1,0 +1,28 @@
+"""Which parts of a specification over infinite traces contradict each other, where no trace satisfies it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from tltlc.automaton.blowup import recursion_room
+from tltlc.logic.formula import and_
+from tltlc.rabin.analysis import analysis_of_rabin
+from tltlc.rabin.construct import rabin
+from tltlc.rabin.work import OutOfWork, Work
+from tltlc.resolve.spec import Part, Spec
+
+_WORK: Final = 100_000
+"""Steps above which parts are not told apart: a warning must not take longer than the compilation."""
+
+
+def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
+    """Whether it is shown that no infinite trace satisfies all of the parts."""
+    whole = and_(*(part.formula for part in parts))
+    names = [atom.name for atom in spec.atoms]
+    try:
+        with recursion_room():
+            automaton = rabin(whole, names, spec.exclusive, _WORK)
+            return analysis_of_rabin(automaton, Work(_WORK)).verdict(0) == "violated"
+    except (OutOfWork, RecursionError):
+        return False

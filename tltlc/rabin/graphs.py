@@ -1,0 +1,61 @@
+"""Strongly connected components of graphs that are given by their successors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from typing import TypeVar
+
+Node = TypeVar("Node", bound=Hashable)
+
+
+def components(roots: Iterable[Node], successors: Callable[[Node], Iterable[Node]]) -> list[list[Node]]:
+    """The strongly connected components that can be reached, each after those it leads to (R. Tarjan 1972)."""
+    index: dict[Node, int] = {}
+    low: dict[Node, int] = {}
+    on_stack: set[Node] = set()
+    stack: list[Node] = []
+    found: list[list[Node]] = []
+    for root in roots:
+        if root in index:
+            continue
+        work = [(root, iter(successors(root)))]
+        index[root] = low[root] = len(index)
+        stack.append(root)
+        on_stack.add(root)
+        while work:
+            node, left = work[-1]
+            for target in left:
+                if target not in index:
+                    index[target] = low[target] = len(index)
+                    stack.append(target)
+                    on_stack.add(target)
+                    work.append((target, iter(successors(target))))
+                    break
+                if target in on_stack:
+                    low[node] = min(low[node], index[target])
+            else:
+                work.pop()
+                if work:
+                    above = work[-1][0]
+                    low[above] = min(low[above], low[node])
+                if low[node] == index[node]:
+                    group = []
+                    while True:
+                        member = stack.pop()
+                        on_stack.discard(member)
+                        group.append(member)
+                        if member == node:
+                            break
+                    group.reverse()
+                    found.append(group)
+    return found
+
+
+def smallest_bottom(targets: Mapping[Node, Sequence[Node]], root: Node) -> list[Node]:
+    """The smallest component that leads to no other one, the first of these that is met from the root."""
+    bottoms = []
+    for group in components([root], targets.__getitem__):
+        members = set(group)
+        if all(target in members for node in group for target in targets[node]):
+            bottoms.append(group)
+    return min(bottoms, key=len)

@@ -1,0 +1,279 @@
+"""Formulas over infinite traces, in the normal form of the construction, by constructors that simplify.
+
+Their operators are ``true false atom not and or X U W``, ``not`` before atoms alone, and the *rigid* ``G F p`` and
+``F G p``, whose truth does not change with time.  ``F p`` is ``true U p`` and ``G p`` is ``p W false``; on infinite
+traces ``N`` is ``X``, ``a R b`` is ``b W (a & b)`` and ``a M b`` is ``b U (a & b)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import lru_cache
+from itertools import chain
+
+from tltlc.logic import formula as build
+from tltlc.logic.formula import FALSE, TRUE, Formula
+from tltlc.logic.normal_form import negation_normal_form
+
+_MOST_PULLED = 6
+"""Rigid formulas below one temporal operator that are pulled out from under it: each doubles what is there."""
+
+
+def infinite_form(formula: Formula) -> Formula:
+    """The formula in normal form, equal on every infinite trace."""
+    normal = negation_normal_form(formula)
+    done: dict[Formula, Formula] = {}
+    for node in normal.bottom_up():
+        done[node] = _rebuilt(node, [done[argument] for argument in node.args])
+    return done[normal]
+
+
+def _rebuilt(node: Formula, args: list[Formula]) -> Formula:
+    match node.op:
+        case "and":
+            return conjunction(args)
+        case "or":
+            return disjunction(args)
+        case "X" | "N":
+            return next_(args[0])
+        case "F":
+            return until(TRUE, args[0])
+        case "G":
+            return weak(args[0], FALSE)
+        case "U":
+            return until(*args)
+        case "W":
+            return weak(*args)
+        case "R":
+            return weak(args[1], conjunction(args))
+        case "M":
+            return until(args[1], conjunction(args))
+        case _:
+            return node
+
+
+def negated(formula: Formula) -> Formula:
+    """The negation, in normal form."""
+    done: dict[Formula, Formula] = {}
+    for node in formula.bottom_up():
+        if node.op == "not":
+            done[node] = node.args[0]
+            continue
+        args = [done[argument] for argument in node.args]
+        match node.op:
+            case "true" | "false":
+                done[node] = FALSE if node is TRUE else TRUE
+            case "atom":
+                done[node] = build.not_(node)
+            case "and":
+                done[node] = disjunction(args)
+            case "or":
+                done[node] = conjunction(args)
+            case "X":
+                done[node] = next_(args[0])
+            case "U":
+                # Until b, a: its opposite is that b stays away as long as a goes on.
+                done[node] = weak(args[1], conjunction(args))
+            case "W":
+                done[node] = until(args[1], conjunction(args))
+            case _ if node.args[0].op in ("F", "G"):
+                inner = done[node.args[0].args[0]]
+                done[node] = always_eventually(inner) if node.op == "F" else eventually_always(inner)
+            case _:
+                # The inner half of a rigid formula, with which it is negated.
+                done[node] = node
+    return done[formula]
+
+
+# --- constructors ---------------------------------------------------------------------------------
+
+
+def conjunction(operands: Iterable[Formula]) -> Formula:
+    """``and``: constants, repeated and complementary operands, absorption."""
+    return _nary("and", operands)
+
+
+def disjunction(operands: Iterable[Formula]) -> Formula:
+    """``or``, alike."""
+    return _nary("or", operands)
+
+
+def _nary(op: str, operands: Iterable[Formula]) -> Formula:
+    neutral, absorbing = (TRUE, FALSE) if op == "and" else (FALSE, TRUE)
+    flat = dict.fromkeys(chain.from_iterable(each.args if each.op == op else (each,) for each in operands))
+    flat.pop(neutral, None)
+    if absorbing in flat or any(each.op == "not" and each.args[0] in flat for each in flat):
+        return absorbing
+    inner = "or" if op == "and" else "and"
+    kept = [each for each in flat if not (each.op == inner and any(part in flat for part in each.args))]
+    if not kept:
+        return neutral
+    return build.and_(*kept) if op == "and" else build.or_(*kept)
+
+
+def is_rigid(formula: Formula) -> bool:
+    """Whether the truth of a formula does not change with time."""
+    if formula.op in ("and", "or"):
+        return all(map(is_rigid, formula.args))
+    return formula.op in ("true", "false", "G", "F")
+
+
+def next_(operand: Formula) -> Formula:
+    """``X``."""
+    if is_rigid(operand):
+        return operand
+    return _pulled(next_, operand) or build.next_(operand)
+
+
+def until(left: Formula, right: Formula) -> Formula:
+    """``U``, and ``F`` where the left side is true."""
+    if is_rigid(right) or left is FALSE or left is right:
+        return right
+    if pulled := _pulled(until, left, right):
+        return pulled
+    if right.op == "U" and (left is TRUE or right.args[0] is left):
+        return right if right.args[0] is left else until(TRUE, right.args[1])
+    if left is TRUE and right.op == "W":
+        return disjunction((eventually_always(right.args[0]), until(TRUE, right.args[1])))
+    if left is TRUE and right.op == "or":
+        return disjunction(until(TRUE, each) for each in right.args) if _splits(right, "W") else _until(left, right)
+    if left.op == "U" and left.args[1] is right:
+        return left
+    return _until(left, right)
+
+
+def _until(left: Formula, right: Formula) -> Formula:
+    parts = right.args if right.op == "or" else (right,)
+    if (left.op == "not" and left.args[0] in parts) or build.not_(left) in parts:
+        left = TRUE
+    return build.until(left, right)
+
+
+def weak(left: Formula, right: Formula) -> Formula:
+    """``W``, and ``G`` where the right side is false."""
+    if left is TRUE or right is TRUE or left is right:
+        return TRUE if TRUE in (left, right) else right
+    if left is FALSE:
+        return right
+    if is_rigid(left):
+        return disjunction((left, right))
+    if is_rigid(right) and right is not FALSE:
+        return disjunction((right, weak(left, FALSE)))
+    if pulled := _pulled(weak, left, right):
+        return pulled
+    if right is FALSE:
+        if left.op == "W":
+            return weak(disjunction(left.args), FALSE)
+        if left.op == "U":
+            return conjunction((always_eventually(left.args[1]), weak(disjunction(left.args), FALSE)))
+        if left.op == "and" and _splits(left, "U"):
+            return conjunction(weak(each, FALSE) for each in left.args)
+    if right.op == "W" and right.args[0] is left:
+        return right
+    if left.op == "W" and left.args[1] is right:
+        return left
+    parts = right.args if right.op == "or" else (right,)
+    if (left.op == "not" and left.args[0] in parts) or build.not_(left) in parts:
+        return TRUE
+    return build.weak_until(left, right)
+
+
+def _splits(formula: Formula, op: str) -> bool:
+    """Whether an operand begins so that an outer ``F`` or ``G`` makes it rigid."""
+    return any(each.op == op for each in formula.args)
+
+
+@lru_cache(maxsize=4096)
+def always_eventually(inner: Formula) -> Formula:
+    """``G F inner``."""
+    if is_rigid(inner):
+        return inner
+    if inner.op == "or":
+        return disjunction(always_eventually(each) for each in inner.args)
+    if inner.op == "X":
+        return always_eventually(inner.args[0])
+    if inner.op == "U":
+        return always_eventually(inner.args[1])
+    if inner.op == "W":
+        return disjunction((eventually_always(inner.args[0]), always_eventually(inner.args[1])))
+    if inner.op == "and" and all(each.op == "X" for each in inner.args):
+        return always_eventually(conjunction(each.args[0] for each in inner.args))
+    if pulled := _pulled(always_eventually, inner):
+        return pulled
+    return build.always(build.eventually(inner))
+
+
+@lru_cache(maxsize=4096)
+def eventually_always(inner: Formula) -> Formula:
+    """``F G inner``."""
+    if is_rigid(inner):
+        return inner
+    if inner.op == "and":
+        return conjunction(eventually_always(each) for each in inner.args)
+    if inner.op == "X":
+        return eventually_always(inner.args[0])
+    if inner.op == "W":
+        return eventually_always(disjunction(inner.args))
+    if inner.op == "U":
+        return conjunction((always_eventually(inner.args[1]), eventually_always(disjunction(inner.args))))
+    if inner.op == "or" and all(each.op == "X" for each in inner.args):
+        return eventually_always(disjunction(each.args[0] for each in inner.args))
+    if pulled := _pulled(eventually_always, inner):
+        return pulled
+    return build.eventually(build.always(inner))
+
+
+def readable(formula: Formula) -> Formula:
+    """The formula as people write it: ``F p`` for ``true U p``, ``G p`` for ``p W false``."""
+    done: dict[Formula, Formula] = {}
+    for node in formula.bottom_up():
+        args = tuple(done[argument] for argument in node.args)
+        if node.op == "U" and args[0] is TRUE:
+            done[node] = build.eventually(args[1])
+        elif node.op == "W" and args[1] is FALSE:
+            done[node] = build.always(args[0])
+        else:
+            done[node] = build.rebuild(node, args)
+    return done[formula]
+
+
+# --- rigid formulas -------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=16384)
+def rigid_parts(formula: Formula) -> tuple[Formula, ...]:
+    """The outermost rigid ``G F p`` and ``F G p`` in a formula, in order."""
+    if formula.op in ("G", "F"):
+        return (formula,)
+    return tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, formula.args))))
+
+
+def substituted(formula: Formula, values: dict[Formula, Formula]) -> Formula:
+    """The formula with others in place of some of its parts; nothing is looked for below rigid parts."""
+    return _substituted(formula, dict(values))
+
+
+def _substituted(formula: Formula, done: dict[Formula, Formula]) -> Formula:
+    found = done.get(formula)
+    if found is None:
+        found = formula
+        if formula.args and formula.op not in ("not", "G", "F"):
+            args = [_substituted(each, done) for each in formula.args]
+            if any(new is not old for new, old in zip(args, formula.args, strict=True)):
+                found = _rebuilt(formula, args)
+        done[formula] = found
+    return found
+
+
+def substituted_below(formula: Formula, values: dict[Formula, Formula]) -> Formula:
+    """The formula with others in place of its operands."""
+    return _rebuilt(formula, [values[each] for each in formula.args])
+
+
+def _pulled(make: Callable[..., Formula], *args: Formula) -> Formula | None:
+    """``f = g & f[g := true] | f[g := false]`` for a rigid g below; None where there is none, or there are too many."""
+    found = tuple(dict.fromkeys(chain.from_iterable(map(rigid_parts, args))))
+    if not found or len(found) > _MOST_PULLED:
+        return None
+    true, false = (make(*(substituted(each, {found[0]: value}) for each in args)) for value in (TRUE, FALSE))
+    return disjunction((conjunction((found[0], true)), false))
