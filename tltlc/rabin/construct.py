@@ -21,7 +21,7 @@ from tltlc.rabin.factors import factor
 from tltlc.rabin.graphs import components
 from tltlc.rabin.infinite import infinite_form
 from tltlc.rabin.languages import equal_states
-from tltlc.rabin.letters import Letters
+from tltlc.rabin.letters import Letters, at_most_one
 from tltlc.rabin.local import IMPOSSIBLE, State, has_turns, local, merged, parts_of
 from tltlc.rabin.pairs import Piece, with_pairs
 from tltlc.rabin.shrink import shrunk
@@ -65,7 +65,7 @@ class _Construction:
         self.after = After(atoms, self.letters)
         self.initial = self.after.obligation(formula)
         self._exclusive = exclusive
-        self._allowed = self._letters_allowed()
+        self._allowed = at_most_one(self.letters, exclusive, True, False)
         self._constrained: dict[tuple[int, int], int] = {}
 
     def automaton(self) -> Rabin:
@@ -119,19 +119,6 @@ class _Construction:
         return made, {label: block[name] for label, name in entry.items() if name in block}, depth
 
     # --- letters ----------------------------------------------------------------------------------
-
-    def _letters_allowed(self) -> int:
-        """Whether a letter is allowed by ``exclusive``, as a function of it."""
-        letters = self.letters
-        yes, no = letters.leaf(True), letters.leaf(False)
-        allowed = yes
-        for group in self._exclusive:
-            none, at_most_one = yes, yes
-            for atom in sorted(set(group), reverse=True):
-                at_most_one = letters.node(atom, at_most_one, none)
-                none = letters.node(atom, none, no)
-            allowed = letters.combined(lambda one, other: one and other, allowed, at_most_one, {})
-        return allowed
 
     def _step(self, label: int) -> int:
         """The label after each letter, ``IMPOSSIBLE`` after those that are not allowed."""

@@ -7,7 +7,7 @@ from random import Random
 from typing import Final
 
 from tltlc.rabin.automaton import PairMarks, Rabin
-from tltlc.rabin.cycles import Edge, marks_of, parts
+from tltlc.rabin.cycles import Edge, Edges, marks_of, parts
 from tltlc.rabin.graphs import components
 from tltlc.rabin.skeleton import Clause, Marks
 from tltlc.rabin.work import Work
@@ -76,8 +76,8 @@ def equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
     return True
 
 
-def only_here(edges: Sequence[Edge], these: Sequence[Clause], those: Sequence[Clause], work: Work) -> bool:
-    """Whether a cycle is accepted by these clauses and not by those."""
+def only_here(edges: Sequence[Edge], these: Sequence[Clause], those: Sequence[Clause], work: Work) -> Edges | None:
+    """A strongly connected set of edges that is accepted by these clauses and not by those; None where none is."""
     for clause in these:
         stack = parts((edge for edge in edges if not edge[2] & clause.fins), work)
         while stack:
@@ -87,10 +87,10 @@ def only_here(edges: Sequence[Edge], these: Sequence[Clause], those: Sequence[Cl
                 continue
             met = next((each for each in those if each.accepts(marks)), None)
             if met is None:
-                return True
+                return part
             for mark in met.infs:
                 stack += parts((edge for edge in part if mark not in edge[2]), work)
-    return False
+    return None
 
 
 def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]]) -> list[tuple[bool, ...]]:

@@ -5,7 +5,7 @@ A node is an int; inner nodes test an atom by its index, in order.  No operation
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from typing import Any, Final, Generic, TypeVar
 
 from tltlc.rabin.work import Work
@@ -109,3 +109,16 @@ class Letters(Generic[Leaf]):
         while self.atom[x] != LEAF:
             x = self.high[x] if letter(self.atom[x]) else self.low[x]
         return self.value[x]
+
+
+def at_most_one(letters: Letters[Any], groups: Iterable[Sequence[int]], yes: Hashable, no: Hashable) -> int:
+    """``yes`` on letters in which at most one atom of each group holds, ``no`` on the others."""
+    always, never = letters.leaf(yes), letters.leaf(no)
+    allowed = always
+    for group in groups:
+        none, one = always, always
+        for atom in sorted(set(group), reverse=True):
+            one = letters.node(atom, one, none)
+            none = letters.node(atom, none, never)
+        allowed = letters.combined(lambda x, y: y if x == yes else no, allowed, one, {})
+    return allowed

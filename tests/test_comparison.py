@@ -1,0 +1,112 @@
+"""Inclusion and equivalence of automata, against the definitions of what formulas mean."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+
+from tests.logic.strategies import formulas
+from tests.rabin.runs import compiled
+from tests.reference_formulas import read_formula
+from tltlc import compile_text
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.comparison import Trace, are_equivalent, is_included, separating
+from tltlc.logic.formula import Formula
+from tltlc.logic.oracle import all_traces, holds
+from tltlc.rabin.lasso import holds_on_lasso
+from tltlc.rabin.work import OutOfWork
+
+SMALL = formulas(atoms=("a", "b"), max_leaves=4)
+SAMPLES = [frozenset(names) for names in ((), ("a",), ("b",), ("a", "b"))]
+
+
+def finite(formula: Formula | str, *exclusive: tuple[str, ...]) -> Fspa:
+    if isinstance(formula, str):
+        formula = read_formula(formula)
+    return build(spec_from_formula(formula, exclusive=exclusive))
+
+
+@settings(max_examples=150, deadline=None)
+@given(SMALL, SMALL)
+def test_over_finite_traces_a_shortest_one_tells_them_apart(one: Formula, other: Formula) -> None:
+    found = separating(finite(one), finite(other))
+    apart = [each for each in all_traces(("a", "b"), 3) if holds(one, each) and not holds(other, each)]
+    if found is None:
+        assert not apart
+        return
+    assert found.cycle == ()
+    assert holds(one, found.prefix) and not holds(other, found.prefix)
+    assert len(found.prefix) <= min((len(each) for each in apart), default=len(found.prefix))
+    assert apart or len(found.prefix) > 3
+
+
+@settings(max_examples=150, deadline=None)
+@given(SMALL, SMALL)
+def test_over_infinite_traces_a_lasso_tells_them_apart(one: Formula, other: Formula) -> None:
+    found = separating(compiled(one), compiled(other))
+    if found is not None:
+        assert holds_on_lasso(one, found.prefix, found.cycle) and not holds_on_lasso(other, found.prefix, found.cycle)
+        return
+    for before, after in ((0, 1), (0, 2), (1, 1), (1, 2), (2, 1)):
+        for samples in product(SAMPLES, repeat=before + after):
+            prefix, cycle = samples[:before], samples[before:]
+            assert not holds_on_lasso(one, prefix, cycle) or holds_on_lasso(other, prefix, cycle)
+
+
+@pytest.mark.parametrize("make", [finite, compiled])
+@pytest.mark.parametrize(
+    ("one", "other", "relation"),
+    [
+        ("F(a & X F b)", "F a & F b", "stricter"),
+        ("G(a & b)", "G b & G a", "equal"),
+        ("a U b", "a W b", "stricter"),
+        ("F a", "F b", "neither"),
+        ("a R b", "b W (a & b)", "equal"),
+    ],
+)
+def test_relations(make, one: str, other: str, relation: str) -> None:  # type: ignore[no-untyped-def]
+    first, second = make(one), make(other)
+    ways = is_included(first, second), is_included(second, first)
+    assert ways == {"equal": (True, True), "stricter": (True, False), "neither": (False, False)}[relation]
+    assert are_equivalent(first, second) == (relation == "equal")
+
+
+def test_what_only_infinite_traces_tell() -> None:
+    assert separating(compiled("F G a"), compiled("G F a")) is None
+    found = separating(compiled("G F a & G F b"), compiled("F G (a | b)"))
+    assert found is not None
+    assert {"a", "b"} <= set().union(*found.cycle) and frozenset() in found.cycle
+    assert separating(finite("F G a"), finite("G F a")) is None and are_equivalent(finite("F G a"), finite("G F a"))
+
+
+def test_atoms_of_both_count_by_their_names() -> None:
+    assert separating(finite("F b"), finite("F b & F a")) == Trace((frozenset({"b"}),))
+    assert is_included(finite("G b & G a"), finite("G a"))
+
+
+def test_traces_on_which_exclusive_atoms_hold_together_are_none() -> None:
+    both = ("a", "b")
+    assert separating(finite("F(a & b)", both), finite("false")) is None
+    assert separating(finite("F(a & b)"), finite("F c", ("a", "b"))) is None
+    assert separating(compiled("G F (a & b)"), compiled("F c", both)) is None
+    assert separating(finite("F(a & b)"), finite("F c")) is not None
+
+
+def test_automata_of_both_kinds_are_not_compared() -> None:
+    with pytest.raises(ValueError, match="`spec` is over finite traces, and `spec` over infinite ones"):
+        separating(finite("F a"), compiled("F a"))
+
+
+def test_work_is_bounded() -> None:
+    with pytest.raises(OutOfWork):
+        separating(compiled("G F a & G F b"), compiled("F G (a | b)"), work=10)
+
+
+def test_artefacts_of_sources() -> None:
+    text = "signal a: bool signal b: bool spec one { reach a then b } spec two { reach a reach b }"
+    one, two = compile_text(text)
+    assert is_included(one, two)
+    assert separating(two, one) == Trace((frozenset({"a", "b"}),))

@@ -1,0 +1,250 @@
+"""Whether two automata accept the same traces, or one of them fewer, with a trace that tells them apart.
+
+Letters are read over the atoms of both, by their names; traces on which either one's ``exclusive`` atoms hold together
+are none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, Final, TypeVar
+
+from tltlc.automaton.fspa import Fspa, Implicant
+from tltlc.rabin.cycles import Edge, Edges, marks_of
+from tltlc.rabin.graphs import components
+from tltlc.rabin.languages import only_here
+from tltlc.rabin.letters import LEAF, Letters, at_most_one
+from tltlc.rabin.skeleton import Clause, Marks
+from tltlc.rabin.work import Work
+from tltlc.record import record
+
+DEFAULT_WORK: Final = 20_000_000
+"""Steps that a comparison may take, each some microseconds."""
+
+_NO_EDGE: Final = -1
+_ALLOWED, _RULED_OUT = "allowed", "ruled out"
+
+Letter = frozenset[str]
+"""The names of the atoms that hold at a sample."""
+Both = tuple[int, int]
+"""A state of the one automaton and one of the other."""
+Node = TypeVar("Node", bound=Hashable)
+
+
+@record
+class Trace:
+    """``prefix``, and over infinite traces ``cycle`` for ever; over finite ones that is empty."""
+
+    prefix: tuple[Letter, ...]
+    cycle: tuple[Letter, ...] = ()
+
+
+def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> Trace | None:
+    """A trace that ``one`` accepts and ``other`` does not; None where there is none, and all that ``one`` accepts
+    ``other`` does.  Over finite traces it is a shortest one.
+
+    Raises:
+        ValueError: one is over finite traces, and the other over infinite ones.
+        OutOfWork: the comparison takes more than ``work`` steps.
+    """
+    if one.semantics != other.semantics:
+        raise ValueError(f"`{one.name}` is over {one.semantics} traces, and `{other.name}` over {other.semantics} ones")
+    product = _Product(one, other, Work(work))
+    return product.trace() if one.semantics == "finite" else product.lasso()
+
+
+def is_included(one: Fspa, other: Fspa) -> bool:
+    """Whether ``other`` accepts every trace that ``one`` does; errors as of :func:`separating`."""
+    return separating(one, other) is None
+
+
+def are_equivalent(one: Fspa, other: Fspa) -> bool:
+    """Whether both accept the same traces; errors as of :func:`separating`."""
+    return is_included(one, other) and is_included(other, one)
+
+
+class _Product:
+    """Two automata that are read in step."""
+
+    def __init__(self, one: Fspa, other: Fspa, work: Work) -> None:
+        self._pair, self._work = (one, other), work
+        self._names = tuple(dict.fromkeys(atom.name for fspa in self._pair for atom in fspa.atoms))
+        self._letters: Letters[Any] = Letters(work)
+        groups = [[fspa.atoms[each].name for each in group] for fspa in self._pair for group in fspa.exclusive]
+        places = [[self._names.index(name) for name in group] for group in groups]
+        # Not True and False, which the table would take for indices of edges.
+        self._allowed = at_most_one(self._letters, places, _ALLOWED, _RULED_OUT)
+        self._steps: dict[tuple[int, int], int] = {}
+        self._known: dict[Both, list[tuple[Both, Marks, Letter]]] = {}
+        # The marks of the other one come behind those of the first.
+        self._firsts = (0, 2 * len(one.acceptance))
+        self._marks = [_numbered(fspa, first) for fspa, first in zip(self._pair, self._firsts, strict=True)]
+
+    def trace(self) -> Trace | None:
+        """A shortest finite trace that the first one accepts and the other does not."""
+        one, other = self._pair
+
+        def is_wanted(both: Both) -> bool:
+            return one.states[both[0]].accepting and not other.states[both[1]].accepting
+
+        way = _way([(0, 0)], self._moves, is_wanted, at_least=1)
+        return None if way is None else Trace(way)
+
+    def lasso(self) -> Trace | None:
+        """An infinite trace that the first one accepts and the other does not."""
+        these, those = (
+            [
+                Clause(frozenset((at + 2 * pair,)), frozenset((at + 2 * pair + 1,)))
+                for pair in range(len(each.acceptance))
+            ]
+            for each, at in zip(self._pair, self._firsts, strict=True)
+        )
+        for group in components([(0, 0)], lambda both: [target for target, *_ in self._step(both)]):
+            members = set(group)
+            edges = [
+                (both, target, marks) for both in group for target, marks, _ in self._step(both) if target in members
+            ]
+            found = only_here(edges, these, those, self._work) if edges else None
+            if found:
+                return self._through(found, these, those)
+        return None
+
+    def _through(self, part: Edges, these: Sequence[Clause], those: Sequence[Clause]) -> Trace:
+        """A lasso whose cycle takes of a part what makes it accepted by the one and not by the other."""
+        there = marks_of(part)
+        clause = next(each for each in these if each.accepts(there))
+        inside = sorted(part, key=lambda edge: (edge[0], edge[1], sorted(edge[2])))
+        letter = {edge: self._letter(edge) for edge in inside}
+        begin = inside[0][0]
+        into = _way([(0, 0)], self._moves, lambda both: both == begin)
+        assert into is not None
+        cycle: list[Letter] = []
+        place = begin
+        left = set(clause.infs).union(*(each.fins & there for each in those))
+
+        def moves(both: Both) -> Iterator[tuple[Both, Letter]]:
+            yield from ((edge[1], each) for edge, each in letter.items() if edge[0] == both)
+
+        while left or place != begin or not cycle:
+            edge = next((each for each in letter if left & each[2]), None)
+            goal = begin if edge is None else edge[0]
+            way = _way([place], moves, goal.__eq__, at_least=int(edge is None and not cycle))
+            assert way is not None
+            cycle += way
+            place = goal
+            if edge is not None:
+                cycle.append(letter[edge])
+                place = edge[1]
+                left -= edge[2]
+        return Trace(into, tuple(cycle))
+
+    # --- steps ------------------------------------------------------------------------------------
+
+    def _moves(self, both: Both) -> Iterator[tuple[Both, Letter]]:
+        yield from ((target, letter) for target, _, letter in self._step(both))
+
+    def _letter(self, edge: Edge) -> Letter:
+        return next(each for target, marks, each in self._step(edge[0]) if (target, marks) == edge[1:])
+
+    def _step(self, both: Both) -> list[tuple[Both, Marks, Letter]]:
+        """Where letters lead from two states, with which marks, and a letter that does."""
+        found = self._known.get(both)
+        if found is None:
+            left, right = (self._edges_by_letter(which, state) for which, state in enumerate(both))
+            step = self._letters.combined(self._together, left, right, {})
+            step = self._letters.combined(_if_allowed, step, self._allowed, {})
+            found = self._known[both] = [
+                (*leaf, frozenset(letter)) for leaf, letter in self._with_letters(step).items() if leaf is not None
+            ]
+        return found
+
+    def _together(self, left: int, right: int) -> tuple[Both, Marks]:
+        one, other = self._pair
+        marks = self._marks[0][left] | self._marks[1][right]
+        return (one.edges[left].target, other.edges[right].target), marks
+
+    def _edges_by_letter(self, which: int, state: int) -> int:
+        """The index of the edge that a state takes, as a function of the letter."""
+        found = self._steps.get((which, state))
+        if found is None:
+            fspa, letters = self._pair[which], self._letters
+            place = [self._names.index(atom.name) for atom in fspa.atoms]
+            found = letters.leaf(_NO_EDGE)
+            for index, edge in enumerate(fspa.edges):
+                if edge.source == state:
+                    found = letters.combined(max, found, self._taken(index, edge.guard.primes, place), {})
+            self._steps[which, state] = found
+        return found
+
+    def _taken(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
+        """The index of an edge on letters that meet one of its primes, whose atoms have these places."""
+        letters = self._letters
+        yes, no = letters.leaf(index), letters.leaf(_NO_EDGE)
+        guard = no
+        for prime in primes:
+            cube = yes
+            for atom, holds in sorted(((place[atom], holds) for atom, holds in prime), reverse=True):
+                cube = letters.node(atom, no, cube) if holds else letters.node(atom, cube, no)
+            guard = letters.combined(max, guard, cube, {})
+        return guard
+
+    def _with_letters(self, step: int) -> dict[Any, list[str]]:
+        """The values of a function of the letter, each with the atoms of a letter that has it, as few as may be."""
+        letters = self._letters
+        found: dict[Any, list[str]] = {}
+        stack: list[tuple[int, list[str]]] = [(step, [])]
+        seen = set()
+        while stack:
+            node, holding = stack.pop()
+            if node in seen:
+                continue
+            seen.add(node)
+            if letters.atom[node] == LEAF:
+                found[letters.value[node]] = holding
+            else:
+                stack.append((letters.high[node], [*holding, self._names[letters.atom[node]]]))
+                stack.append((letters.low[node], holding))
+        return found
+
+
+def _if_allowed(leaf: Any, allowed: str) -> Any:
+    return leaf if allowed == _ALLOWED else None
+
+
+def _numbered(fspa: Fspa, first: int) -> list[Marks]:
+    """Of each edge the marks of its pairs: ``first`` plus an even number for ``fin``, plus an odd one for ``inf``."""
+    found: list[set[int]] = [set() for _ in fspa.edges]
+    for pair, each in enumerate(fspa.acceptance):
+        for kind, indices in enumerate((each.fin, each.inf)):
+            for index in indices:
+                found[index].add(first + 2 * pair + kind)
+    return [frozenset(marks) for marks in found]
+
+
+def _way(
+    starts: Iterable[Node],
+    moves: Callable[[Node], Iterable[tuple[Node, Letter]]],
+    is_goal: Callable[[Node], bool],
+    at_least: int = 0,
+) -> tuple[Letter, ...] | None:
+    """The letters of a shortest way to a goal, of so many at least (0 or 1); None where there is none."""
+    before: dict[tuple[Node, int], tuple[tuple[Node, int], Letter] | None] = {(each, 0): None for each in starts}
+    queue = list(before)
+    for place in queue:
+        node, moved = place
+        if moved >= at_least and is_goal(node):
+            return _letters_to(place, before)
+        for target, letter in moves(node):
+            following = (target, 1 if at_least else 0)
+            if following not in before:
+                before[following] = place, letter
+                queue.append(following)
+    return None
+
+
+def _letters_to(place: Any, before: Mapping[Any, Any]) -> tuple[Letter, ...]:
+    found: list[Letter] = []
+    while (step := before[place]) is not None:
+        place, letter = step
+        found.append(letter)
+    return tuple(reversed(found))
