@@ -16,9 +16,6 @@ from tltlc.rabin.pairs import Piece
 from tltlc.rabin.skeleton import Clause
 from tltlc.rabin.work import OutOfWork, Work
 
-_APART = 1000
-"""Between the marks of the one automaton and of the other."""
-
 
 def shrunk(letters: Letters[Any], piece: Piece, work: Work, steps: int) -> Piece:
     """The component without the states that others can take the place of, as far as so many steps of work allow."""
@@ -26,8 +23,11 @@ def shrunk(letters: Letters[Any], piece: Piece, work: Work, steps: int) -> Piece
     try:
         with work.at_most(steps):
             for state in reversed(list(piece.steps)):
+                if state not in piece.steps:
+                    # It was reached through one that is gone alone.
+                    continue
                 for other in list(piece.steps):
-                    if state == other or piece.labels[state] != piece.labels[other] or state not in piece.steps:
+                    if state == other or piece.labels[state] != piece.labels[other]:
                         continue
                     smaller = _without(letters, piece, state, other)
                     if _is_equal(letters, smaller, original, work):
@@ -64,12 +64,13 @@ def _is_equal(letters: Letters[Any], one: Piece, other: Piece, work: Work) -> bo
     """Whether each state of ``one`` accepts what the state of that name of ``other`` does, of runs that stay."""
     memo: dict[tuple[int, int], int] = {}
     known: dict[Any, list[Any]] = {}
+    right_from = 2 * one.pairs  # The first mark of the right one.
 
     def together(left: Any, right: Any) -> Any:
         if left[0][0] == "exit":
             return None
         marks = {2 * pair + (kind == "inf") for pair, kind in left[1]}
-        marks |= {_APART + 2 * pair + (kind == "inf") for pair, kind in right[1]}
+        marks |= {right_from + 2 * pair + (kind == "inf") for pair, kind in right[1]}
         return (left[0], right[0]), frozenset(marks)
 
     def step(state: Any) -> list[Any]:
@@ -81,7 +82,7 @@ def _is_equal(letters: Letters[Any], one: Piece, other: Piece, work: Work) -> bo
 
     these, those = (
         [Clause(frozenset((at + 2 * pair,)), frozenset((at + 2 * pair + 1,))) for pair in range(one.pairs)]
-        for at in (0, _APART)
+        for at in (0, right_from)
     )
     starts = [(state, state) for state in one.steps]
     for group in components(starts, lambda state: [target for target, _ in step(state)]):

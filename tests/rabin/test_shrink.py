@@ -1,0 +1,49 @@
+"""States of a component that others take the place of."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tltlc.rabin.letters import Letters
+from tltlc.rabin.pairs import Piece
+from tltlc.rabin.shrink import shrunk
+from tltlc.rabin.work import Work
+
+A, B, C = ("a",), ("b",), ("c",)
+
+
+def piece(letters: Letters[Any], *, pairs: int, marked: frozenset[Any]) -> Piece:
+    """``a`` goes to ``c`` on one letter, ``c`` to ``b``, and ``b`` to ``a``, whose loop has the marks."""
+    taken = frozenset({(0, "inf")})
+    loop = letters.node(0, letters.leaf((A, marked)), letters.leaf((C, taken)))
+    steps = {A: loop, B: letters.leaf((A, taken)), C: letters.leaf((B, taken))}
+    return Piece(dict.fromkeys(steps, 7), steps, pairs)
+
+
+@pytest.mark.parametrize("pairs", [1, 600])
+def test_what_is_reached_through_a_state_goes_with_it(pairs: int) -> None:
+    letters: Letters[Any] = Letters(Work(10**6))
+    found = shrunk(letters, piece(letters, pairs=pairs, marked=frozenset({(0, "inf")})), letters.work, 10**6)
+    assert list(found.steps) == [A]
+
+
+def test_what_counts_stays() -> None:
+    letters: Letters[Any] = Letters(Work(10**6))
+    whole = piece(letters, pairs=1, marked=frozenset())
+    found = shrunk(letters, whole, letters.work, 10**6)
+    marks = {marks for step in found.steps.values() for _, marks in letters.values(step)}
+    assert marks == {frozenset(), frozenset({(0, "inf")})}
+
+
+@pytest.mark.parametrize("pair", [0, 599])
+def test_marks_of_many_pairs_are_told_apart(pair: int) -> None:
+    letters: Letters[Any] = Letters(Work(10**6))
+    accepted, rejected = frozenset({(pair, "inf")}), frozenset({(pair, "fin")})
+    steps = {
+        A: letters.leaf((B, accepted)),
+        B: letters.node(0, letters.leaf((A, rejected)), letters.leaf((A, accepted))),
+    }
+    whole = Piece({A: 7, B: 7}, steps, 600)
+    assert set(shrunk(letters, whole, letters.work, 10**6).steps) == {A, B}
