@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from functools import partial
 from importlib.util import find_spec
@@ -80,15 +81,24 @@ def test_a_cluster_without_a_free_core_is_told(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_environments_are_shared_out_over_the_cores_that_are_really_free(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tltl_runtime.vector.cluster._AFTER_THE_FIRST_S", 1.0)
     import ray
 
+    # On a busy machine the process of an actor takes seconds to start, once its core is free.
+    monkeypatch.setattr("tltl_runtime.vector.cluster._AFTER_THE_FIRST_S", 10.0)
     cores = int(ray.cluster_resources()["CPU"])
+    _until(lambda: ray.available_resources().get("CPU", 0) >= cores)
     monkeypatch.setattr("tltl_runtime.vector.ray_workers.free_cores", lambda _: cores + 1)
     with closing(WorkerVectorEnv([Fragile] * (2 * cores + 2), "ray")) as env:
         assert len(env.worker_pids) == cores
         env.reset(seed=1)
         assert list(env.step(np.full(2 * cores + 2, GO))[1]) == [1.0] * (2 * cores + 2)
+
+
+def _until(is_so: Callable[[], bool], seconds: float = 30.0) -> None:
+    deadline = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < deadline, f"not so within {seconds:g} s"
+        time.sleep(0.1)
 
 
 def test_an_environment_that_cannot_be_made() -> None:
