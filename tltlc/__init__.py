@@ -21,11 +21,13 @@ if TYPE_CHECKING:
     from tltlc.automaton.graph import to_networkx as to_networkx
     from tltlc.diagnostics.diagnostic import Diagnostic as Diagnostic
     from tltlc.diagnostics.diagnostic import TltlError as TltlError
+    from tltlc.hoa.load import ImportOptions as ImportOptions
     from tltlc.logic.formula import Formula as Formula
     from tltlc.pipeline import CompileOptions as CompileOptions
     from tltlc.pipeline import compile_file as compile_file
     from tltlc.pipeline import compile_text as compile_text
     from tltlc.pipeline import load as load
+    from tltlc.pipeline import load_hoa as load_hoa
 
 __version__ = "0.1.0"
 
@@ -34,11 +36,13 @@ __all__ = [
     "Diagnostic",
     "Formula",
     "Fspa",
+    "ImportOptions",
     "TltlError",
     "__version__",
     "compile_file",
     "compile_text",
     "load",
+    "load_hoa",
     "to_networkx",
 ]
 
@@ -47,10 +51,12 @@ _HOMES = {
     "Diagnostic": "tltlc.diagnostics.diagnostic",
     "Formula": "tltlc.logic.formula",
     "Fspa": "tltlc.automaton.fspa",
+    "ImportOptions": "tltlc.hoa.load",
     "TltlError": "tltlc.diagnostics.diagnostic",
     "compile_file": "tltlc.pipeline",
     "compile_text": "tltlc.pipeline",
     "load": "tltlc.pipeline",
+    "load_hoa": "tltlc.pipeline",
     "to_networkx": "tltlc.automaton.graph",
 }
 

@@ -11,10 +11,9 @@ from typing import Any, Final, TypeVar
 
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.rabin.cycles import Edge, Edges, marks_of
-from tltlc.rabin.graphs import components
-from tltlc.rabin.languages import only_here
 from tltlc.rabin.letters import LEAF, Letters, at_most_one
-from tltlc.rabin.skeleton import Clause, Marks
+from tltlc.rabin.products import Both, Leaf, conditions, telling_apart
+from tltlc.rabin.skeleton import Clause, Marks, pair_marks
 from tltlc.rabin.work import Work
 from tltlc.record import record
 
@@ -26,8 +25,6 @@ _ALLOWED, _RULED_OUT = "allowed", "ruled out"
 
 Letter = frozenset[str]
 """The names of the atoms that hold at a sample."""
-Both = tuple[int, int]
-"""A state of the one automaton and one of the other."""
 Node = TypeVar("Node", bound=Hashable)
 
 
@@ -77,8 +74,10 @@ class _Product:
         self._steps: dict[tuple[int, int], int] = {}
         self._known: dict[Both, list[tuple[Both, Marks, Letter]]] = {}
         # The marks of the other one come behind those of the first.
-        self._firsts = (0, 2 * len(one.acceptance))
-        self._marks = [_numbered(fspa, first) for fspa, first in zip(self._pair, self._firsts, strict=True)]
+        firsts = (0, 2 * len(one.acceptance))
+        self._marks = [
+            [pair_marks(marks, first) for marks in fspa.marks()] for fspa, first in zip(self._pair, firsts, strict=True)
+        ]
 
     def trace(self) -> Trace | None:
         """A shortest finite trace that the first one accepts and the other does not."""
@@ -92,22 +91,13 @@ class _Product:
 
     def lasso(self) -> Trace | None:
         """An infinite trace that the first one accepts and the other does not."""
-        these, those = (
-            [
-                Clause(frozenset((at + 2 * pair,)), frozenset((at + 2 * pair + 1,)))
-                for pair in range(len(each.acceptance))
-            ]
-            for each, at in zip(self._pair, self._firsts, strict=True)
-        )
-        for group in components([(0, 0)], lambda both: [target for target, *_ in self._step(both)]):
-            members = set(group)
-            edges = [
-                (both, target, marks) for both in group for target, marks, _ in self._step(both) if target in members
-            ]
-            found = only_here(edges, these, those, self._work) if edges else None
-            if found:
-                return self._through(found, these, those)
-        return None
+        these, those = conditions(*(len(fspa.acceptance) for fspa in self._pair))
+
+        def leaves(both: Both) -> list[Leaf]:
+            return [(target, marks) for target, marks, _ in self._step(both)]
+
+        found = telling_apart([(0, 0)], leaves, [(these, those)], self._work)
+        return None if found is None else self._through(found, these, those)
 
     def _through(self, part: Edges, these: Sequence[Clause], those: Sequence[Clause]) -> Trace:
         """A lasso whose cycle takes of a part what makes it accepted by the one and not by the other."""
@@ -209,16 +199,6 @@ class _Product:
 
 def _if_allowed(leaf: Any, allowed: str) -> Any:
     return leaf if allowed == _ALLOWED else None
-
-
-def _numbered(fspa: Fspa, first: int) -> list[Marks]:
-    """Of each edge the marks of its pairs: ``first`` plus an even number for ``fin``, plus an odd one for ``inf``."""
-    found: list[set[int]] = [set() for _ in fspa.edges]
-    for pair, each in enumerate(fspa.acceptance):
-        for kind, indices in enumerate((each.fin, each.inf)):
-            for index in indices:
-                found[index].add(first + 2 * pair + kind)
-    return [frozenset(marks) for marks in found]
 
 
 def _way(

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tltlc.automaton.fspa import Fspa
+    from tltlc.hoa.load import ImportOptions
     from tltlc.resolve.spec import Program, Spec
 
 _MOST_LABELS = 4
@@ -169,6 +170,33 @@ def read_artefact(source: SourceFile) -> Fspa:
     from tltlc.backends.json import read
 
     return read(source.text, source.name)
+
+
+def load_hoa(
+    path: str | os.PathLike[str], predicates: str | os.PathLike[str], options: ImportOptions | None = None
+) -> Fspa:
+    """The automaton of a HOA file whose atomic propositions are predicates of the library ``predicates``.
+
+    Errors: :class:`TltlError` where one of the files cannot be read, the automaton is not deterministic or not
+    complete, or a proposition is no predicate.
+
+    >>> import tltlc, tempfile, pathlib
+    >>> from tltlc.backends import emit
+    >>> text = "signal a: bool  spec again { semantics infinite  require G F a }"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     library, file = pathlib.Path(folder, "again.tltl"), pathlib.Path(folder, "again.hoa")
+    ...     _ = library.write_text(text)
+    ...     _ = file.write_text(emit("hoa", *tltlc.compile_file(library))["again.hoa"])
+    ...     fspa = tltlc.load_hoa(file, library)
+    >>> len(fspa.states), len(fspa.acceptance)
+    (1, 1)
+    """
+    from tltlc.hoa.load import ImportOptions
+    from tltlc.hoa.load import load as load_automaton
+
+    source = read_source(path, max_bytes=MAX_ARTEFACT_BYTES)
+    fspa, _ = load_automaton(source, read_source(predicates), options or ImportOptions())
+    return fspa
 
 
 def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:

@@ -7,7 +7,7 @@ import re
 import sys
 from typing import TYPE_CHECKING, Final
 
-from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, reading_error
+from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, read_source, reading_error
 from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
@@ -49,6 +49,13 @@ def read(path: str) -> tuple[SourceFile, bool]:
             return _read_stream(file, path)
     except (OSError, ValueError) as error:
         raise reading_error(path, error) from None
+
+
+def read_text(path: str, max_bytes: int) -> SourceFile:
+    """The text of a file or of standard input; errors as of :func:`tltlc.files.read_source`."""
+    if path == STDIN:
+        return decode(sys.stdin.buffer.read(max_bytes + 1), STDIN_NAME, max_bytes=max_bytes)
+    return read_source(path, max_bytes=max_bytes)
 
 
 def _read_stream(stream: BinaryIO, name: str) -> tuple[SourceFile, bool]:

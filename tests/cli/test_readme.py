@@ -26,8 +26,8 @@ def test_its_message_is_the_one(tltlc, inside: Path) -> None:  # type: ignore[no
     shown = re.search(r"```\n(error.*?)```", README, re.DOTALL)
     assert shown
     before = "import stealth\nentity s1\n\n\n\n\n\nspec near_it {\n"
-    Path("patrol.tltl").write_text(before + "    keep near(s1, close = 3 s)\n}\n")
-    assert tltlc("check", "patrol.tltl").err == shown[1]
+    Path("sneak.tltl").write_text(before + "    keep near(s1, close = 3 s)\n}\n")
+    assert tltlc("check", "sneak.tltl").err == shown[1]
 
 
 def test_its_python_runs(capsys, monkeypatch) -> None:  # type: ignore[no-untyped-def]

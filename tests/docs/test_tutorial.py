@@ -19,7 +19,7 @@ ANYTHING = "…"
 LEVEL = "## Played in a level\n"
 """The heading of the section that needs the game's physics."""
 _PART = re.compile(
-    r"^```toml\n(?P<text># (?P<new>\S+)\n.*?)^```$|^```console\n(?P<session>.*?)^```$"
+    r"^```(?:toml|tltl)\n(?P<text>(?:#|//) (?P<new>\w+\.\w+)\n.*?)^```$|^```console\n(?P<session>.*?)^```$"
     r"|^<!-- in (?P<file>\S+): (?P<edit>.*?) -->$",
     re.DOTALL | re.MULTILINE,
 )
@@ -75,7 +75,8 @@ def test_it_runs(tmp_path: Path) -> None:
     shell = Shell(tmp_path)
     text = PAGE.read_text(encoding="utf-8")
     if find_spec("pybullet") is None:
-        text, _, _ = text.partition(LEVEL)
+        start = text.index(LEVEL)
+        text = text[:start] + text[text.index("\n## ", start) :]
     commands = 0
     for part in _PART.finditer(text):
         if part["new"]:

@@ -1,4 +1,5 @@
-"""The artefacts of the paper's specifications, byte for byte: ``artefacts/`` holds what each target writes.
+"""Artefacts of the paper's specifications and of one over infinite traces, byte for byte: ``artefacts/`` holds what
+each target writes.
 
 ``UPDATE_GOLDEN=1`` in the environment writes them anew: read what changed.
 """
@@ -15,7 +16,7 @@ from tltlc.backends import emit
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ARTEFACTS = Path(__file__).parent / "artefacts"
-SPECS = ("cover_and_hide", "navigation", "branching", "branching_as_printed")
+SPECS = ("cover_and_hide", "navigation", "branching", "branching_as_printed", "patrol")
 TARGETS = ("json", "dot", "hoa", "mermaid", "python")
 
 

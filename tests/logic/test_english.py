@@ -37,7 +37,10 @@ EXAMPLES = {
     "G(a -> X b) & b": "Whenever a, have b at the next step; and have b now.",
     "!F a": "Avoid a throughout.",
     "G F a": "At every step, reach a then or later.",
-    "F G a": "Reach a step from which on to keep a throughout.",
+    "F G a": "From some step on keep a throughout.",
+    "!G F a": "From some step on avoid a throughout.",
+    "F G(a & !b) & c": "From some step on (keep a throughout, and avoid b throughout), and have c now.",
+    "F(a & X G b)": "Reach a and from that step on (at the next step, keep b throughout).",
     "!b U a": "Reach a, avoiding b until then.",
     "!b W a": "Avoid b until the first step with a, or throughout if there is none.",
     "a R b": "Keep b up to and including the first step with a, or throughout if there is none.",
@@ -76,10 +79,40 @@ EXAMPLES = {
     "F a <-> G b": "Do both or neither of these: reach a, keep b throughout.",
 }
 
+ENDLESS = {
+    "G F a": "Reach a again and again.",
+    "!F G a": "Reach not a again and again.",
+    "G(F a & F !b)": "Reach a again and again, and reach not b again and again.",
+    "G F(a | b) & F G c": "Reach (a or b) again and again, and from some step on keep c throughout.",
+    "G F(a & X F b)": "Again and again, (reach a, then b).",
+    "G F G a": "Again and again, (from some step on keep a throughout).",
+    "F(c & G F a)": "Reach c and from that step on reach a again and again.",
+    "G(a -> G F b)": "Whenever a, reach b again and again.",
+    "G(a -> F b)": "Whenever a, reach b then or later.",
+    "G F a -> G F b": "Either (from some step on avoid a throughout) or reach b again and again.",
+    "F b & (F G !c | G F d)": (
+        "Reach b; and either (from some step on avoid c throughout) or reach d again and again."
+    ),
+    "N a": "Have a at the next step.",
+    "!X a": "Avoid a at the next step.",
+    "X N N a": "Have a after 3 steps.",
+    "N G a": "At the next step, keep a throughout.",
+    "G(a -> N b)": "Whenever a, have b at the next step.",
+    "a & N(a & N a)": "Keep a for 3 steps.",
+    "true": "Nothing remains to be done.",
+    "false": "The spec is violated.",
+}
+"""Over traces that never end."""
+
 
 @pytest.mark.parametrize(("formula", "sentence"), EXAMPLES.items())
 def test_known_sentences(formula: str, sentence: str) -> None:
     assert english_text(read_formula(formula)) == sentence
+
+
+@pytest.mark.parametrize(("formula", "sentence"), ENDLESS.items())
+def test_known_sentences_about_traces_that_never_end(formula: str, sentence: str) -> None:
+    assert english_text(read_formula(formula), endless=True) == sentence
 
 
 @given(formulas(max_leaves=20))

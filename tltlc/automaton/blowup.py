@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps
 from tltlc.automaton.guards import TooManyPrimes
@@ -17,6 +18,13 @@ from tltlc.resolve.spec import Part, Spec
 _RECURSION_ROOM = 10_000
 _PART_BUDGET = 2_000
 """States tried for one part alone: enough to rank the parts, small enough to answer soon."""
+
+
+class Size(NamedTuple):
+    """How large the automaton of a part alone is: a number by which parts are compared, and words."""
+
+    number: int
+    words: str
 
 
 @contextmanager
@@ -32,23 +40,32 @@ def recursion_room() -> Iterator[None]:
 
 def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     """The error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
-    sizes = {part: _size(part, spec) for part in spec.parts}
-    worst = sorted(spec.parts, key=lambda part: -sizes[part])
-    if not worst:
+    too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else "needs too much memory"
+    return blamed(spec, reason, too_large, _size)
+
+
+def blamed(spec: Spec, reason: Exception, too_large: str, size: Callable[[Part, Spec], Size | None]) -> TltlError:
+    """The error, with the parts of the spec whose own automata are largest.
+
+    ``too_large`` says what is the matter with the automaton where it is none of its guards; ``size`` is None of a part
+    that is too large alone.
+    """
+    sizes = {part: size(part, spec) for part in spec.parts}
+    alone = [part for part, found in sizes.items() if found is None]
+    worst = sorted(((part, found) for part, found in sizes.items() if found), key=lambda each: -each[1].number)
+    if not sizes:
         labels: tuple[Label, ...] = (Label(spec.source, spec.name_span),)
-    elif len(worst) == 1 or sizes[worst[0]] >= _PART_BUDGET:
-        labels = (_cause(worst[0]),)
+    elif alone or len(sizes) == 1:
+        labels = (_cause(next(iter(alone or sizes))),)
     else:
         labels = tuple(
-            Label(part.source, part.span, f"{sizes[part]} states alone; the parts multiply") for part in worst[:3]
+            Label(part.source, part.span, f"{found.words} alone; the parts multiply") for part, found in worst[:3]
         )
     if isinstance(reason, TooManyPrimes):
         verb = "has" if reason.whose == "a guard" else "have"
         title = f"{reason.whose} of `{spec.name}` {verb} more than {reason.limit} prime implicants"
         return TltlError([Diagnostic("TLT0502", title, labels, "split the spec, or name the condition as a predicate")])
-    title = f"the automaton of `{spec.name}` needs more than {state_budget} states"
-    if not isinstance(reason, OutOfStates):
-        title = f"the automaton of `{spec.name}` needs too much memory"
+    title = f"the automaton of `{spec.name}` {too_large}"
     advice = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
     return TltlError([Diagnostic("TLT0501", title, labels, advice)])
 
@@ -61,12 +78,13 @@ def _cause(part: Part) -> Label:
     return Label(bound.source, bound.span, "it is this bound")
 
 
-def _size(part: Part, spec: Spec) -> int:
-    """The states of one part's automaton, at most :data:`_PART_BUDGET`."""
+def _size(part: Part, spec: Spec) -> Size | None:
+    """The states of one part's automaton, None for :data:`_PART_BUDGET` and more."""
     normal = negation_normal_form(part.formula)
     successors = Successors([atom.name for atom in spec.atoms], Diagrams(step_limit=100_000))
     successors.number_variables(normal)
     try:
-        return len(machine(successors, successors.obligation(normal), _PART_BUDGET).transitions)
+        states = len(machine(successors, successors.obligation(normal), _PART_BUDGET).transitions)
     except (OutOfStates, OutOfSteps, RecursionError):
-        return _PART_BUDGET
+        return None
+    return Size(states, f"{states} states") if states < _PART_BUDGET else None

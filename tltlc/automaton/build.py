@@ -70,7 +70,7 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
     }
     distance = distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
     order = breadth_first(next(iter(targets)), targets, distance)
-    verdicts = _verdicts(targets, distance, accepting=lambda leaf: diagrams.high[leaf] == 1)
+    verdict = verdicts(targets, distance, accepting=lambda leaf: diagrams.high[leaf] == 1)
     labels = _labels(spec.formula, successors, minimal, order, allowed)
 
     states = tuple(
@@ -78,7 +78,7 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
             id=number,
             label=labels[leaf],
             accepting=diagrams.high[leaf] == 1,
-            verdict=verdicts[leaf],
+            verdict=verdict[leaf],
             distance=distance[leaf],
         )
         for number, leaf in enumerate(order)
@@ -198,7 +198,7 @@ def breadth_first(initial: int, targets: Mapping[int, list[int]], distance: Mapp
     return order
 
 
-def _verdicts(
+def verdicts(
     targets: Mapping[int, list[int]], distance: Mapping[int, int | None], accepting: Callable[[int], bool]
 ) -> dict[int, Verdict]:
     """``satisfied`` where no rejecting state is in reach, ``violated`` where no accepting one is."""

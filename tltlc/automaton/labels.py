@@ -86,10 +86,11 @@ class Labels:
         """The obligation without the variables that make no difference to its language, the largest tried first."""
         if obligation in (FALSE, TRUE):
             return obligation
+        obligation = self._writer.without_shorter_bounds(obligation)
         support = self._writer.support(obligation)
         for variable in sorted(support, key=self._size_of_variable, reverse=True) if len(support) > 1 else ():
             for value in (False, True):
-                smaller = self._writer.restricted(obligation, variable, value)
+                smaller = self._writer.restricted(obligation, (variable,), value)
                 if smaller != obligation and self._proved(smaller, state):
                     obligation = smaller
                     break

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.automaton.diagrams import ACCEPT, FALSE, REJECT, TRUE, Diagrams
+from tltlc.logic.bounded import counted_down
 from tltlc.logic.formula import Formula
 
 
@@ -52,7 +53,7 @@ class Successors:
         """
         for part in formula.walk():
             if part.is_temporal:
-                self._variable(part)
+                self.variable(part)
 
     def obligation(self, formula: Formula) -> int:
         """The obligation of a formula: its Boolean function over atoms and temporal subformulas."""
@@ -72,15 +73,16 @@ class Successors:
         if op == "true" or op == "false":
             return TRUE if op == "true" else FALSE
         if op == "not":
-            return diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
-        result = diagrams.obligation(self._variable(formula), FALSE, TRUE)
+            return diagrams.obligation(self.variable(formula.args[0]), TRUE, FALSE)
+        result = diagrams.obligation(self.variable(formula), FALSE, TRUE)
         for weaker in _implied_by(formula):
             result = diagrams.both(result, self.obligation(weaker))
         for stronger in _that_imply(formula):
             result = diagrams.either(result, self.obligation(stronger))
         return result
 
-    def _variable(self, formula: Formula) -> int:
+    def variable(self, formula: Formula) -> int:
+        """The obligations' variable of an atom or a temporal formula."""
         number = self._variables.get(formula)
         if number is None:
             number = self._variables[formula] = len(self.formulas)
@@ -175,12 +177,14 @@ class Successors:
 
 # What temporal formulas imply of each other, said of their obligations where it costs no new variable: `p U q | q` and
 # `p U q` are then one obligation, and so are `F(p & X F q) | F q` and `F q`.  Nests of n untils, and sequences of n
-# goals, reach n obligations and not 2^n.
+# goals, reach n obligations and not 2^n; of the bounds that `G(a -> F[0,n] b)` counts down at once, the shortest stays.
 
 
 def _implied_by(formula: Formula) -> list[Formula]:
     """Temporal subformulas that hold wherever the formula does."""
     op, args = formula.op, formula.args
+    if op in ("X", "N") and args[0].op == "and" and (shorter := counted_down(formula)):
+        return [shorter]
     if op in ("G", "R", "M") and args[-1].is_temporal:
         return [args[-1]]
     if op == "F" and args[0].op == "and":
@@ -192,6 +196,8 @@ def _implied_by(formula: Formula) -> list[Formula]:
 def _that_imply(formula: Formula) -> list[Formula]:
     """Temporal subformulas wherever which the formula holds."""
     op, args = formula.op, formula.args
+    if op in ("X", "N") and args[0].op == "or" and (shorter := counted_down(formula)):
+        return [shorter]
     if op in ("F", "U", "W") and args[-1].is_temporal:
         return [args[-1]]
     if op == "G" and args[0].op == "or":

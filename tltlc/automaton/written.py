@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection
 
 from tltlc.automaton.diagrams import FALSE, TRUE
 from tltlc.automaton.successors import Successors
 from tltlc.logic import formula as build
+from tltlc.logic.bounded import counted_down
 from tltlc.logic.formula import Formula
 
 _TERM_LIMIT = 64
@@ -51,17 +52,18 @@ class Writer:
                     stack.append(child)
         return sorted(variables)
 
-    def restricted(self, obligation: int, variable: int, value: bool) -> int:
-        """The obligation where a variable is known to hold or not."""
+    def restricted(self, obligation: int, variables: Collection[int], value: bool) -> int:
+        """The obligation where variables are known to hold, or known not to."""
         diagrams = self._successors.diagrams
+        last = max(variables)
         memo: dict[int, int] = {}
 
         def restrict(node: int) -> int:
             tested = diagrams.variable[node]
-            if tested > variable:
+            if tested > last:
                 return node
-            if tested == variable:
-                return diagrams.present[node] if value else diagrams.absent[node]
+            if tested in variables:
+                return restrict(diagrams.present[node] if value else diagrams.absent[node])
             result = memo.get(node)
             if result is None:
                 absent, present = restrict(diagrams.absent[node]), restrict(diagrams.present[node])
@@ -69,6 +71,35 @@ class Writer:
             return result
 
         return restrict(obligation)
+
+    def without_shorter_bounds(self, obligation: int) -> int:
+        """The obligation with one ``next`` of each bound that is counted down, where that one says all of them.
+
+        The obligation of a longer bound has a variable for each shorter one, by which the two are compared; labels
+        would have to find out of each of these that it can go.
+        """
+        diagrams, successors = self._successors.diagrams, self._successors
+        gone: set[int] = set()
+        for variable in self.support(obligation):
+            formula = successors.formulas[variable]
+            if formula is None or variable in gone:
+                continue
+            shorter = counted_down(formula)
+            if shorter is None:
+                continue
+            others = set()
+            while shorter is not None:
+                others.add(successors.variable(shorter))
+                shorter = counted_down(shorter)
+            smaller = self.restricted(obligation, others, formula.args[0].op == "and")
+            if smaller == obligation:
+                continue
+            # Obligations grow with their temporal variables.
+            without, with_ = (self.restricted(smaller, (variable,), value) for value in (False, True))
+            if diagrams.either(without, diagrams.both(successors.obligation(formula), with_)) == obligation:
+                obligation = smaller
+                gone |= others
+        return obligation
 
     def _placed(self, obligation: int) -> _Placed:
         """The place of the formula's first part in the source, and the formula of the obligation."""
@@ -86,6 +117,9 @@ class Writer:
         formula = self._successors.formulas[first]
         if formula is not None and self._successors.obligation(formula) == obligation:
             return self._literal(first, True)
+        smaller = self.without_shorter_bounds(obligation)
+        if smaller != obligation:
+            return self._placed(smaller)
         for absorbing, join in ((FALSE, build.and_), (TRUE, build.or_)):
             factors, rest = self._factors(obligation, absorbing)
             if factors:
@@ -109,18 +143,19 @@ class Writer:
         support = self.support(obligation)
         for variable in support if len(support) <= _MOST_FACTORED else support[:1]:
             for polarity in (True, False):
-                if self.restricted(obligation, variable, polarity != wanted) == absorbing:
+                if self.restricted(obligation, (variable,), polarity != wanted) == absorbing:
                     factors.append((variable, polarity))
-                    obligation = self.restricted(obligation, variable, polarity == wanted)
+                    obligation = self.restricted(obligation, (variable,), polarity == wanted)
                     break
         return factors, obligation
 
-    def _independent(self, literals: Iterable[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
+    def _independent(self, literals: Collection[tuple[int, bool]], absorbing: int) -> list[tuple[int, bool]]:
         """The literals of an ``and`` (``absorbing`` is FALSE) or ``or`` but those that the obligation of another says.
 
         ``F(a & X F b)`` has the obligation of its own variable and that of ``F b``: it need not be said beside it.
         """
         successors = self._successors
+        literals_there = {variable for variable, _ in literals}
         said: set[int] = set()
         for variable, polarity in literals:
             formula = successors.formulas[variable]
@@ -128,8 +163,8 @@ class Writer:
                 whole = successors.obligation(formula)
                 said.update(
                     other
-                    for other in self.support(whole)
-                    if other != variable and self.restricted(whole, other, absorbing == TRUE) == absorbing
+                    for other in literals_there.intersection(self.support(whole))
+                    if other != variable and self.restricted(whole, (other,), absorbing == TRUE) == absorbing
                 )
         return [(variable, polarity) for variable, polarity in literals if not (polarity and variable in said)]
 

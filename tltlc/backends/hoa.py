@@ -17,6 +17,7 @@ from tltlc.automaton.fspa import Fspa, Guard, Implicant
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.texts import visible
+from tltlc.rabin.skeleton import pair_marks
 
 TARGET = Target("hoa", "an omega-automaton in the Hanoi format (HOA), for model checkers", (".hoa",))
 
@@ -65,14 +66,9 @@ def _rabin(pairs: int) -> tuple[str, str]:
 
 def _body(fspa: Fspa) -> Iterator[str]:
     labels, finite = _Labels(fspa), fspa.semantics == "finite"
-    marks: list[list[int]] = [[] for _ in fspa.edges]
-    for index, pair in enumerate(fspa.acceptance):
-        for number, edges in ((2 * index, pair.fin), (2 * index + 1, pair.inf)):
-            for place in edges:
-                marks[place].append(number)
     leaving: list[list[str]] = [[] for _ in fspa.states]
-    for edge, numbers in zip(fspa.edges, marks, strict=True):
-        sets = f" {{{' '.join(map(str, numbers))}}}" if numbers else ""
+    for edge, marks in zip(fspa.edges, fspa.marks(), strict=True):
+        sets = f" {{{' '.join(map(str, sorted(pair_marks(marks))))}}}" if marks else ""
         leaving[edge.source].append(f"[{labels.label(edge.guard)}] {edge.target}{sets}")
     for state in fspa.states:
         yield f"State: {state.id} {_string(state.label.ascii)}{' {0}' if finite and state.accepting else ''}"

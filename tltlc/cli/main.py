@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from keyword import iskeyword
 from typing import Any, Final, NoReturn
 
 import click
@@ -18,6 +19,7 @@ from tltlc.cli.interrupts import interrupts_end
 
 BUILT_IN: Final = {
     "compile": "Compile the specs of a file to artefacts and monitors.",
+    "import": "Make an artefact of another tool's automaton (HOA).",
     "check": "Report what is wrong in source files, and write nothing.",
     "render": "Draw the automaton of a spec.",
     "monitor": "Run a spec over a recorded trace and judge it.",
@@ -103,7 +105,9 @@ class CommandLine(click.Group):
         if cmd_name in BUILT_IN:
             from importlib import import_module
 
-            command: click.Command = import_module(f"tltlc.cli.commands.{cmd_name}").command
+            # A reserved word of Python is no name for a module.
+            module = f"tltlc.cli.commands.{cmd_name}{'_' if iskeyword(cmd_name) else ''}"
+            command: click.Command = import_module(module).command
             return command
         for plugin in plugins.find(ENTRY_POINTS):
             if plugin.name == cmd_name:

@@ -33,7 +33,8 @@ def source_options(command: Function) -> Function:
     def with_settings(
         *args: Any, library: tuple[Path, ...], param: tuple[str, ...], state_budget: int | None, **rest: Any
     ) -> Any:
-        return command(*args, settings=Settings(library, _params(param), state_budget), **rest)
+        params = assignments(param, "NAME=VALUE", "--param")
+        return command(*args, settings=Settings(library, params, state_budget), **rest)
 
     for option in reversed(
         (
@@ -81,13 +82,14 @@ def check_libraries(libraries: tuple[Path, ...]) -> None:
             raise TltlError([Diagnostic("TLT0001", title, help="name a folder that is there")])
 
 
-def _params(written: tuple[str, ...]) -> dict[str, str]:
-    params: dict[str, str] = {}
+def assignments(written: tuple[str, ...], form: str, option: str) -> dict[str, str]:
+    """What ``NAME=VALUE`` says, of each; raises click.BadParameter where one is not of that ``form``, or set twice."""
+    found: dict[str, str] = {}
     for text in written:
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip() or not value.strip():
-            raise click.BadParameter(f"`{text}` is not of the form NAME=VALUE", param_hint="--param")
-        if name.strip() in params:
-            raise click.BadParameter(f"`{name.strip()}` is set twice", param_hint="--param")
-        params[name.strip()] = value.strip()
-    return params
+        name, equals, value = map(str.strip, text.partition("="))
+        if not equals or not name or not value:
+            raise click.BadParameter(f"`{text}` is not of the form {form}", param_hint=option)
+        if name in found:
+            raise click.BadParameter(f"`{name}` is set twice", param_hint=option)
+        found[name] = value
+    return found

@@ -25,6 +25,7 @@ class Bounded(NamedTuple):
 
 
 _known: WeakKeyDictionary[Formula, Bounded | None] = WeakKeyDictionary()
+_shorter: WeakKeyDictionary[Formula, Formula | None] = WeakKeyDictionary()
 
 
 def bounded(node: Formula) -> Bounded | None:
@@ -42,6 +43,38 @@ def bounded(node: Formula) -> Bounded | None:
         found = _ended_by(last, outer, given)
         _known[outer] = found if found and len(given) == len(_operands(found.body, outer)) else None
     return _known.get(node)
+
+
+def counted_down(node: Formula) -> Formula | None:
+    """The bound with one step less that an ``X`` or ``N`` counts down: ``X(p | X p)`` of ``X(p | X(p | X p))``.
+
+    Over ``or`` it implies the longer one, over ``and`` the longer one implies it.  None where there is no such.
+    """
+    chain: list[Formula] = []
+    inner: Formula | None = node
+    while inner is not None and inner not in _shorter:
+        chain.append(inner)
+        inner = _last_step(inner)
+    for outer in reversed(chain):
+        last = _last_step(outer)
+        _shorter[outer] = last if last is not None and _is_same(outer.args[0], last) else None
+    return _shorter[node]
+
+
+def _last_step(node: Formula) -> Formula | None:
+    """The ``X`` that an ``X`` over an ``or`` or ``and`` ends with, or the ``N`` of an ``N``."""
+    if node.op not in ("X", "N") or node.args[0].op not in ("or", "and"):
+        return None
+    last = node.args[0].args[-1]
+    return last if last.op == node.op else None
+
+
+def _is_same(body: Formula, last: Formula) -> bool:
+    """Whether ``last``, with which ``body`` ends, is over the other operands alone, or counts them down in its turn."""
+    given, inner = body.args[:-1], last.args[0]
+    if inner == (given[0] if len(given) == 1 else rebuild(body, given)):
+        return True
+    return inner.op == body.op and inner.args[:-1] == given and _shorter[last] is not None
 
 
 def with_bounds(node: Formula) -> list[Formula]:

@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 from tltlc.logic import formula as build
 from tltlc.logic.bounded import Bounded, bounded, with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.implication import complement
-from tltlc.logic.notation import ASCII, Notation, write
+from tltlc.logic.notation import ASCII, write
+from tltlc.logic.phrases import bracketed, imperative, is_literal, is_state, phrase
 from tltlc.logic.rewrite import simplify
-
-_PHRASE: Final = Notation(
-    {"not": "not "},
-    {"and": " and ", "or": " or ", "implies": " implies ", "iff": " exactly when "},
-    {},
-    space_before_bracket=True,
-    brackets_between_infix=True,
-)
 
 _PLAIN, _LIST, _SCOPED = 0, 1, 2
 """How far a clause may be misread beside another: not at all; it has inner commas; it must stand apart."""
@@ -29,20 +22,32 @@ _DEEPEST: Final = 5
 _Clause = tuple[str, int]
 
 
-def english_text(formula: Formula) -> str:
+class _How(NamedTuple):
+    """How many clauses deep may still be said, and whether each step has another one after it."""
+
+    depth: int
+    endless: bool
+
+    def deeper(self) -> _How:
+        return _How(self.depth - 1, self.endless)
+
+
+def english_text(formula: Formula, *, endless: bool = False) -> str:
     """The formula as one sentence, from a capital letter to a full stop; atoms stand in it by name.
 
     ``F(near(s1) & X F near(exit)) & G alive`` reads "Reach near(s1), then near(exit), and keep alive throughout."
     "Reach" means now or later, "then" strictly later, "throughout" from now to the end.  Sentences
     that are equal belong to formulas that are equal on all traces.  A formula with a constant that does
     not speak of the trace's end (``true U a``) is simplified first.
+
+    ``endless``: the sentence is about traces that never end, of a formula with no constants in it.
     """
-    formula = _without_constants(formula)
+    formula = formula if endless else _without_constants(formula)
     if formula is TRUE:
         return "Nothing remains to be done."
     if formula is FALSE:
         return "The spec is violated."
-    text, _ = _clause(formula, "now", _DEEPEST)
+    text, _ = _clause(formula, "now", _How(_DEEPEST, endless))
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -52,48 +57,48 @@ def _without_constants(formula: Formula) -> Formula:
     return simplify(formula) if idle else formula
 
 
-def _clause(node: Formula, when: str, depth: int) -> _Clause:
+def _clause(node: Formula, when: str, how: _How) -> _Clause:
     """What to do so that ``node`` holds at the moment that ``when`` names."""
-    if _is_state(node):
-        return f"{_keep(node, 'have', 'avoid')} {when}", _PLAIN
-    if depth == 0:
+    if is_state(node):
+        return f"{imperative(node, 'have', 'avoid')} {when}", _PLAIN
+    if how.depth == 0:
         return f"satisfy {write(node, ASCII)}", _SCOPED
     if node.op in ("and", "or"):
         found = bounded(node)
         if found is not None:
-            return _bounded(found, depth)
+            return _bounded(found, how)
     match node.op:
         case "not":
-            return _clause(_without_negation(node), when, depth)
+            return _clause(_without_negation(node), when, how)
         case "and":
-            return _together([_clause(part, when, depth - (len(node.args) > 1)) for part in _parts(node)])
+            return _together([_clause(part, when, how.deeper()) for part in _parts(node)])
         case "or":
-            return "either " + " or ".join(_inner(part, depth, when) for part in _parts(node)), _SCOPED
-        case "implies" if _is_state(node.args[0]):
-            return f"if {_phrase(node.args[0])} {when}, {_inner(node.args[1], depth, when)}", _SCOPED
+            return "either " + " or ".join(_inner(part, how, when) for part in _parts(node)), _SCOPED
+        case "implies" if is_state(node.args[0]):
+            return f"if {phrase(node.args[0])} {when}, {_inner(node.args[1], how, when)}", _SCOPED
         case "implies":
-            return _clause(build.or_(build.not_(node.args[0]), node.args[1]), when, depth)
+            return _clause(build.or_(build.not_(node.args[0]), node.args[1]), when, how)
         case "iff":
-            left, right = (_inner(part, depth, when) for part in node.args)
+            left, right = (_inner(part, how, when) for part in node.args)
             return f"do both or neither of these: {left}, {right}", _SCOPED
         case "X" | "N":
-            return _next(node, depth)
+            return _next(node, how)
         case "F":
-            return _reach(node, when, depth)
+            return _reach(node, when, how)
         case "G":
-            return _throughout(node.args[0], depth)
+            return _throughout(node.args[0], how)
         case _:
-            return _until(node, depth)
+            return _until(node, how)
 
 
 def _parts(node: Formula) -> list[Formula]:
     """The operands, with those without temporal operators gathered where the first of them stands."""
     make = build.and_ if node.op == "and" else build.or_
     operands = with_bounds(node)
-    together = [part for part in operands if _is_state(part)]
+    together = [part for part in operands if is_state(part)]
     parts: list[Formula] = []
     for part in operands:
-        if not _is_state(part):
+        if not is_state(part):
             parts.append(part)
         elif part is together[0]:
             parts.append(make(*together))
@@ -109,22 +114,24 @@ def _together(clauses: Sequence[_Clause]) -> _Clause:
     return f"{separator.join(texts[:-1])}{separator}and {texts[-1]}", _SCOPED
 
 
-def _reach(node: Formula, when: str, depth: int) -> _Clause:
+def _reach(node: Formula, when: str, how: _How) -> _Clause:
     """``F``: a goal, or a sequence of goals."""
     (body,) = node.args
-    if _is_state(body) and when != "now":
-        return f"reach {_bracketed(body)} then or later", _PLAIN
-    return f"reach {_goals(body, depth)}", _PLAIN if _is_literal(body) else _LIST
+    if _without_negation(body).op == "G":
+        return f"from some step on {_inner(body, how)}", _LIST
+    if is_state(body) and when != "now":
+        return f"reach {bracketed(body)} then or later", _PLAIN
+    return f"reach {_goals(body, how)}", _PLAIN if is_literal(body) else _LIST
 
 
-def _goals(body: Formula, depth: int) -> str:
+def _goals(body: Formula, how: _How) -> str:
     """What ``F body`` reaches, one goal after the other."""
     steps: list[str] = []
     while True:
         link, rest = _next_goal(body)
         if rest is None:
-            return "".join(steps) + _goal(body, depth)
-        steps.append(_phrase(build.and_(*(part for part in body.args if _is_state(part)))) + link)
+            return "".join(steps) + _goal(body, how)
+        steps.append(phrase(build.and_(*(part for part in body.args if is_state(part)))) + link)
         (body,) = rest.args
 
 
@@ -132,7 +139,7 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
     """What links ``p & X F q`` or ``p & F q`` to its next goal, and that goal's ``F``; None where none follows."""
     if body.op != "and":
         return "", None
-    temporal = [part for part in body.args if not _is_state(part)]
+    temporal = [part for part in body.args if not is_state(part)]
     if len(temporal) != 1 or len(body.args) == 1:
         return "", None
     (rest,) = temporal
@@ -141,34 +148,39 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
     return (", then or at the same time ", rest) if rest.op == "F" else ("", None)
 
 
-def _goal(body: Formula, depth: int) -> str:
+def _goal(body: Formula, how: _How) -> str:
     """The last goal of a sequence: a choice, or what holds there with what it asks for from there on."""
-    if _is_state(body):
-        return _phrase(body)
-    if depth > 1 and body.op == "or":
-        ways = (_phrase(part) if _is_literal(part) else f"({_goals(part, depth - 1)})" for part in _parts(body))
+    if is_state(body):
+        return phrase(body)
+    if how.depth > 1 and body.op == "or":
+        ways = (phrase(part) if is_literal(part) else f"({_goals(part, how.deeper())})" for part in _parts(body))
         return "either " + " or ".join(ways)
     if body.op == "and":
-        states = [part for part in body.args if _is_state(part)]
-        others = [part for part in body.args if not _is_state(part)]
+        states = [part for part in body.args if is_state(part)]
+        others = [part for part in body.args if not is_state(part)]
         if states:
-            goal, rest = _bracketed(build.and_(*states)), build.and_(*others)
+            goal, rest = bracketed(build.and_(*states)), build.and_(*others)
             if _is_about_end(rest):
-                return f"{goal} at a {_step(rest, depth)}"
-            return f"{goal} and from that step on {_inner(rest, depth)}"
-    return f"a {_step(body, depth)}"
+                return f"{goal} at a {_step(rest, how)}"
+            return f"{goal} and from that step on {_inner(rest, how)}"
+    return f"a {_step(body, how)}"
 
 
-def _throughout(body: Formula, depth: int) -> _Clause:
+def _throughout(body: Formula, how: _How) -> _Clause:
     """``G``: what to keep, what to avoid, what to do whenever something holds."""
     if body.op == "and" and not all(part.op == "atom" for part in body.args):
-        return _together([_throughout(part, depth) for part in _kept(body)])
-    if _is_state(body):
-        return _keep(body, "keep", "avoid") + " throughout", _PLAIN
+        return _together([_throughout(part, how) for part in _kept(body)])
+    if is_state(body):
+        return imperative(body, "keep", "avoid") + " throughout", _PLAIN
+    if how.endless and _without_negation(body).op == "F":
+        (goal,) = _without_negation(body).args
+        if is_state(goal):
+            return f"reach {bracketed(goal)} again and again", _PLAIN
+        return f"again and again, {_inner(body, how)}", _SCOPED
     left, right = _implication(body)
     if left is not None and right is not None:
-        return f"whenever {_phrase(left)}, {_inner(right, depth)}", _SCOPED
-    return f"at every step, {_inner(body, depth)}", _SCOPED
+        return f"whenever {phrase(left)}, {_inner(right, how)}", _SCOPED
+    return f"at every step, {_inner(body, how)}", _SCOPED
 
 
 def _kept(body: Formula) -> list[Formula]:
@@ -181,85 +193,73 @@ def _kept(body: Formula) -> list[Formula]:
 
 def _implication(body: Formula) -> tuple[Formula | None, Formula | None]:
     """``body`` as "if the first, which is not temporal, then the second"; None where it has no such form."""
-    if body.op == "implies" and _is_state(body.args[0]):
+    if body.op == "implies" and is_state(body.args[0]):
         return body.args[0], body.args[1]
     if body.op == "or":
-        negated = [_negated(part) for part in body.args if _is_state(part)]
+        negated = [_negated(part) for part in body.args if is_state(part)]
         if negated:
-            return build.and_(*negated), build.or_(*(part for part in body.args if not _is_state(part)))
+            return build.and_(*negated), build.or_(*(part for part in body.args if not is_state(part)))
     return None, None
 
 
-def _until(node: Formula, depth: int) -> _Clause:
+def _until(node: Formula, how: _How) -> _Clause:
     """``U W R M``."""
     left, right = node.args
     if node.op in ("U", "M"):
         goal, held = (right, left) if node.op == "U" else (left, right)
-        target = f"reach {_bracketed(goal)}" if _is_state(goal) else f"reach a {_step(goal, depth)}"
+        target = f"reach {bracketed(goal)}" if is_state(goal) else f"reach a {_step(goal, how)}"
         until = "until then" if node.op == "U" else "up to and including that step"
-        if _is_state(held):
-            return f"{target}, {_keep(held, 'keeping', 'avoiding')} {until}", _SCOPED
-        return f"{target}, and at every step {until} {_inner(held, depth)}", _SCOPED
+        if is_state(held):
+            return f"{target}, {imperative(held, 'keeping', 'avoiding')} {until}", _SCOPED
+        return f"{target}, and at every step {until} {_inner(held, how)}", _SCOPED
     stop, held = (right, left) if node.op == "W" else (left, right)
     until = "until the first" if node.op == "W" else "up to and including the first"
-    keep = _keep(held, "keep", "avoid") if _is_state(held) else f"at every step, {_inner(held, depth)},"
-    return f"{keep} {until} {_step(stop, depth)}, or throughout if there is none", _SCOPED
+    keep = imperative(held, "keep", "avoid") if is_state(held) else f"at every step, {_inner(held, how)},"
+    return f"{keep} {until} {_step(stop, how)}, or throughout if there is none", _SCOPED
 
 
-def _next(node: Formula, depth: int) -> _Clause:
+def _next(node: Formula, how: _How) -> _Clause:
     """``X`` and ``N``, alone or several in a row."""
-    op, count, body = node.op, 0, node
-    while body.op == op:
+    ops = ("X", "N") if how.endless else (node.op,)
+    count, body = 0, node
+    while body.op in ops:
         body, count = body.args[0], count + 1
-    if op == "X" and body is TRUE:
+    if node.op == "X" and body is TRUE:
         return f"go on for {count} more step{'s' * (count > 1)}", _PLAIN
-    if op == "N" and body is FALSE:
+    if node.op == "N" and body is FALSE:
         return "be at the last step" if count == 1 else f"be at one of the last {count} steps", _PLAIN
     moment = "at the next step" if count == 1 else f"after {count} steps"
-    if op == "N":
+    if "X" not in ops:
         moment += ", if there is one" if count == 1 else ", if there are that many"
-    if _is_state(body):
-        return f"{_keep(body, 'have', 'avoid')} {moment}", _PLAIN if op == "X" else _LIST
-    return f"{moment}, {_inner(body, depth)}", _SCOPED
+    if is_state(body):
+        return f"{imperative(body, 'have', 'avoid')} {moment}", _PLAIN if "X" in ops else _LIST
+    return f"{moment}, {_inner(body, how)}", _SCOPED
 
 
-def _bounded(found: Bounded, depth: int) -> _Clause:
+def _bounded(found: Bounded, how: _How) -> _Clause:
     """``p | X(p | X p)`` and ``p & N(p & N p)``, the expansions of bounded operators."""
     steps, body = found.steps, found.body
     if found.op == "F":
         within = f"within {steps} step{'s' * (steps > 1)}"
-        if _is_state(body):
-            return f"reach {_bracketed(body)} {within}", _PLAIN
-        return f"reach {within} a {_step(body, depth)}", _SCOPED
-    if _is_state(body):
-        return f"{_keep(body, 'keep', 'avoid')} for {steps + 1} steps", _PLAIN
-    return f"at each of {steps + 1} steps from here on, {_inner(body, depth)}", _SCOPED
+        if is_state(body):
+            return f"reach {bracketed(body)} {within}", _PLAIN
+        return f"reach {within} a {_step(body, how)}", _SCOPED
+    if is_state(body):
+        return f"{imperative(body, 'keep', 'avoid')} for {steps + 1} steps", _PLAIN
+    return f"at each of {steps + 1} steps from here on, {_inner(body, how)}", _SCOPED
 
 
-def _step(node: Formula, depth: int) -> str:
+def _step(node: Formula, how: _How) -> str:
     """A noun for a moment at which ``node`` holds."""
     if _is_about_end(node):
         return f"step that is {'not ' if node.op == 'X' else ''}the last"
-    return f"step with {_bracketed(node)}" if _is_state(node) else f"step from which on to {_inner(node, depth)}"
+    return f"step with {bracketed(node)}" if is_state(node) else f"step from which on to {_inner(node, how)}"
 
 
-def _inner(node: Formula, depth: int, when: str = "at that step") -> str:
+def _inner(node: Formula, how: _How, when: str = "at that step") -> str:
     """The clause as part of another, in brackets unless it is plain."""
-    text, rank = _clause(node, when, depth - 1)
+    text, rank = _clause(node, when, how.deeper())
     return text if rank == _PLAIN else f"({text})"
-
-
-def _keep(node: Formula, keep: str, avoid: str) -> str:
-    return f"{avoid} {_bracketed(node.args[0])}" if node.op == "not" else f"{keep} {_bracketed(node)}"
-
-
-def _phrase(state: Formula) -> str:
-    return write(state, _PHRASE)
-
-
-def _bracketed(state: Formula) -> str:
-    """A formula without temporal operators as a phrase that reads as one thing."""
-    return _phrase(state) if _is_literal(state) else f"({_phrase(state)})"
 
 
 def _without_negation(node: Formula) -> Formula:
@@ -277,15 +277,6 @@ def _negated(node: Formula) -> Formula:
     return complement(node, depth=1)
 
 
-def _is_state(node: Formula) -> bool:
-    """Whether the formula has no temporal operator."""
-    return not any(part.is_temporal for part in node.walk())
-
-
 def _is_about_end(node: Formula) -> bool:
     """Whether the formula is ``X true`` or ``N false``."""
     return (node.op, *node.args) in (("X", TRUE), ("N", FALSE))
-
-
-def _is_literal(node: Formula) -> bool:
-    return not node.args or (node.op == "not" and not node.args[0].args)

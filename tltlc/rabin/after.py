@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from tltlc.automaton.diagrams import FALSE, TRUE, Diagrams
 from tltlc.logic import formula as build
+from tltlc.logic.bounded import counted_down
 from tltlc.logic.formula import Formula
 from tltlc.rabin.infinite import conjunction, disjunction
 from tltlc.rabin.letters import Letters
@@ -19,7 +20,12 @@ _TEMPORAL: Final = ("U", "W", "X")
 
 
 class After:
-    """Successors of obligations; ``letters`` holds them as functions of the letter."""
+    """Successors of obligations over ``atoms``; ``letters`` holds them as functions of the letter.
+
+    ``formulas[v]`` is the formula of the obligations' variable ``v``: an atom, ``X``, ``U``, ``W`` or a rigid one.
+    Where an obligation becomes too large, all that makes one raises :class:`~tltlc.automaton.diagrams.OutOfSteps`;
+    what makes functions of letters raises :class:`~tltlc.rabin.work.OutOfWork`.
+    """
 
     def __init__(self, atoms: Sequence[str], letters: Letters[Any]) -> None:
         self.diagrams = Diagrams()
@@ -60,7 +66,7 @@ class After:
             case "not":
                 return self.diagrams.obligation(self._variable(formula.args[0]), TRUE, FALSE)
         result = self.diagrams.obligation(self._variable(formula), FALSE, TRUE)
-        # What holds whenever this does, and what it holds by, so that these make no difference beside it.
+        # So that `p U q | q` and `p U q` are one obligation, as over finite traces (`automaton/successors.py`).
         for weaker in _implied_by(formula):
             result = self.diagrams.both(result, self.obligation(weaker))
         for stronger in _that_imply(formula):
@@ -171,7 +177,9 @@ class After:
 
 
 def _implied_by(formula: Formula) -> Iterator[Formula]:
-    """Temporal formulas that hold wherever this one does: ``F b`` where ``F(a & X F b)`` does."""
+    """Temporal subformulas that hold wherever the formula does: ``F b`` where ``F(a & X F b)`` does."""
+    if formula.op == "X" and formula.args[0].op == "and" and (shorter := counted_down(formula)):
+        yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)
     if formula.op == "W" and right is build.FALSE and left is not None and left.op in _TEMPORAL:
         yield left
@@ -181,7 +189,9 @@ def _implied_by(formula: Formula) -> Iterator[Formula]:
 
 
 def _that_imply(formula: Formula) -> Iterator[Formula]:
-    """Temporal formulas wherever which this one holds."""
+    """Temporal subformulas wherever which the formula holds: it does where ``G b`` does, if it is ``a U G b``."""
+    if formula.op == "X" and formula.args[0].op == "or" and (shorter := counted_down(formula)):
+        yield shorter
     left, right = formula.args if formula.op in ("U", "W") else (None, None)
     if right is not None and right.op in _TEMPORAL:
         yield right

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from tltlc.automaton.fspa import Fspa, Mark, Verdict
+from tltlc.automaton.fspa import Fspa, Verdict
 from tltlc.rabin.cycles import Edge, Edges, accepting_parts, parts, rejecting_parts
-from tltlc.rabin.skeleton import Clause
+from tltlc.rabin.skeleton import pair_clauses, pair_marks
 from tltlc.rabin.work import Work
 from tltlc.resolve.spec import Judge
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
     """The analysis of what the construction makes."""
     edges = [
-        (state, target, _numbers(marks))
+        (state, target, pair_marks(marks))
         for state in range(len(automaton.steps))
         for target, marks in automaton.leaves(state)
     ]
@@ -27,20 +27,22 @@ def analysis_of_rabin(automaton: Rabin, work: Work) -> Analysis:
 
 def analysis_of_fspa(fspa: Fspa, work: Work) -> Analysis:
     """The analysis of an automaton by its edges and pairs, whose indices are in range, and by nothing else of it."""
-    edges = [(edge.source, edge.target, _numbers(marks)) for edge, marks in zip(fspa.edges, fspa.marks(), strict=True)]
+    edges = [
+        (edge.source, edge.target, pair_marks(marks)) for edge, marks in zip(fspa.edges, fspa.marks(), strict=True)
+    ]
     return Analysis(len(fspa.states), edges, len(fspa.acceptance), work)
 
 
 class Analysis:
     """``targets`` are the successors of each state, ``goals`` the states on an accepted cycle (semantics, section 5).
 
-    State 0 is initial.  An edge with the mark ``2 * pair`` is in ``fin`` of a pair, one with ``2 * pair + 1`` in
-    ``inf``.  Raises :class:`~tltlc.rabin.work.OutOfWork`, in all that it does.
+    State 0 is initial; marks are as :func:`~tltlc.rabin.skeleton.pair_marks` numbers them.  Raises
+    :class:`~tltlc.rabin.work.OutOfWork`, in all that it does.
     """
 
     def __init__(self, states: int, edges: Sequence[Edge], pairs: int, work: Work) -> None:
         self._work = work
-        self._clauses = [Clause(frozenset((2 * pair,)), frozenset((2 * pair + 1,))) for pair in range(pairs)]
+        self._clauses = pair_clauses(pairs)
         self.targets: dict[int, list[int]] = {state: [] for state in range(states)}
         for source, target in dict.fromkeys((source, target) for source, target, _ in edges):
             self.targets[source].append(target)
@@ -92,10 +94,6 @@ class Analysis:
                     found.add(source)
                     stack.append(source)
         return found
-
-
-def _numbers(marks: Iterable[Mark]) -> frozenset[int]:
-    return frozenset(2 * pair + (kind == "inf") for pair, kind in marks)
 
 
 def _states(parts_: Iterable[Edges]) -> set[int]:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltlc.automaton.fspa import Mark
-from tltlc.logic.formula import Formula
 from tltlc.rabin.letters import Letters
 from tltlc.record import record
 
@@ -21,12 +20,13 @@ class Rabin:
     """A deterministic, complete automaton: ``steps[q]`` is a function from the letter to a state and marks.
 
     A run is accepted if of some pair it meets ``fin`` finitely and ``inf`` infinitely often.  State 0 is initial; a
-    step is None on letters that ``exclusive`` rules out.  A state's label is the formula that remains.
+    step is None on letters that ``exclusive`` rules out.  A state's label is the formula that remains, or what is known
+    of it instead.
     """
 
     letters: Letters[Any]
     steps: tuple[int, ...]
-    labels: tuple[Formula, ...]
+    labels: tuple[Any, ...]
     pairs: int
 
     def leaves(self, state: int) -> list[tuple[int, PairMarks]]:

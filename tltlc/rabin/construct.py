@@ -15,7 +15,7 @@ from typing import Any, Final
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.logic.formula import Formula
 from tltlc.rabin.after import After
-from tltlc.rabin.automaton import NO_MARKS, PairMarks, Rabin
+from tltlc.rabin.automaton import NO_MARKS, Rabin
 from tltlc.rabin.delta2 import delta_2, delta_2_dually
 from tltlc.rabin.factors import factor
 from tltlc.rabin.graphs import components
@@ -24,8 +24,10 @@ from tltlc.rabin.languages import equal_states
 from tltlc.rabin.letters import Letters, at_most_one
 from tltlc.rabin.local import IMPOSSIBLE, State, has_turns, local, merged, parts_of
 from tltlc.rabin.pairs import Piece, with_pairs
+from tltlc.rabin.pieces import Place, joined
 from tltlc.rabin.shrink import shrunk
 from tltlc.rabin.work import OutOfWork, Work
+from tltlc.record import replace
 
 DEFAULT_WORK: Final = 20_000_000
 """Steps in all; a step takes about a microsecond."""
@@ -37,9 +39,6 @@ _FOR_SHRINKING: Final = 400_000
 
 Labels = dict[int, int]
 """By labels, which are obligations of :class:`~tltlc.rabin.after.After`."""
-
-Place = tuple[int, State]
-"""A state of the component that has this number."""
 
 
 def rabin(
@@ -111,12 +110,9 @@ class _Construction:
             depth.update(dict.fromkeys(group, number))
             for state, label in piece.labels.items():
                 entry.setdefault(label, (number, state))
-        steps = self._joined(pieces, entry)
-        labels = {
-            (number, state): label for number, piece in enumerate(pieces) for state, label in piece.labels.items()
-        }
-        made, block = self._merged(steps, labels, entry[initial], max(piece.pairs for piece in pieces))
-        return made, {label: block[name] for label, name in entry.items() if name in block}, depth
+        whole, states = joined(self.letters, pieces, entry, entry[initial])
+        made = replace(whole, labels=tuple(map(self.after.formula, whole.labels)))
+        return made, {label: states[place] for label, place in entry.items() if place in states}, depth
 
     # --- letters ----------------------------------------------------------------------------------
 
@@ -181,57 +177,6 @@ class _Construction:
 
     def _size(self, label: int) -> int:
         return sum(1 for _ in self.after.formula(label).walk())
-
-    # --- the whole --------------------------------------------------------------------------------
-
-    def _joined(self, pieces: Sequence[Piece], entry: dict[int, Place]) -> dict[Place, int]:
-        """The steps of all components, with their exits leading to where the next ones are entered."""
-        steps: dict[Place, int] = {}
-        for number, piece in enumerate(pieces):
-
-            def leaf(each: tuple[State, PairMarks], number: int = number) -> tuple[Place, PairMarks] | None:
-                target, marks = each
-                if target[0] != "exit":
-                    return (number, target), marks
-                return None if target[1] == IMPOSSIBLE else (entry[target[1]], NO_MARKS)
-
-            memo: dict[int, int] = {}
-            for state, step in piece.steps.items():
-                steps[number, state] = self.letters.mapped(leaf, step, memo)
-        return steps
-
-    def _merged(
-        self, steps: dict[Place, int], labels: dict[Place, int], initial: Place, pairs: int
-    ) -> tuple[Rabin, dict[Place, int]]:
-        """What can be reached, where states that targets and marks do not tell apart are one; and their numbers."""
-        reached, seen = [initial], {initial}
-        for state in reached:
-            for leaf in self.letters.values(steps[state]):
-                if leaf is not None and leaf[0] not in seen:
-                    seen.add(leaf[0])
-                    reached.append(leaf[0])
-        block = dict.fromkeys(reached, 0)
-        count = 0
-        while count < len(set(block.values())):
-            count = len(set(block.values()))
-            memo: dict[int, int] = {}
-            numbers: dict[tuple[int, int], int] = {}
-            signatures = [(block[state], self._read(steps[state], block, memo)) for state in reached]
-            block = {
-                state: numbers.setdefault(signature, len(numbers))
-                for state, signature in zip(reached, signatures, strict=True)
-            }
-        first: dict[int, Place] = {}
-        for state in reached:
-            first.setdefault(block[state], state)
-        memo = {}
-        final = tuple(self._read(steps[state], block, memo) for state in first.values())
-        formulas = tuple(self.after.formula(labels[state]) for state in first.values())
-        return Rabin(self.letters, final, formulas, pairs), block
-
-    def _read(self, step: int, block: dict[Place, int], memo: dict[int, int]) -> int:
-        """A step with targets read as their numbers."""
-        return self.letters.mapped(lambda leaf: leaf and (block[leaf[0]], leaf[1]), step, memo)
 
 
 def _picked(chosen: Sequence[int]) -> Callable[[State], State]:

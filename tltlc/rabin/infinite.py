@@ -223,10 +223,13 @@ def eventually_always(inner: Formula) -> Formula:
     return build.eventually(build.always(inner))
 
 
-def readable(formula: Formula) -> Formula:
-    """The formula as people write it: ``F p`` for ``true U p``, ``G p`` for ``p W false``."""
-    done: dict[Formula, Formula] = {}
-    for node in formula.bottom_up():
+def readable(formula: Formula, known: dict[Formula, Formula] | None = None) -> Formula:
+    """The formula as people write it: ``F p`` for ``true U p``, ``G p`` for ``p W false``.
+
+    ``known`` remembers what each part is, for further calls with formulas that share parts.
+    """
+    done: dict[Formula, Formula] = {} if known is None else known
+    for node in formula.bottom_up(known=done):
         args = tuple(done[argument] for argument in node.args)
         if node.op == "U" and args[0] is TRUE:
             done[node] = build.eventually(args[1])

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from random import Random
 from typing import Final
 
-from tltlc.rabin.automaton import PairMarks, Rabin
-from tltlc.rabin.cycles import Edge, Edges, marks_of, parts
-from tltlc.rabin.graphs import components
-from tltlc.rabin.skeleton import Clause, Marks
+from tltlc.rabin.automaton import Rabin
+from tltlc.rabin.products import Both, Leaf, conditions, side_by_side, telling_apart
 from tltlc.rabin.work import Work
 
 _WORDS: Final = 48
-"""Lassos by which states are told apart before they are compared."""
+"""Cycles by which states are told apart before they are compared."""
 
 
 def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[int]:
@@ -25,76 +23,34 @@ def equal_states(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]
     groups: dict[tuple[bool, ...], list[int]] = {}
     for state, signature in enumerate(signatures):
         group = groups.setdefault(signature, [])
-        same = next((other for other in group if equal(automaton, state, other, work)), None)
+        same = next((other for other in group if _equal(automaton, state, other, work)), None)
         if same is None:
             group.append(state)
         found.append(state if same is None else same)
     return found
 
 
-def equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
+def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
     """Whether two states have the same language: no cycle of their product is accepted by one and not by the other.
 
     Raises OutOfWork.
     """
-    letters = automaton.letters
-    memo: dict[tuple[int, int], int] = {}
-    steps: dict[tuple[int, int], int] = {}
+    steps, pairs = automaton.steps, automaton.pairs
+    together = side_by_side(automaton.letters, pairs, lambda leaf: leaf is None)
 
-    right_from = 2 * automaton.pairs  # The first mark of the right one.
-
-    def together(
-        left: tuple[int, PairMarks] | None, right: tuple[int, PairMarks] | None
-    ) -> tuple[tuple[int, int], Marks] | None:
-        # Letters that there are not are so for both.
-        if left is None or right is None:
-            return None
-        marks = {2 * pair + (kind == "inf") for pair, kind in left[1]}
-        marks |= {right_from + 2 * pair + (kind == "inf") for pair, kind in right[1]}
-        return (left[0], right[0]), frozenset(marks)
-
-    def step(state: tuple[int, int]) -> list[tuple[tuple[int, int], Marks]]:
-        if state not in steps:
-            steps[state] = letters.combined(together, automaton.steps[state[0]], automaton.steps[state[1]], memo)
-            work.spend(5)
-        return [leaf for leaf in letters.values(steps[state]) if leaf is not None]
-
-    left, right = (
-        [Clause(frozenset((at + 2 * pair,)), frozenset((at + 2 * pair + 1,))) for pair in range(automaton.pairs)]
-        for at in (0, right_from)
-    )
-
-    def following(state: tuple[int, int]) -> list[tuple[int, int]]:
+    def leaves(both: Both) -> list[Leaf]:
+        found = together(steps[both[0]], steps[both[1]])
+        work.spend(5)
         # Where both are the same state, no word tells them apart.
-        return [target for target, _ in step(state) if target[0] != target[1]]
+        return [leaf for leaf in found if leaf[0][0] != leaf[0][1]]
 
-    for group in components([(one, other)], following):
-        members = set(group)
-        edges = [(state, target, marks) for state in group for target, marks in step(state) if target in members]
-        if edges and (only_here(edges, left, right, work) or only_here(edges, right, left, work)):
-            return False
-    return True
-
-
-def only_here(edges: Sequence[Edge], these: Sequence[Clause], those: Sequence[Clause], work: Work) -> Edges | None:
-    """A strongly connected set of edges that is accepted by these clauses and not by those; None where none is."""
-    for clause in these:
-        stack = parts((edge for edge in edges if not edge[2] & clause.fins), work)
-        while stack:
-            part = stack.pop()
-            marks = marks_of(part)
-            if not clause.infs <= marks:
-                continue
-            met = next((each for each in those if each.accepts(marks)), None)
-            if met is None:
-                return part
-            for mark in met.infs:
-                stack += parts((edge for edge in part if mark not in edge[2]), work)
-    return None
+    these, those = conditions(pairs, pairs)
+    return telling_apart([(one, other)], leaves, [(these, those), (those, these)], work) is None
 
 
 def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]]) -> list[tuple[bool, ...]]:
     """Of each state which of some random cycles it accepts."""
+    # Always the same ones, so that the same formula gives the same automaton.
     chance = Random(1)
 
     def letter() -> list[bool]:

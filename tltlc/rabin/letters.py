@@ -104,6 +104,22 @@ class Letters(Generic[Leaf]):
                     stack.append(child)
         return found
 
+    def letter_with(self, x: int, value: Leaf) -> frozenset[int]:
+        """The atoms that hold in some letter on which a function has a value; ValueError where it never has it."""
+        stack: list[tuple[int, tuple[int, ...]]] = [(x, ())]
+        seen = {x}
+        while stack:
+            n, holding = stack.pop()
+            if self.atom[n] == LEAF:
+                if self.value[n] == value:
+                    return frozenset(holding)
+                continue
+            for child, there in ((self.high[n], (*holding, self.atom[n])), (self.low[n], holding)):
+                if child not in seen:
+                    seen.add(child)
+                    stack.append((child, there))
+        raise ValueError(f"no letter has the value {value!r}")
+
     def at(self, x: int, letter: Callable[[int], bool]) -> Any:
         """The value on a letter, which says of an atom's index whether it holds."""
         while self.atom[x] != LEAF:

@@ -37,7 +37,7 @@ class Piece:
 def with_pairs(letters: Letters[Any], one: Local, work: Work) -> Piece:
     """The component with Rabin pairs, as small as the ways known here make it; raises OutOfWork."""
     found: list[Piece] = []
-    direct = _direct(letters, one) if all(len(clause.infs) <= 1 for clause in one.accepts) else None
+    direct = as_it_stands(letters, one)
     try:
         with work.at_most(work.left if direct is None else _FOR_FEWER_PAIRS):
             tree = decomposition(_edges(letters, one), one.accepts, work)
@@ -50,8 +50,10 @@ def with_pairs(letters: Letters[Any], one: Local, work: Work) -> Piece:
     return min(found, key=lambda piece: (len(piece.steps), piece.pairs))
 
 
-def _direct(letters: Letters[Any], one: Local) -> Piece:
-    """The component itself, where each clause is a Rabin pair: it asks for one ``inf`` at most."""
+def as_it_stands(letters: Letters[Any], one: Local) -> Piece | None:
+    """The component itself, where each clause is a Rabin pair: it asks for one ``inf`` at most; None elsewhere."""
+    if any(len(clause.infs) > 1 for clause in one.accepts):
+        return None
 
     def change(leaf: Leaf) -> tuple[State, PairMarks]:
         target, marks = leaf

@@ -10,10 +10,9 @@ from __future__ import annotations
 from typing import Any
 
 from tltlc.rabin.graphs import components
-from tltlc.rabin.languages import only_here
 from tltlc.rabin.letters import Letters
 from tltlc.rabin.pairs import Piece
-from tltlc.rabin.skeleton import Clause
+from tltlc.rabin.products import Both, Leaf, conditions, side_by_side, telling_apart
 from tltlc.rabin.work import OutOfWork, Work
 
 
@@ -61,33 +60,17 @@ def _without(letters: Letters[Any], piece: Piece, state: Any, other: Any) -> Pie
 
 
 def _is_equal(letters: Letters[Any], one: Piece, other: Piece, work: Work) -> bool:
-    """Whether each state of ``one`` accepts what the state of that name of ``other`` does, of runs that stay."""
-    memo: dict[tuple[int, int], int] = {}
-    known: dict[Any, list[Any]] = {}
-    right_from = 2 * one.pairs  # The first mark of the right one.
+    """Whether each state of ``one`` accepts what the state of that name of ``other`` does, of runs that stay.
 
-    def together(left: Any, right: Any) -> Any:
-        if left[0][0] == "exit":
-            return None
-        marks = {2 * pair + (kind == "inf") for pair, kind in left[1]}
-        marks |= {right_from + 2 * pair + (kind == "inf") for pair, kind in right[1]}
-        return (left[0], right[0]), frozenset(marks)
+    Raises OutOfWork.
+    """
+    together = side_by_side(letters, one.pairs, lambda leaf: leaf[0][0] == "exit")
 
-    def step(state: Any) -> list[Any]:
-        if state not in known:
-            found = letters.combined(together, one.steps[state[0]], other.steps[state[1]], memo)
-            known[state] = [leaf for leaf in letters.values(found) if leaf is not None]
-            work.spend(5 + len(known[state]))
-        return known[state]
+    def leaves(both: Both) -> list[Leaf]:
+        found = together(one.steps[both[0]], other.steps[both[1]])
+        work.spend(5 + len(found))
+        return found
 
-    these, those = (
-        [Clause(frozenset((at + 2 * pair,)), frozenset((at + 2 * pair + 1,))) for pair in range(one.pairs)]
-        for at in (0, right_from)
-    )
+    these, those = conditions(one.pairs, one.pairs)
     starts = [(state, state) for state in one.steps]
-    for group in components(starts, lambda state: [target for target, _ in step(state)]):
-        members = set(group)
-        edges = [(state, target, marks) for state in group for target, marks in step(state) if target in members]
-        if edges and (only_here(edges, these, those, work) or only_here(edges, those, these, work)):
-            return False
-    return True
+    return telling_apart(starts, leaves, [(these, those), (those, these)], work) is None

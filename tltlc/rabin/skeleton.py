@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import product
 from typing import Any, Literal
 
+from tltlc.automaton.fspa import Mark
 from tltlc.rabin.work import Work
 from tltlc.record import record
 
@@ -13,7 +14,7 @@ Kind = Literal["inf", "fin"]
 """Whether marks must come infinitely often, or finitely often."""
 
 Marks = frozenset[int]
-"""What a letter is marked with: the places of parts."""
+"""What a letter is marked with: the places of parts, or of pairs the numbers of :func:`pair_marks`."""
 
 Skeleton = tuple[Any, ...]
 """``("leaf", index)``, ``("and", …)`` or ``("or", …)``."""
@@ -29,6 +30,16 @@ class Clause:
     def accepts(self, marks: Marks) -> bool:
         """Whether these are the marks of a run, taken infinitely often, that is accepted."""
         return self.infs <= marks and self.fins.isdisjoint(marks)
+
+
+def pair_marks(marks: Iterable[Mark], first: int = 0) -> Marks:
+    """Marks of Rabin pairs as numbers, two for each pair from ``first`` on: the even one for ``fin``."""
+    return frozenset(first + 2 * pair + (kind == "inf") for pair, kind in marks)
+
+
+def pair_clauses(pairs: int, first: int = 0) -> list[Clause]:
+    """So many Rabin pairs as clauses over the numbers of :func:`pair_marks`."""
+    return [Clause(frozenset((fin,)), frozenset((fin + 1,))) for fin in range(first, first + 2 * pairs, 2)]
 
 
 def clauses(

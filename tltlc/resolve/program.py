@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.grammar.tree import ExclusiveDecl, Module, SpecDecl, TestDecl
+from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
+from tltlc.logic.formula import Formula
 from tltlc.record import replace
 from tltlc.resolve import formulas, predicates
 from tltlc.resolve.checks import check_predicates
@@ -13,10 +16,14 @@ from tltlc.resolve.imports import load
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.scope import Scope, build_scopes
-from tltlc.resolve.spec import Program, Spec
-from tltlc.resolve.specs import spec
+from tltlc.resolve.spec import Program, Spec, Vocabulary
+from tltlc.resolve.specs import spec, vocabulary
 from tltlc.resolve.tests import resolved_test
 from tltlc.resolve.values import Env
+from tltlc.source import SourceFile
+
+FormulaOf = Callable[[Expr], "Formula | None"]
+"""The formula that an expression stands for, None where it stands for none."""
 
 
 def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Program, tuple[Diagnostic, ...]]:
@@ -24,14 +31,8 @@ def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Prog
 
     Reads the files that it imports.  Never raises on bad input: what is in error is reported and left out.
     """
-    options = options or ResolveOptions()
-    context = Context()
-    loaded = load(module, options, context.log)
-    scopes = build_scopes(loaded, context.log)
-    declare(scopes, options, context)
-    scope = scopes[-1]
-    env = Env(context, scope)
-    groups = tuple(group for each in scopes for group in _exclusive(each, context))
+    env, groups = _declared(module, options or ResolveOptions())
+    context, scope = env.context, env.scope
     specs = _specs(scope, groups, env)
     tests = [
         resolved_test(declaration, specs, env)
@@ -45,6 +46,54 @@ def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Prog
         tuple(found for found in tests if found is not None),
     )
     return program, context.log.all()
+
+
+def resolve_atoms(
+    module: Module, written: Sequence[tuple[Expr, SourceFile]], options: ResolveOptions | None = None
+) -> tuple[Vocabulary | None, FormulaOf, tuple[Diagnostic, ...]]:
+    """The atoms that formulas stand for which are written elsewhere, in the words of a module, and what is to be said;
+    and a way to read further formulas, of which nothing is said.
+
+    None where one of the formulas is in error, is no atom, or is the same atom as another one.
+    """
+    env, groups = _declared(module, options or ResolveOptions())
+    context = env.context
+    found: dict[str, Label] = {}
+    for expression, source in written:
+        outside = replace(env, scope=replace(env.scope, module=Module(source, (), ())))
+        here = Label(source, expression.span)
+        try:
+            atom = formulas.formula(expression, outside)
+            if atom.op != "atom":
+                title, advice = "this is no atom", "name a predicate, a `bool` signal or a comparison with `<` or `>`"
+                raise problem("TLT0655", title, source, here.span, advice=advice)
+            if atom.name in found:
+                title, advice = f"`{atom.name}` stands here twice", "give each atom a predicate of its own"
+                raise problem("TLT0655", title, source, here.span, advice=advice, other=(found[atom.name],))
+            found[atom.name] = here
+        except ResolutionError as failure:
+            context.log.add(failure.diagnostic)
+    check_predicates(context)
+    said = context.log.all()
+    kept: list[Expr] = []
+
+    def formula_of(expression: Expr) -> Formula | None:
+        # The context knows expressions by their identity, so they must live as long as it does.
+        kept.append(expression)
+        try:
+            return formulas.formula(expression, env)
+        except ResolutionError:
+            return None
+
+    return vocabulary(found, groups, context) if len(found) == len(written) else None, formula_of, said
+
+
+def _declared(module: Module, options: ResolveOptions) -> tuple[Env, tuple[tuple[str, ...], ...]]:
+    """What a module sees, with its own declarations and those of its imports, and the groups of ``exclusive``."""
+    context = Context()
+    scopes = build_scopes(load(module, options, context.log), context.log)
+    declare(scopes, options, context)
+    return Env(context, scopes[-1]), tuple(group for each in scopes for group in _exclusive(each, context))
 
 
 def _exclusive(scope: Scope, context: Context) -> list[tuple[str, ...]]:

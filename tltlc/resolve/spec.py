@@ -99,6 +99,17 @@ class Spec:
 
 
 @record
+class Vocabulary:
+    """What letters are made of, beside a formula: fields as of :class:`Spec`, ``atoms`` in the order asked for."""
+
+    atoms: tuple[Atom, ...]
+    signals: tuple[Signal, ...]
+    params: tuple[Param, ...]
+    exclusive: tuple[tuple[int, ...], ...]
+    clock_s: float | None
+
+
+@record
 class Step:
     """One line of a test: the atoms that hold (the others are false), repeated ``times``."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Literal, cast
 
 from tltlc.diagnostics.diagnostic import Label
@@ -14,9 +14,10 @@ from tltlc.grammar.walk import conjuncts, operands
 from tltlc.logic.formula import Formula, always, and_, eventually, not_, then
 from tltlc.record import replace
 from tltlc.resolve.constants import samples
+from tltlc.resolve.context import Context
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.spec import Judge, Part, Spec
+from tltlc.resolve.spec import Judge, Part, Spec, Vocabulary
 from tltlc.resolve.values import Env
 
 _ONCE = ("level", "limit", "judge", "semantics")
@@ -58,30 +59,40 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
     if not complete or not parts:
         return None
     whole = and_(*(part.formula for part in parts))
-    used = list(whole.atoms())
-    exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
-    names = list(dict.fromkeys([*used, *(name for group in exclusive for name in group)]))
-    atoms = tuple(env.context.atoms[name] for name in names)
-    variables = [node for atom in atoms for node in _variables(atom.expression)]
+    words = vocabulary(whole.atoms(), groups, env.context)
     return Spec(
         name=declaration.name,
         doc=declaration.doc,
         formula=whole,
         parts=tuple(parts),
-        atoms=atoms,
-        signals=tuple(
-            dict.fromkeys(env.context.signals[node.name] for node in variables if isinstance(node, SignalNode))
-        ),
-        params=tuple(dict.fromkeys(env.context.params[node.name] for node in variables if isinstance(node, ParamNode))),
-        exclusive=tuple(tuple(sorted(names.index(name) for name in group)) for group in exclusive),
+        atoms=words.atoms,
+        signals=words.signals,
+        params=words.params,
+        exclusive=words.exclusive,
         level=_word(metadata.get("level")),
         limit_steps=limit,
         judge=cast("Judge | None", _word(metadata.get("judge"))),
         semantics=cast(Literal["finite", "infinite"], _word(metadata.get("semantics")) or "finite"),
         tags=tuple(tags),
-        clock_s=env.context.clock_s,
+        clock_s=words.clock_s,
         source=source,
         name_span=declaration.name_span,
+    )
+
+
+def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Context) -> Vocabulary:
+    """The atoms of these names, and those of each ``exclusive`` of which at least two are used."""
+    used = list(used)
+    exclusive = [group for group in groups if len(set(group).intersection(used)) > 1]
+    names = list(dict.fromkeys([*used, *(name for group in exclusive for name in group)]))
+    atoms = tuple(context.atoms[name] for name in names)
+    variables = [node for atom in atoms for node in _variables(atom.expression)]
+    return Vocabulary(
+        atoms=atoms,
+        signals=tuple(dict.fromkeys(context.signals[node.name] for node in variables if isinstance(node, SignalNode))),
+        params=tuple(dict.fromkeys(context.params[node.name] for node in variables if isinstance(node, ParamNode))),
+        exclusive=tuple(tuple(sorted(names.index(name) for name in group)) for group in exclusive),
+        clock_s=context.clock_s,
     )
 
 

@@ -1,0 +1,81 @@
+"""Bounds that are counted down: of several at once the shortest stays, so that a bound of n takes about n states."""
+
+from __future__ import annotations
+
+import pytest
+
+import tltlc
+from tltlc.automaton.fspa import Fspa
+from tltlc.logic import formula as f
+from tltlc.logic.bounded import counted_down
+from tltlc.logic.formula import Formula
+
+A, B = f.atom("a"), f.atom("b")
+
+
+def compiled(formula: str, semantics: str) -> Fspa:
+    (fspa,) = tltlc.compile_text(
+        f"signal a: bool signal b: bool signal c: bool spec s {{ semantics {semantics} require {formula} }}"
+    )
+    return fspa
+
+
+def within(steps: int, body: Formula = A) -> Formula:
+    """``F[0,steps] body``."""
+    return body if not steps else f.or_(body, f.next_(within(steps - 1, body)))
+
+
+def for_all(steps: int, body: Formula = A) -> Formula:
+    """``G[0,steps] body``."""
+    return body if not steps else f.and_(body, f.weak_next(for_all(steps - 1, body)))
+
+
+@pytest.mark.parametrize("body", [A, f.or_(A, B), f.and_(A, B), f.next_(A)])
+@pytest.mark.parametrize("bound", [within, for_all])
+def test_what_is_counted_down(bound, body: Formula) -> None:  # type: ignore[no-untyped-def]
+    step = f.next_ if bound is within else f.weak_next
+    for steps in (1, 2, 5):
+        assert counted_down(step(bound(steps, body))) is step(bound(steps - 1, body))
+    assert counted_down(step(body)) is None
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        A,
+        within(3),
+        f.next_(f.or_(A, f.weak_next(A))),
+        f.next_(f.or_(A, f.next_(B))),
+        f.next_(f.or_(A, f.next_(f.or_(B, f.next_(B))))),
+        f.next_(f.or_(A, f.next_(f.and_(A, f.next_(A))))),
+        f.next_(f.or_(f.next_(A), A)),
+    ],
+    ids=str,
+)
+def test_what_is_not(formula: Formula) -> None:
+    assert counted_down(formula) is None
+
+
+@pytest.mark.parametrize("semantics", ["finite", "infinite"])
+@pytest.mark.parametrize(
+    ("formula", "states"),
+    [
+        ("G(a -> F[0,60] b)", 62),
+        ("G(a -> F[0,60] (b & c))", 62),
+        ("G(a -> G[0,60] b)", 62),
+        ("F(a & G[0,60] b)", 62),
+        ("F(a & F[0,60] b)", 62),
+        ("G(a -> F[2,20] b)", 41),
+        ("F[0,20] b & G[0,20] c", 43),
+        ("G(a -> F[0,20] G[0,3] b)", 152),
+    ],
+)
+def test_bounds_that_run_at_once_take_as_many_states_as_they_must(formula: str, states: int, semantics: str) -> None:
+    fspa = compiled(formula, semantics)
+    assert len(fspa.states) == states
+
+
+@pytest.mark.parametrize("semantics", ["finite", "infinite"])
+def test_labels_count_down(semantics: str) -> None:
+    labels = {state.label.ascii for state in compiled("G(a -> F[0,50] b)", semantics).states}
+    assert labels >= {f"G(a -> F[0,50] b) & F[0,{steps}] b" for steps in range(2, 50)}

@@ -1,0 +1,69 @@
+"""Specifications over infinite traces that take too much end in an error that names their parts, in bounded time."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.automaton.test_blowup import with_parts
+from tests.reference_formulas import read_formula
+from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.automaton.guards import TooManyPrimes
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.rabin import blowup
+from tltlc.rabin.blowup import blow_up
+from tltlc.rabin.work import OutOfWork
+from tltlc.record import replace
+from tltlc.resolve.spec import Bound, Spec
+from tltlc.source import Span
+
+FAIR = "G F a{0} -> G F b{0}"
+
+
+def fair(count: int) -> Spec:
+    return with_parts(*(read_formula(FAIR.format(number)) for number in range(count)))
+
+
+def found(spec: Spec, reason: Exception | None = None) -> Diagnostic:
+    (diagnostic,) = blow_up(spec, reason or OutOfWork()).diagnostics
+    return diagnostic
+
+
+def test_parts_that_are_large_only_together_are_named_with_their_own_states_and_pairs() -> None:
+    spec = with_parts(*map(read_formula, ("F c", "F a & F b", FAIR.format(1), "true")))
+    diagnostic = found(spec)
+    assert (diagnostic.code, diagnostic.title) == ("TLT0501", "the automaton of `spec` takes too long to make")
+    assert [(label.span.start, label.message) for label in diagnostic.labels] == [
+        (1, "4 states and 1 pair alone; the parts multiply"),
+        (0, "2 states and 1 pair alone; the parts multiply"),
+        (2, "1 state and 2 pairs alone; the parts multiply"),
+    ]
+
+
+def test_a_part_that_takes_too_much_alone_is_named_alone() -> None:
+    spec = with_parts(read_formula("F c"), read_formula("F((a1 | G b1) & (a2 | G b2) & (a3 | G b3) & (a4 | G b4))"))
+    assert found(spec).labels == (Label(spec.source, Span(1, 2), "it is this part"),)
+
+
+def test_a_bound_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blowup, "_FOR_A_PART", 20_000)
+    spec = with_parts(read_formula("F c"), read_formula(f"G(a -> {'X ' * 12}b)"))
+    bound = Bound(12, spec.source, Span(2, 3))
+    spec = replace(spec, parts=(spec.parts[0], replace(spec.parts[1], bounds=(bound,))))
+    assert found(spec).labels == (Label(spec.source, Span(2, 3), "it is this bound"),)
+
+
+def test_no_part_is_blamed_because_it_comes_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blowup, "_FOR_ALL_PARTS", blowup._FOR_A_PART + 1_000)
+    messages = [label.message for label in found(fair(60)).labels]
+    assert messages == ["1 state and 2 pairs alone; the parts multiply"] * 3
+
+
+def test_a_spec_without_parts_is_named_itself() -> None:
+    spec = replace(fair(2), parts=())
+    assert found(spec).labels == (Label(spec.source, spec.name_span),)
+
+
+def test_other_reasons_are_told_apart() -> None:
+    assert found(fair(2), OutOfSteps()).title == "the automaton of `spec` needs too much memory"
+    primes = found(fair(2), TooManyPrimes("a guard", 10))
+    assert (primes.code, primes.title) == ("TLT0502", "a guard of `spec` has more than 10 prime implicants")

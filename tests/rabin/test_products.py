@@ -1,0 +1,53 @@
+"""Automata that are read in step."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltlc.rabin.products import Both, Leaf, conditions, telling_apart
+from tltlc.rabin.work import OutOfWork, Work
+
+START, OVER = (0, 0), (1, 1)
+ONE_FIN, ONE_INF, OTHER_FIN, OTHER_INF = range(4)
+"""The marks of two automata with a pair each."""
+
+
+def loops(*marks: set[int]) -> dict[Both, list[Leaf]]:
+    """Two states on one cycle with loops at the second, which have these marks."""
+    there = [(OVER, frozenset(each)) for each in marks]
+    return {START: [(OVER, frozenset())], OVER: [(START, frozenset()), *there]}
+
+
+@pytest.mark.parametrize(
+    ("graph", "ways"),
+    [
+        (loops({ONE_INF}), (True, False)),
+        (loops({OTHER_INF}), (False, True)),
+        (loops({ONE_INF, OTHER_INF}), (False, False)),
+        (loops({ONE_INF}, {OTHER_INF}), (True, True)),
+        (loops({ONE_INF, OTHER_INF}, {OTHER_FIN}), (True, False)),
+        (loops({ONE_INF, ONE_FIN}), (False, False)),
+        ({START: [(OVER, frozenset({ONE_INF}))], OVER: []}, (False, False)),
+    ],
+)
+def test_cycles_that_one_accepts_and_the_other_does_not(graph: dict[Both, list[Leaf]], ways: tuple[bool, bool]) -> None:
+    these, those = conditions(1, 1)
+    asked: list[Both] = []
+
+    def leaves(both: Both) -> list[Leaf]:
+        asked.append(both)
+        return graph[both]
+
+    for way, expected in zip(((these, those), (those, these)), ways, strict=True):
+        found = telling_apart([START], graph.__getitem__, [way], Work(1000))
+        assert (found is not None) == expected
+        for source, target, marks in found or ():
+            assert (target, marks) in graph[source]
+    either = telling_apart([START], leaves, [(these, those), (those, these)], Work(1000))
+    assert (either is not None) == any(ways)
+    assert sorted(asked) == [START, OVER], "each is asked once"
+
+
+def test_work_is_bounded() -> None:
+    with pytest.raises(OutOfWork):
+        telling_apart([START], loops({ONE_INF}).__getitem__, [conditions(1, 1)], Work(1))

@@ -1,0 +1,56 @@
+"""The options and the writing that all commands share which make files of automata."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from tltlc.automaton.fspa import Fspa
+    from tltlc.cli.report import Report
+    from tltlc.project import Project
+
+output_option = click.option(
+    "--output", "-o", "folder", metavar="DIR", type=click.Path(path_type=Path), default=".", help="Write here."
+)
+
+target_option = click.option(
+    "--target",
+    "-t",
+    "target_lists",
+    metavar="TARGETS",
+    multiple=True,
+    help="What to write, by commas: `tltlc list targets` (default: json,dot,python, or those of tltl.toml).",
+)
+
+
+def targets_of(lists: Iterable[str]) -> list[str]:
+    """The targets that are asked for; raises TltlError, TLT0700, for one that there is not."""
+    from tltlc import backends
+
+    asked = [name.strip() for names in lists for name in names.split(",")]
+    for target in asked:
+        backends.target(target)
+    return asked
+
+
+def write_automata(
+    automata: Iterable[Fspa], asked: Sequence[str], folder: Path, project: Project, report: Report
+) -> tuple[Path, ...]:
+    """Write what is asked for of each automaton, all of it or nothing, and tell of each file."""
+    from tltlc import backends
+    from tltlc.writing import write_files
+
+    targets = dict.fromkeys(asked or project.targets or backends.DEFAULT_TARGETS)
+    options = backends.Options(notation=project.notation, report=lambda diagnostic: report.add((diagnostic,)))
+    files: dict[str, str | bytes] = {}
+    for fspa in automata:
+        for target in targets:
+            files.update(backends.emit(target, fspa, options))
+    paths = write_files(folder, files)
+    for path in paths:
+        report.say(f"wrote {path}")
+    return paths

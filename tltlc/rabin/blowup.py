@@ -1,0 +1,39 @@
+"""When the automaton of a specification over infinite traces takes too much: which part of the spec is to blame."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tltlc.automaton.blowup import Size, blamed
+from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.rabin.construct import rabin
+from tltlc.rabin.work import OutOfWork
+from tltlc.resolve.spec import Part, Spec
+
+_FOR_A_PART: Final = 500_000
+_FOR_ALL_PARTS: Final = 2_000_000
+"""Steps of work for the automata of parts alone: enough to rank the parts, few enough to answer soon."""
+
+
+def blow_up(spec: Spec, reason: Exception) -> TltlError:
+    """The error for a spec whose automaton takes too much: TLT0501, or TLT0502 for a guard's prime implicants."""
+    too_large = "takes too long to make" if isinstance(reason, OutOfWork) else "needs too much memory"
+    left = _FOR_ALL_PARTS
+
+    def size(part: Part, spec: Spec) -> Size | None:
+        nonlocal left
+        if left < _FOR_A_PART:
+            # The parts that were looked at are more than a message names.
+            return Size(0, "")
+        try:
+            automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)
+        except (OutOfWork, OutOfSteps, RecursionError):
+            left -= _FOR_A_PART
+            return None
+        left -= _FOR_A_PART - automaton.letters.work.left
+        states, pairs = len(automaton.steps), automaton.pairs
+        words = f"{states} state{'s' * (states != 1)} and {pairs} pair{'s' * (pairs != 1)}"
+        return Size(states * max(pairs, 1), words)
+
+    return blamed(spec, reason, too_large, size)
