@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from tltlc.automaton.fspa import Fspa
     from tltlc.hoa.load import ImportOptions
+    from tltlc.logic.formula import Formula
     from tltlc.resolve.spec import Program, Spec
 
 _MOST_LABELS = 4
@@ -231,6 +232,11 @@ def _verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
     return ()
 
 
+def _recurs(formula: Formula) -> bool:
+    """Whether it is ``G F p``, which finite traces meet by p at their last sample alone."""
+    return formula.op == "G" and formula.args[0].op == "F"
+
+
 def _unsatisfiable(spec: Spec) -> Diagnostic:
     """The warning that no trace satisfies a spec, with the parts that are to blame."""
     from tltlc.automaton.contradiction import contradiction
@@ -251,5 +257,7 @@ def _unsatisfiable(spec: Spec) -> Diagnostic:
             way_out = "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
     else:
         message, way_out = "together with the others", "these contradict each other: weaken one of them"
+        if not endless and any(_recurs(part.formula) for part in parts):
+            way_out += "; where play has no end and one comes again and again, say `semantics infinite`"
     labels = tuple(Label(part.source, part.span, message) for part in parts[:_MOST_LABELS])
     return Diagnostic("TLT0410", title, labels or (Label(spec.source, spec.name_span),), way_out, severity="warning")

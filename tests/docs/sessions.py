@@ -1,4 +1,4 @@
-"""The tutorial is run from its first line to its last: what it prints is what the tool prints."""
+"""Pages that are run as their reader would: files are written, commands run, and what they print compared."""
 
 from __future__ import annotations
 
@@ -6,20 +6,14 @@ import os
 import re
 import subprocess
 import sys
-from importlib.util import find_spec
-from itertools import pairwise
 from pathlib import Path
 
-import pytest
+from tests.docs.blocks import ROOT
 
-from tests.docs.blocks import DOCS, ROOT, blocks
-
-PAGE = DOCS / "tutorial.md"
 ANYTHING = "…"
-LEVEL = "## Played in a level\n"
-"""The heading of the section that needs the game's physics."""
 _PART = re.compile(
-    r"^```(?:toml|tltl)\n(?P<text>(?:#|//) (?P<new>\w+\.\w+)\n.*?)^```$|^```console\n(?P<session>.*?)^```$"
+    r"^```(?:toml|tltl|hoa)\n(?P<text>(?:#|//|/\*) (?P<new>\w+\.\w+)(?: \*/)?\n.*?)^```$"
+    r"|^```console\n(?P<session>.*?)^```$"
     r"|^<!-- in (?P<file>\S+): (?P<edit>.*?) -->$",
     re.DOTALL | re.MULTILINE,
 )
@@ -70,13 +64,8 @@ def matches(printed: str, shown: str) -> bool:
     return re.fullmatch(r"(?:.*\n)*".join(parts), printed) is not None
 
 
-@pytest.mark.skipif(os.name == "nt", reason="the tutorial speaks to a POSIX shell")
-def test_it_runs(tmp_path: Path) -> None:
-    shell = Shell(tmp_path)
-    text = PAGE.read_text(encoding="utf-8")
-    if find_spec("pybullet") is None:
-        start = text.index(LEVEL)
-        text = text[:start] + text[text.index("\n## ", start) :]
+def run_page(text: str, shell: Shell) -> int:
+    """Write the files of a page and run its commands, which must print what it shows; how many these are."""
     commands = 0
     for part in _PART.finditer(text):
         if part["new"]:
@@ -93,11 +82,4 @@ def test_it_runs(tmp_path: Path) -> None:
             printed = shell.run(command)
             assert matches(printed, shown), f"$ {command}\n{printed}"
             commands += 1
-    assert commands >= 12
-
-    found = blocks(PAGE)
-    spec = next(block.text for block in found if block.kind == "tltl")
-    assert (shell.folder / "first_level.tltl").read_text(encoding="utf-8") == spec
-    program, printed = next((block, after) for block, after in pairwise(found) if block.kind == "python")
-    (shell.folder / "build" / "game.py").write_text(program.text)
-    assert shell.run("python build/game.py") == printed.text
+    return commands

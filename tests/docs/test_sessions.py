@@ -1,0 +1,39 @@
+"""Pages are run from their first line to their last: what they print is what the tool prints."""
+
+from __future__ import annotations
+
+import os
+from importlib.util import find_spec
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import DOCS, blocks
+from tests.docs.sessions import Shell, run_page
+
+PAGE = DOCS / "tutorial.md"
+LEVEL = "## Played in a level\n"
+"""The heading of the section that needs the game's physics."""
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="the pages speak to a POSIX shell")
+
+
+def test_the_tutorial_runs(tmp_path: Path) -> None:
+    shell = Shell(tmp_path)
+    text = PAGE.read_text(encoding="utf-8")
+    if find_spec("pybullet") is None:
+        start = text.index(LEVEL)
+        text = text[:start] + text[text.index("\n## ", start) :]
+    assert run_page(text, shell) >= 12
+
+    found = blocks(PAGE)
+    spec = next(block.text for block in found if block.kind == "tltl")
+    assert (shell.folder / "first_level.tltl").read_text(encoding="utf-8") == spec
+    program, printed = next((block, after) for block, after in pairwise(found) if block.kind == "python")
+    (shell.folder / "build" / "game.py").write_text(program.text)
+    assert shell.run("python build/game.py") == printed.text
+
+
+def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
+    assert run_page((DOCS / "guides" / "hoa.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 1
