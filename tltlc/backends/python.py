@@ -5,6 +5,8 @@ It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with it
 
 from __future__ import annotations
 
+import builtins
+import keyword
 import os
 import re
 from collections.abc import Sequence
@@ -21,6 +23,8 @@ TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",))
 
 # What the step function itself calls its variables, and what it reads from the module.
 _RESERVED = (
+    *keyword.kwlist,
+    *dir(builtins),
     *("self", "signals", "state", "steps", "best", "done", "label", "verdict", "accepting", "ends", "progress"),
     *("reward", "robustness", "limiting", "nearest", "other", "failing", "error", "values", "main"),
     *("inf", "isfinite", "pow", "sqrt", "exp", "tanh", "csv", "json", "os", "sys", "chain"),

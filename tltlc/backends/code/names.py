@@ -1,9 +1,7 @@
-"""Names and texts of a specification, made safe to stand in Python source."""
+"""Names and texts of a specification, made safe to stand in source code; where no more is said, in Python."""
 
 from __future__ import annotations
 
-import builtins
-import keyword
 import re
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
@@ -15,10 +13,10 @@ _WORDS: Final = {">": " over ", "<": " under ", "-": " minus ", "+": " plus ", "
 
 
 class Names:
-    """Gives out Python names, each once: short, readable, never one that is reserved."""
+    """Gives out names of variables, each once: short, readable, in ASCII, never one that is ``reserved``."""
 
     def __init__(self, reserved: Iterable[str]) -> None:
-        self._taken = {*keyword.kwlist, *dir(builtins), *reserved}
+        self._taken = set(reserved)
 
     def give(self, name: str, suffix: str = "") -> str:
         """A new name that resembles the given one; ``suffix`` is tried first where that is taken."""

@@ -1,0 +1,133 @@
+"""Runs programs as they are meant, so that no language's own ways hide what a program says."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+
+from tltlc.backends.program.build import Program
+from tltlc.backends.program.tree import (
+    All,
+    Any,
+    Assign,
+    Binary,
+    Bool,
+    Call,
+    Comment,
+    Compare,
+    Declare,
+    Expression,
+    If,
+    Int,
+    Negate,
+    Not,
+    Real,
+    Statement,
+    Variable,
+)
+
+Value = float | int | bool
+
+
+class NoValueError(Exception):
+    """An operation has no value."""
+
+
+class Scope:
+    """Variables, which are declared once, and given a value before they are read."""
+
+    def __init__(self, values: Mapping[str, Value]) -> None:
+        self.values = dict(values)
+        self._constant: set[str] = set()
+        self.changing: set[str] = set(values)
+
+    def run(self, statements: Iterable[Statement]) -> None:
+        for statement in statements:
+            match statement:
+                case Comment():
+                    pass
+                case Declare(name, _, value, changes):
+                    assert name not in self.values
+                    if changes:
+                        self.changing.add(name)
+                    if value is not None:
+                        self._give(name, self.value(value))
+                case Assign(name, value):
+                    self._give(name, self.value(value))
+                case If(cases, otherwise):
+                    self.run(next((body for test, body in cases if self.value(test)), otherwise))
+
+    def _give(self, name: str, value: Value) -> None:
+        assert name in self.changing or name not in self.values, f"{name} changes, and does not say so"
+        self.values[name] = value
+
+    def value(self, node: Expression) -> Value:
+        match node:
+            case Real(value) | Int(value) | Bool(value):
+                return value
+            case Variable(name):
+                return self.values[name]
+            case Negate(operand):
+                return -self.value(operand)
+            case Binary(op, left, right):
+                return _OPERATIONS[op](self.value(left), self.value(right))
+            case Call(function, args):
+                return _call(function, [self.value(argument) for argument in args])
+            case Compare(op, left, right):
+                return _COMPARISONS[op](self.value(left), self.value(right))
+            case Not(operand):
+                return not self.value(operand)
+            case All(args):
+                return all(self.value(argument) for argument in args)
+            case Any(args):
+                return any(self.value(argument) for argument in args)
+        raise TypeError(node)
+
+
+def step(
+    program: Program, state: int, steps: int, best: float, done: bool, atoms: Mapping[str, float]
+) -> dict[str, Value]:
+    """What a step computes from the values of the atoms; ``steps`` counts it."""
+    scope = Scope(atoms)
+    scope.changing |= {"target", "robustness", "progress", "limiting", "best", "reward", "done"}
+    scope.run(program.states[state])
+    target = program.fspa.states[int(scope.values["target"])]
+    ends = target.verdict in ("satisfied", "violated") or (program.fspa.judge == "goal" and target.accepting)
+    scope.values |= {"steps": steps, "steps_real": float(steps), "best": best, "done": done, "ends": ends}
+    scope.values |= {"violated": target.verdict == "violated", "satisfied": target.verdict == "satisfied"}
+    scope.run(program.judged)
+    return scope.values
+
+
+def _call(function: str, args: list[Value]) -> float:
+    try:
+        match function:
+            case "divide":
+                return args[0] / args[1]
+            case "power":
+                return math.pow(*args)
+            case "min":
+                return args[1] if args[1] < args[0] else args[0]
+            case "max":
+                return args[1] if args[1] > args[0] else args[0]
+            case "abs":
+                return abs(args[0])
+        return float({"sqrt": math.sqrt, "exp": math.exp, "tanh": math.tanh}[function](*args))
+    except (ZeroDivisionError, OverflowError, ValueError) as error:
+        raise NoValueError(type(error).__name__) from None
+
+
+_OPERATIONS = {
+    "+": lambda x, y: x + y,
+    "-": lambda x, y: x - y,
+    "*": lambda x, y: x * y,
+    "/": lambda x, y: x / y,
+}
+_COMPARISONS = {
+    "<": lambda x, y: x < y,
+    "<=": lambda x, y: x <= y,
+    ">": lambda x, y: x > y,
+    ">=": lambda x, y: x >= y,
+    "==": lambda x, y: x == y,
+    "!=": lambda x, y: x != y,
+}

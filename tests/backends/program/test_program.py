@@ -1,0 +1,106 @@
+from __future__ import annotations
+
+import math
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.automaton.letters import letters
+from tests.backends.program.interpreter import NoValueError, Scope, step
+from tests.backends.strategies import automata, expressions, infinite_automata
+from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends.program.arithmetic import Arithmetic
+from tltlc.backends.program.build import program
+from tltlc.backends.program.printer import Printer
+from tltlc.backends.program.tree import Statement
+from tltlc.expression import Condition, Const, Expression, Op, Signal, When
+from tltlc.expression_eval import evaluate
+from tltlc.monitor import Monitor
+from tltlc.record import replace
+
+SIGNALS = {"distance(s1)": "s1", "health": "health"}
+PARAMS = {"level_size": "size"}
+
+
+def computed(expression: Expression, s1: float, health: float, size: float) -> float | str:
+    scope = Scope({"s1": s1, "health": health, "size": size})
+    try:
+        scope.run(Arithmetic(SIGNALS, PARAMS, "t").assigned("value", expression))
+    except NoValueError as error:
+        return str(error)
+    return scope.values["value"]
+
+
+def expected(expression: Expression, s1: float, health: float, size: float) -> float | str:
+    try:
+        return evaluate(expression, {"distance(s1)": s1, "health": health}, {"level_size": size})
+    except (ZeroDivisionError, OverflowError, ValueError) as error:
+        return type(error).__name__
+
+
+def same(x: float | str, y: float | str) -> bool:
+    if isinstance(x, float) and isinstance(y, float):
+        return (math.isnan(x) and math.isnan(y)) or (x == y and math.copysign(1, x) == math.copysign(1, y))
+    # Which of several parts without a value is met first is left to the order of the statements.
+    return isinstance(x, str) == isinstance(y, str)
+
+
+values = st.floats(-4, 4) | st.sampled_from([0.0, -0.0, 1.0, -1.0, 1e300])
+
+
+@settings(max_examples=300, deadline=None)
+@given(expressions(), values, values, values)
+def test_expressions_come_to_the_same_number(expression: Expression, s1: float, health: float, size: float) -> None:
+    assert same(computed(expression, s1, health, size), expected(expression, s1, health, size))
+
+
+def test_what_is_not_needed_is_not_computed() -> None:
+    x = Signal("health")
+    quotient = Op("/", (Const(1.0), x))
+    inside = When(((Condition(">", (quotient, Const(2.0))), Const(1.0)),), Const(0.0))
+    for op, health in (("and", 0.0), ("or", 0.0)):
+        first = Condition(">" if op == "and" else "<=", (x, Const(0.0)))
+        test = Condition(op, (first, Condition(">", (inside, Const(0.5))), Condition("<", (x, Const(9.0)))))
+        for nested in (When(((test, inside),), Const(0.25)), Op("+", (When(((test, Const(3.0)),), Const(4.0)), x))):
+            assert same(computed(nested, 0.0, health, 1.0), expected(nested, 0.0, health, 1.0))
+            assert same(computed(nested, 0.0, 0.25, 1.0), expected(nested, 0.0, 0.25, 1.0))
+
+
+def _depth(statement: Statement) -> int:
+    """How deep brackets nest at most in the text of a statement."""
+    text, depth, deepest = Printer().lines([statement])[0], 0, 0
+    for character in text:
+        depth += {"(": 1, ")": -1}.get(character, 0)
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def test_deep_expressions_are_cut() -> None:
+    deep: Expression = Signal("health")
+    for _ in range(200):
+        deep = Op("+", (Const(1.0), Op("abs", (deep,))))
+    with recursion_room():
+        assert computed(deep, 0.0, 0.5, 1.0) == 200.5
+        depth = max(map(_depth, Arithmetic(SIGNALS, PARAMS, "t").assigned("value", deep)))
+    assert 10 < depth < 40
+
+
+@settings(max_examples=60, deadline=None)
+@given(automata() | infinite_automata(), st.data())
+def test_steps_are_those_of_the_monitor(fspa: Fspa, data: st.DataObject) -> None:
+    limit = data.draw(st.none() | st.integers(1, 5))
+    fspa = replace(fspa, limit_steps=limit, judge=data.draw(st.sampled_from(("goal", "limit"))))
+    made = program(fspa, ())
+    monitor = Monitor(fspa)
+    state, best, done = 0, 0.0, False
+    for number in range(1, 8):
+        letter = data.draw(st.sampled_from(letters(fspa)))
+        sample = [(1 if holds else -1) * data.draw(st.sampled_from([1.0, 0.5, 0.25])) for holds in letter]
+        sample = [0.0 if value == -0.25 else value for value in sample]
+        found = step(made, state, number, best, done, dict(zip(made.atoms, sample, strict=True)))
+        row = monitor.step_atoms(sample)
+        limiting = None if found["limiting"] < 0 else fspa.atoms[int(found["limiting"])].name
+        state, best, done = int(found["target"]), float(found["best"]), bool(found["done"])
+        assert (state, best, done) == (row.state, row.progress, row.done)
+        assert (found["reward"], found["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
