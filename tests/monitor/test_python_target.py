@@ -353,8 +353,8 @@ def test_script(tmp_path: Path) -> None:
         (as_csv([FAR]) + '"1\n', ["trace.csv"], 1, "error: the trace is no CSV in UTF-8: "),
         (None, ["missing.csv"], 3, "error: cannot read `missing.csv`: No such file or directory\n"),
         (None, ["."], 3, "error: cannot read `.`: Is a directory\n"),
-        (None, [], 2, "usage: python cover_and_hide_monitor.py TRACE.csv"),
-        (None, ["--help"], 2, "usage: python cover_and_hide_monitor.py TRACE.csv"),
+        (None, [], 2, "usage: python cover_and_hide_monitor.py [--full] TRACE.csv"),
+        (None, ["--help"], 2, "usage: python cover_and_hide_monitor.py [--full] TRACE.csv"),
     ],
 )
 def test_script_errors(tmp_path: Path, trace: str | None, arguments: list[str], status: int, message: str) -> None:

@@ -24,6 +24,7 @@ BUILT_IN: Final = {
     "render": "Draw the automaton of a spec.",
     "monitor": "Run a spec over a recorded trace and judge it.",
     "test": "Run the test blocks of source files.",
+    "conformance": "Write the cases that an engine's monitors must pass.",
     "list": "List the predicates, targets, levels or error codes there are.",
     "explain": "Say what an error code means and how to mend it.",
     "new": "Create a starter project that compiles.",

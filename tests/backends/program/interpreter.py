@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from tltlc.backends.program.build import Program
 from tltlc.backends.program.tree import (
@@ -117,13 +117,13 @@ def _call(function: str, args: list[Value]) -> float:
         raise NoValueError(type(error).__name__) from None
 
 
-_OPERATIONS = {
+_OPERATIONS: dict[str, Callable[[Value, Value], float]] = {
     "+": lambda x, y: x + y,
     "-": lambda x, y: x - y,
     "*": lambda x, y: x * y,
     "/": lambda x, y: x / y,
 }
-_COMPARISONS = {
+_COMPARISONS: dict[str, Callable[[Value, Value], bool]] = {
     "<": lambda x, y: x < y,
     "<=": lambda x, y: x <= y,
     ">": lambda x, y: x > y,

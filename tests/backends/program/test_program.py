@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from typing import Literal
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -9,15 +11,19 @@ from tests.automaton.letters import letters
 from tests.backends.program.interpreter import NoValueError, Scope, step
 from tests.backends.strategies import automata, expressions, infinite_automata
 from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.program.arithmetic import Arithmetic
+from tltlc.backends.program.arithmetic import Arithmetic, defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer
-from tltlc.backends.program.tree import Statement
+from tltlc.backends.program.tree import Declare, If, Statement
+from tltlc.backends.program.uses import read
 from tltlc.expression import Condition, Const, Expression, Op, Signal, When
 from tltlc.expression_eval import evaluate
+from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.record import replace
+from tltlc.resolve import spec
 
 SIGNALS = {"distance(s1)": "s1", "health": "health"}
 PARAMS = {"level_size": "size"}
@@ -26,7 +32,7 @@ PARAMS = {"level_size": "size"}
 def computed(expression: Expression, s1: float, health: float, size: float) -> float | str:
     scope = Scope({"s1": s1, "health": health, "size": size})
     try:
-        scope.run(Arithmetic(SIGNALS, PARAMS, "t").assigned("value", expression))
+        scope.run(defined("value", Arithmetic(SIGNALS, PARAMS, "t").assigned("value", expression)))
     except NoValueError as error:
         return str(error)
     return scope.values["value"]
@@ -59,7 +65,9 @@ def test_what_is_not_needed_is_not_computed() -> None:
     x = Signal("health")
     quotient = Op("/", (Const(1.0), x))
     inside = When(((Condition(">", (quotient, Const(2.0))), Const(1.0)),), Const(0.0))
-    for op, health in (("and", 0.0), ("or", 0.0)):
+    ops: tuple[Literal["and", "or"], ...] = ("and", "or")
+    for op in ops:
+        health = 0.0
         first = Condition(">" if op == "and" else "<=", (x, Const(0.0)))
         test = Condition(op, (first, Condition(">", (inside, Const(0.5))), Condition("<", (x, Const(9.0)))))
         for nested in (When(((test, inside),), Const(0.25)), Op("+", (When(((test, Const(3.0)),), Const(4.0)), x))):
@@ -104,3 +112,34 @@ def test_steps_are_those_of_the_monitor(fspa: Fspa, data: st.DataObject) -> None
         state, best, done = int(found["target"]), float(found["best"]), bool(found["done"])
         assert (state, best, done) == (row.state, row.progress, row.done)
         assert (found["reward"], found["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
+
+
+def test_no_name_of_a_specification_is_a_temporary() -> None:
+    names = ("t", "t_1", "t 2", "t2_1", "t_")
+    square = Op("^", (Op("+", (Signal("t"), Const(1.0))), Const(2.0)))
+    fspa = replace(
+        build(spec_from_formula(f.atom("a"))),
+        signals=tuple(spec.Signal(name, "number", None, None) for name in names),
+        atoms=(spec.Atom("a", square),),
+    )
+    made = program(fspa, ())
+    declared = [statement.name for statement in made.values[0] if isinstance(statement, Declare)]
+    assert declared == ["t3_1"]
+    assert len({*made.signals, *made.atoms, *declared}) == 7
+
+
+@settings(max_examples=60, deadline=None)
+@given(automata() | infinite_automata(), st.sampled_from(("goal", "limit")))
+def test_what_is_declared_is_read(fspa: Fspa, judge: spec.Judge) -> None:
+    for statements in program(replace(fspa, judge=judge), ()).states:
+        assert _declared(statements) <= read(statements)
+
+
+def _declared(statements: Iterable[Statement]) -> set[str]:
+    found: set[str] = set()
+    for statement in statements:
+        if isinstance(statement, Declare):
+            found.add(statement.name)
+        elif isinstance(statement, If):
+            found |= _declared(statement.otherwise).union(*(_declared(body) for _, body in statement.cases))
+    return found

@@ -7,7 +7,7 @@ of ``and`` and ``or`` that need statements stand in branches of their own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import reduce
 from typing import Final, Union
 
@@ -35,6 +35,17 @@ _DEEPEST: Final = 30
 """How deep expressions nest; C# and GDScript compilers take some hundreds of levels, Lua 200."""
 
 _Node = Union[source.Expression, source.Condition]
+
+
+def defined(name: str, statements: Sequence[Statement]) -> tuple[Statement, ...]:
+    """What :meth:`Arithmetic.assigned` gives, and the declaration of the variable: with its value where it can be.
+
+    The variable changes: values of atoms are brought into their range.
+    """
+    *before, last = statements
+    if isinstance(last, Assign) and last.name == name:
+        return (*before, Declare(name, "real", last.value, changes=True))
+    return (Declare(name, "real", None, changes=True), *statements)
 
 
 class Arithmetic:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
@@ -14,7 +14,7 @@ from tltlc.monitor.tables import tables
 from tltlc.record import record
 
 TEMPORARY = "t"
-"""What variables begin with that stand for parts of a predicate."""
+"""What variables begin with that stand for parts of a predicate: ``t_1``, or ``t2_1`` where a name begins so."""
 
 _OWN = (
     *(states.TARGET, states.ROBUSTNESS, states.PROGRESS, states.LIMITING, states.NEAREST, states.OTHER),
@@ -49,12 +49,10 @@ def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
 
 
 def _program(fspa: Fspa, names: Names) -> Program:
-    # So that no name of the specification is one of these.
-    temporary = names.give(TEMPORARY)
     signals = {signal.name: names.give(signal.name) for signal in fspa.signals}
     params = {param.name: names.give(param.name, "param") for param in fspa.params}
     atoms = tuple(names.give(atom.name, "atom") for atom in fspa.atoms)
-    arithmetic = Arithmetic(signals, params, f"{temporary}_")
+    arithmetic = Arithmetic(signals, params, _prefix([*signals.values(), *params.values(), *atoms]))
     looked_up = tables(fspa)
     return Program(
         fspa=fspa,
@@ -67,3 +65,12 @@ def _program(fspa: Fspa, names: Names) -> Program:
         states=tuple(states.of_state(looked_up, state.id, atoms) for state in fspa.states),
         judged=judge.judged(fspa),
     )
+
+
+def _prefix(names: Sequence[str]) -> str:
+    """What no name begins with."""
+    number, prefix = 1, f"{TEMPORARY}_"
+    while any(name.startswith(prefix) for name in names):
+        number += 1
+        prefix = f"{TEMPORARY}{number}_"
+    return prefix

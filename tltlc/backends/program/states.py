@@ -25,6 +25,7 @@ from tltlc.backends.program.tree import (
     Statement,
     Variable,
 )
+from tltlc.backends.program.uses import read
 from tltlc.monitor.tables import Tables
 
 TARGET, ROBUSTNESS, PROGRESS, LIMITING = "target", "robustness", "progress", "limiting"
@@ -101,7 +102,8 @@ class _State:
                 lines.append(Assign(OTHER, self._least(prime)))
             better = (Assign(NEAREST, Variable(OTHER)), *self._bounding(prime, OTHER))
             lines.append(If(((Compare(">", Variable(OTHER), Variable(NEAREST)), better),)))
-        return lines
+        # One atom alone is the limiting one, whatever its value.
+        return lines if self._at_goal or NEAREST in read(lines) else lines[1:]
 
     def _bounding(self, prime: Implicant, value: str) -> list[Statement]:
         """The first atom of the prime whose literal has that value."""

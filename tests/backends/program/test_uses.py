@@ -1,0 +1,38 @@
+from __future__ import annotations
+
+from tltlc.backends.program.tree import (
+    All,
+    Assign,
+    Binary,
+    Call,
+    Comment,
+    Compare,
+    Declare,
+    If,
+    Negate,
+    Not,
+    Real,
+    Statement,
+    Variable,
+)
+from tltlc.backends.program.uses import called, read
+
+x, y, z, zero = Variable("x"), Variable("y"), Variable("z"), Real(0.0)
+STATEMENTS: list[Statement] = [
+    Comment("of `comment`"),
+    Declare("a", "real"),
+    Declare("b", "real", Negate(Call("sqrt", (Binary("+", x, zero),)))),
+    If(
+        ((All((Compare(">", y, zero), Not(Compare("<", Call("abs", (y,)), zero)))), (Assign("a", z),)),),
+        (Assign("a", Call("max", (Call("divide", (x, zero)), Variable("b")))),),
+    ),
+]
+
+
+def test_variables_that_are_read() -> None:
+    assert read(STATEMENTS) == {"x", "y", "z", "b"}
+    assert read([]) == frozenset()
+
+
+def test_functions_that_are_called() -> None:
+    assert called(STATEMENTS) == {"sqrt", "abs", "max", "divide"}

@@ -1,0 +1,151 @@
+"""The corpus holds what it is for: every operator, every error, every shape; and it is the same at each run."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path, PurePosixPath
+from typing import get_args
+
+from tests.cli.conftest import ROOT
+from tltlc.automaton.fspa import Fspa
+from tltlc.conformance.corpus import CASES, files
+from tltlc.conformance.expected import COLUMNS, Kind
+from tltlc.expression import ArithmeticOp, Condition, ConditionOp, Const, Op, Param, When, nodes
+from tltlc.monitor import Monitor
+from tltlc.monitor.traces import read_trace
+from tltlc.pipeline import CompileOptions, compile_text, read_artefact
+from tltlc.source import SourceFile
+
+FLAGS = ("true", "false")
+
+
+@cache
+def corpus() -> dict[str, bytes]:
+    return {name: text.encode() if isinstance(text, str) else text for name, text in files().items()}
+
+
+def texts(ending: str) -> dict[str, str]:
+    return {name: text.decode() for name, text in corpus().items() if name.endswith(ending)}
+
+
+@cache
+def automata() -> tuple[Fspa, ...]:
+    return tuple(read_artefact(SourceFile(name, text)) for name, text in texts(".fspa.json").items())
+
+
+def rows() -> list[dict[str, str]]:
+    return [row for text in texts(".expected.csv").values() for row in csv.DictReader(io.StringIO(text, newline=""))]
+
+
+def test_the_command_writes_the_same_bytes_in_every_process(tmp_path: Path) -> None:
+    for seed in ("1", "2"):
+        command = [sys.executable, "-m", "tltlc", "conformance", "-o", str(tmp_path / seed)]
+        environment = {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT), "HOME": str(tmp_path)}
+        done = subprocess.run(command, capture_output=True, text=True, env=environment)
+        assert done.returncode == 0, done.stderr
+        assert f"wrote {len(CASES)} cases" in done.stderr
+        written = {
+            path.relative_to(tmp_path / seed).as_posix(): path.read_bytes()
+            for path in (tmp_path / seed).rglob("*")
+            if path.is_file()
+        }
+        assert written == corpus()
+
+
+def test_a_folder_holds_a_case_and_the_index_tells_of_all() -> None:
+    index = json.loads(corpus()["index.json"])
+    assert [case["name"] for case in index["cases"]] == list(CASES)
+    assert len({name.lower() for name in CASES}) == len(CASES), "some file systems know one case of letters"
+    named = {"README.md", "index.json"}
+    for case in index["cases"]:
+        assert case["about"]
+        named |= {case["artefact"], case["source"]} - {None}
+        for trace in case["traces"]:
+            stem = trace["trace"].removesuffix(".csv")
+            named |= {trace["trace"], f"{stem}.expected.csv"} | ({f"{stem}.error.txt"} if trace["error"] else set())
+            assert trace["rows"] == len(corpus()[f"{stem}.expected.csv"].splitlines()) - 1 or "names" in stem
+    assert named == set(corpus())
+
+
+def test_artefacts_are_sound_and_the_rows_are_those_of_the_monitor() -> None:
+    for fspa in automata():
+        monitor = Monitor(fspa)
+        name = f"{fspa.name}/{fspa.name}.1"
+        if f"{name}.error.txt" in corpus():
+            continue
+        lines = corpus()[f"{name}.expected.csv"].decode().splitlines()
+        assert lines[0] == ",".join(COLUMNS)
+        for number, sample in enumerate(read_trace(corpus()[f"{name}.csv"].splitlines(True), name, fspa.signals), 1):
+            step = monitor.step(sample)
+            if "names" not in name:
+                assert lines[number].startswith(f"{number},{step.state},{step.verdict},")
+
+
+def test_sources_compile_to_the_artefacts() -> None:
+    for name, text in texts(".tltl").items():
+        spec = PurePosixPath(name).stem
+        (fspa,) = compile_text(text, name, CompileOptions(specs=(spec,)))
+        assert fspa in automata()
+
+
+def test_those_of_the_paper_are_the_examples() -> None:
+    for name in ("cover_and_hide", "navigation", "branching"):
+        assert corpus()[f"{name}/{name}.tltl"] == (ROOT / "examples" / f"{name}.tltl").read_bytes()
+        assert corpus()[f"{name}/{name}.1.csv"] == (ROOT / "examples" / f"{name}.csv").read_bytes()
+
+
+def test_every_operator_of_expressions() -> None:
+    found = [node for fspa in automata() for atom in fspa.atoms for node in nodes(atom.expression)]
+    assert {node.op for node in found if isinstance(node, Op)} == set(get_args(ArithmeticOp))
+    assert {node.op for node in found if isinstance(node, Condition)} == set(get_args(ConditionOp))
+    powers = [node.args[1] for node in found if isinstance(node, Op) and node.op == "^"]
+    assert {2.0, 3.0, 0.5, -1.5} <= {power.value for power in powers if isinstance(power, Const)}
+    assert any(not isinstance(power, Const) for power in powers)
+    cases = [node for node in found if isinstance(node, When)]
+    assert any(isinstance(inner, When) for node in cases for inner in nodes(node) if inner is not node)
+    assert any(isinstance(node, Param) for node in found)
+
+
+def test_every_operator_of_formulas() -> None:
+    labels = " ".join(fspa.formula.ascii for fspa in automata())
+    for operator in ("F", "G", "X", "N", " U ", " W ", " R ", " M ", "!", " & ", " | ", " -> ", " <-> "):
+        assert operator in labels, operator
+
+
+def test_every_shape_of_automata() -> None:
+    shapes = {(fspa.semantics, fspa.judge, fspa.limit_steps is None) for fspa in automata()}
+    assert len(shapes) == 8, "finite and infinite, at the goal and at the limit, with and without one"
+    assert any(fspa.exclusive for fspa in automata())
+    assert {0, 1, 2, 3, 4} <= {fspa.spec_size for fspa in automata()}
+    assert any(param.low is not None for fspa in automata() for param in fspa.params)
+    assert {signal.type for fspa in automata() for signal in fspa.signals} >= {"bool", "number", "length", "ratio"}
+    names = "".join(atom.name for fspa in automata() for atom in fspa.atoms)
+    assert all(character in names for character in ",\"'\n\\漢𝒰")
+
+
+def test_every_kind_of_row() -> None:
+    found = rows()
+    assert {row["verdict"] for row in found} == {"satisfied", "holding", "pending", "violated"}
+    assert {(row["accepting"], row["done"]) for row in found} == {(a, d) for a in FLAGS for d in FLAGS}
+    numbers = {row[column] for row in found for column in ("progress", "reward", "robustness")}
+    assert "0" in numbers
+    assert "-0" not in numbers
+    assert {bool(row["limiting"]) for row in found} == {True, False}
+    assert sum(row["done"] == "true" and row["reward"] == "0" for row in found) > 50, "steps past the end"
+
+
+def test_every_kind_of_error() -> None:
+    kinds = [text.splitlines()[0].removeprefix("kind: ") for text in texts(".error.txt").values()]
+    assert set(kinds) == set(get_args(Kind))
+    cases = json.loads(corpus()["index.json"])["cases"]
+    assert any(trace["warnings"] for case in cases for trace in case["traces"] if not trace["error"])
+
+
+def test_it_is_small() -> None:
+    assert 40 <= len(CASES) <= 80
+    assert all(text.count("\n") < 200 for text in texts(".expected.csv").values())

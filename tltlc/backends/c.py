@@ -1,0 +1,340 @@
+"""A stand-alone monitor in C99, which is C++17, too: one header, the standard library only, nothing is allocated.
+
+It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with its default reward, where the C library's
+``pow``, ``exp`` and ``tanh`` are those that Python was built with.  Where an atom has no value for two reasons, the
+message may name either, since C leaves open which operand comes first.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from textwrap import wrap
+
+from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Files, Options, Target
+from tltlc.backends.code.names import visible
+from tltlc.backends.program import judge, states
+from tltlc.backends.program.arithmetic import defined
+from tltlc.backends.program.build import program
+from tltlc.backends.program.printer import Printer, remark
+from tltlc.backends.program.template import filled
+from tltlc.backends.program.uses import called, read
+from tltlc.monitor.samples import range_text
+from tltlc.resolve.spec import Param, Signal
+
+TARGET = Target("c", "a stand-alone monitor in C and C++", ("_monitor.h",))
+
+_INDENT = Printer.INDENT
+_FAILING = {"divide", "sqrt", "power", "exp"}
+"""Functions that may have no value."""
+
+_WORDS = """
+    auto bool break case char const constexpr continue default do double else enum extern false float for goto if
+    inline int long nullptr register restrict return short signed sizeof static struct switch true typedef typeof
+    union unsigned void volatile while alignas alignof static_assert thread_local noreturn asm fortran and and_eq
+    bitand bitor compl not not_eq or or_eq xor xor_eq catch char8_t char16_t char32_t class co_await co_return
+    co_yield concept const_cast consteval constinit decltype delete dynamic_cast explicit export final friend import
+    module mutable namespace new noexcept operator override private protected public reinterpret_cast requires
+    static_cast template this throw try typeid typename using virtual wchar_t
+""".split()
+
+_LIBRARY = """
+    abs acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh drem erf erfc exp exp10 exp2 expm1 fabs
+    fdim floor fma fmax fmin fmod frexp gamma hypot ilogb infinity isfinite isgreater isgreaterequal isinf isless
+    islessequal islessgreater isnan isnormal isunordered j0 j1 jn ldexp lgamma llrint llround log log10 log1p log2
+    logb lrint lround modf nan nearbyint nextafter nexttoward pow pow10 remainder remquo rint round scalb scalbln
+    scalbn signbit signgam significand sin sinh sqrt tan tanh tgamma trunc y0 y1 yn fpclassify FP_INFINITE FP_NAN
+    FP_NORMAL FP_SUBNORMAL FP_ZERO HUGE HUGE_VAL INFINITY NAN OVERFLOW UNDERFLOW DOMAIN SING PLOSS TLOSS BUFSIZ EOF
+    FILE NULL SEEK_CUR SEEK_END SEEK_SET clearerr fclose feof ferror fflush fgetc fgetpos fgets fopen fprintf fputc
+    fputs fread freopen fscanf fseek fsetpos ftell fwrite getc getchar gets perror printf putc putchar puts remove
+    rename rewind scanf setbuf setvbuf snprintf sprintf sscanf stderr stdin stdout tmpfile tmpnam ungetc vfprintf
+    vprintf vsnprintf vsprintf abort atexit atof atoi atol bsearch calloc div exit free getenv labs ldiv malloc
+    qsort rand realloc srand strtod strtol strtoul system memchr memcmp memcpy memmove memset strcat strchr strcmp
+    strcoll strcpy strcspn strerror strlen strncat strncmp strncpy strpbrk strrchr strspn strstr strtok strxfrm
+    index rindex size_t ptrdiff_t offsetof tolower toupper isspace errno assert complex imaginary I main
+""".split()
+
+# What headers of systems and engines define beside it: windows.h, X11, Qt, macOS, Unreal, gcc's own.
+_MACROS = """
+    near far NEAR FAR min max small hyper interface pascal cdecl CDECL PASCAL IN OUT OPTIONAL CONST VOID ERROR DELETE
+    TRUE FALSE BOOL BYTE CHAR INT LONG SHORT FLOAT DOUBLE STRICT THIS INTERFACE ABSOLUTE RELATIVE TRANSPARENT OPAQUE
+    NO_ERROR IGNORE INFINITE CALLBACK WINAPI WINVER UNICODE RGB DIFFERENCE REASON_UNKNOWN uuid
+    Bool Status True False None Success Always Never Above Below Complex Convex KeyPress KeyRelease FocusIn FocusOut
+    CursorShape Unsorted GrayScale Expose signals slots emit foreach forever Q_OBJECT
+    check verify require ensure checkf verifyf ensureAlways TEXT PI MIN MAX ABS SWAP CLAMP nil Nil YES NO
+    linux unix i386 vax sun mips arm major minor makedev
+""".split()
+
+_RESERVED = (
+    *_WORDS,
+    *(f"{name}{kind}" for name in _LIBRARY for kind in ("", "f", "l")),
+    *_MACROS,
+    *("monitor", "sample", "result", "states", "none"),
+)
+"""The last ones are the step function's own; the program has reserved the others."""
+
+
+def emit(fspa: Fspa, options: Options) -> Files:
+    """``NAME_monitor.h``."""
+    name = f"{fspa.name}{TARGET.endings[0]}"
+    return {name: _Source(fspa, name).text()}
+
+
+class _C(Printer):
+    """Prints C; functions are those of the header of one spec."""
+
+    def __init__(self, prefix: str) -> None:
+        self._prefix = prefix
+
+    def comment(self, text: str) -> list[str]:
+        """Remarks in ASCII, since compilers differ in how they read others, and without trigraphs."""
+        lines = remark(re.sub(r"[^\x00-\x7f]", _escaped, visible(text)).replace("??", "? ?"))
+        return [f"// {line}" for line in lines]
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """What may have no value notes that in the monitor."""
+        if function in ("abs", "tanh"):
+            return super().call({"abs": "fabs"}.get(function, function), arguments)
+        noting = ["monitor"] if function in _FAILING else []
+        return super().call(f"{self._prefix}_{function}_", [*noting, *arguments])
+
+
+class _Source:
+    """The source of one monitor: the pieces that fill the template."""
+
+    def __init__(self, fspa: Fspa, file: str) -> None:
+        self._fspa, self._file, self._prefix = fspa, file, fspa.name
+        self._program = program(fspa, _RESERVED)
+        self._printer = _C(fspa.name)
+
+    def text(self) -> str:
+        """The whole file."""
+        fspa, made = self._fspa, self._program
+        signals = list(zip(fspa.signals, made.signals, strict=True))
+        params = list(zip(fspa.params, made.params, strict=True))
+        failing = called(statement for value in made.values for statement in value) & _FAILING
+        present = [*failing, *(["note"] if failing else []), *(["atom"] if fspa.atoms else [])]
+        present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
+        present += ["exclusive"] if fspa.exclusive else []
+        with recursion_room():
+            step = "\n".join(f"{_INDENT}{line}" if line else "" for line in self._step())
+        pieces = {
+            "p": self._prefix,
+            "title": "\n".join(self._title()),
+            "file": self._file,
+            "signal_count": str(len(signals)),
+            "atom_count": str(len(fspa.atoms)),
+            "text_size": str(self._text_size()),
+            "signal_room": str(max(1, len(signals))),
+            "atom_room": str(max(1, len(fspa.atoms))),
+            "notice_room": str(max(1, len(signals) + len(fspa.atoms))),
+            "signal_fields": self._fields([(name, self._type(signal), signal) for signal, name in signals]),
+            "param_fields": self._fields([(name, "double", param) for param, name in params]),
+            "signal_names": _list([_string(signal.name) for signal in fspa.signals], '""'),
+            "atom_names": _list([_string(atom.name) for atom in fspa.atoms], '""'),
+            "labels": _list([_string(state.label.ascii) for state in fspa.states], '""'),
+            "signal_defaults": _block(
+                [f"sample.{name} = {'false' if signal.type == 'bool' else 'HUGE_VAL'};" for signal, name in signals]
+                or ["sample.none = false;"]
+            ),
+            "param_defaults": _block(
+                [f"params.{name} = {self._number(param.value)};" for param, name in params] or ["params.none = false;"]
+            ),
+            "param_checks": _block([line for place in range(len(params)) for line in self._param_check(place)]),
+            "param_reasons": _list([_string(_param_reason(param)) for param in fspa.params], '""'),
+            "members": _list(
+                [f"{{{group}, {atom}}}" for group, atoms in enumerate(fspa.exclusive) for atom in atoms], "{0, 0}"
+            ),
+            "states": "\n".join(self._states()),
+            "step": step,
+            "give": _block(self._give()),
+        }
+        return filled("monitor.h.txt", pieces, present)
+
+    def _title(self) -> list[str]:
+        """The first comment: what the spec is called, what it is for, its formula."""
+        fspa = self._fspa
+        title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
+        about = [self._printer.comment(text) for text in (title, fspa.doc)]
+        about.append([line.replace("// ", "//     ", 1) for line in self._printer.comment(fspa.formula.ascii)])
+        parts = ["\n".join(lines) for lines in about if lines]
+        return ["\n//\n".join(parts)]
+
+    def _text_size(self) -> int:
+        """Room for any message, of which the one of an exclusive group is longest: it names atoms twice."""
+        atoms = sum(2 * len(_bytes(atom.name)) + 12 for atom in self._fspa.atoms)
+        signals = max((len(_bytes(signal.name)) for signal in self._fspa.signals), default=0)
+        params = max((len(_bytes(_param_reason(param))) for param in self._fspa.params), default=0)
+        return 200 + max(atoms, signals, params)
+
+    # --- records ----------------------------------------------------------------------------------
+
+    def _type(self, signal: Signal) -> str:
+        return "bool" if signal.type == "bool" else "double"
+
+    def _fields(self, fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
+        """The fields of a struct, each under its name in the spec and what is said of it; C wants one at least."""
+        lines: list[str] = []
+        for name, type_, of in fields:
+            texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
+            remarks = self._printer.comment(": ".join(texts))
+            field = f"{type_} {name};"
+            # A short remark stands behind its field.
+            if len(remarks) == 1 and len(field) + len(remarks[0]) < 100:
+                lines.append(f"{field}    {remarks[0]}")
+            else:
+                lines += [*remarks, field]
+        return _block(lines or ["bool none;"])
+
+    def _number(self, value: float | None, otherwise: str = "") -> str:
+        return otherwise if value is None else repr(float(value))
+
+    def _param_check(self, place: int) -> list[str]:
+        param, name = self._fspa.params[place], f"params->{self._program.params[place]}"
+        tests = [f"isfinite({name})"]
+        tests += [] if param.low is None else [f"{name} >= {self._number(param.low)}"]
+        tests += [] if param.high is None else [f"{name} <= {self._number(param.high)}"]
+        refusal = f"return {self._prefix}_refuse_(monitor, {self._prefix}_wrong_param, {place});"
+        return [f"if (!({' && '.join(tests)})) {refusal}"]
+
+    def _states(self) -> list[str]:
+        lines: list[str] = []
+        for state in self._fspa.states:
+            ends = state.verdict in ("satisfied", "violated") or (self._fspa.judge == "goal" and state.accepting)
+            values = (f"{self._prefix}_{state.verdict}", _bool(state.accepting), _bool(ends))
+            lines.append(f"{_INDENT * 2}{{{', '.join(values)}}},")
+        return lines
+
+    def _give(self) -> list[str]:
+        """A case for each signal, by its number."""
+        if not self._fspa.signals:
+            return ["(void)sample, (void)signal, (void)value;"]
+        lines = ["switch (signal) {"]
+        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+            lines.append(f"{_INDENT}case {place}:")
+            if signal.type == "bool":
+                lines.append(f"{_INDENT * 2}sample->{name} = value != 0.0;")
+                lines.append(f"{_INDENT * 2}return value == 0.0 || value == 1.0;")
+            else:
+                lines += [f"{_INDENT * 2}sample->{name} = value;", f"{_INDENT * 2}break;"]
+        return [*lines, "}"]
+
+    # --- the step function ------------------------------------------------------------------------
+
+    def _step(self) -> list[str]:
+        parts = [self._read(), self._compute(), self._check(), self._move(), self._judge()]
+        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+
+    def _read(self) -> list[str]:
+        """Signals in their range, and params, in variables of their own."""
+        used = read(statement for value in self._program.values for statement in value)
+        lines: list[str] = [] if self._fspa.signals else ["(void)sample;"]
+        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+            if signal.type == "bool":
+                lines += [f"const double {name} = sample->{name} ? 1.0 : 0.0;"] if name in used else []
+                continue
+            low, high = self._number(signal.low, "-HUGE_VAL"), self._number(signal.high, "HUGE_VAL")
+            lines.append(f"double {name} = sample->{name};")
+            lines.append(f"if (!{self._prefix}_read_(monitor, {place}, {low}, {high}, &{name})) return false;")
+        lines += [f"const double {name} = monitor->params.{name};" for name in self._program.params if name in used]
+        # A spec whose signals are bools that nothing reads.
+        return lines if any("sample" in line for line in lines) else ["(void)sample;", *lines]
+
+    def _compute(self) -> list[str]:
+        """The atoms' values."""
+        lines: list[str] = []
+        explained: set[str] = {""}
+        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
+            statements = self._program.values[place]
+            lines += self._printer.comment(atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}")
+            explained.add(atom.doc)
+            lines += self._printer.lines(defined(name, statements))
+            if called(statements) & _FAILING:
+                refusal = f"return {self._prefix}_refuse_(monitor, monitor->problem, {place});"
+                lines.append(f"if (monitor->problem) {refusal}")
+        checks = [
+            f"if (!{self._prefix}_value_(monitor, {place}, &{name})) return false;"
+            for place, name in enumerate(self._program.atoms)
+        ]
+        return [*lines, *checks]
+
+    def _check(self) -> list[str]:
+        """Exclusive atoms."""
+        lines: list[str] = []
+        for place, group in enumerate(self._fspa.exclusive):
+            holding = " + ".join(f"({self._program.atoms[atom]} > 0.0)" for atom in group)
+            if len(group) > 1:
+                refusal = f"return {self._prefix}_refuse_(monitor, {self._prefix}_together, {place});"
+                lines.append(f"if ({holding} > 1) {refusal}")
+        return lines
+
+    def _move(self) -> list[str]:
+        """The transition, by state."""
+        lines = [f"int {states.TARGET} = monitor->state;", f"int {states.LIMITING} = -1;"]
+        lines.append(f"double {states.ROBUSTNESS} = 0.0;")
+        lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
+        lines.append("switch (monitor->state) {")
+        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
+            # A brace, since declarations may follow.
+            lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
+            lines.append(f"{_INDENT}case {state.id}: {{")
+            lines += self._printer.lines(statements, depth=2)
+            lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
+        return [*lines, "}"]
+
+    def _judge(self) -> list[str]:
+        """Progress, reward and the end of the episode."""
+        used = read(self._program.judged)
+        ends, verdict = f"states[{states.TARGET}].ends", f"states[{states.TARGET}].verdict"
+        lines = [f"double {judge.BEST} = monitor->progress;", f"bool {judge.DONE} = monitor->done;"]
+        lines.append(f"double {judge.REWARD};")
+        given = {
+            judge.STEPS_REAL: f"double {judge.STEPS_REAL} = (double){judge.STEPS};",
+            judge.ENDS: f"bool {judge.ENDS} = {ends};",
+            judge.VIOLATED: f"bool {judge.VIOLATED} = {verdict} == {self._prefix}_violated;",
+            judge.SATISFIED: f"bool {judge.SATISFIED} = {verdict} == {self._prefix}_satisfied;",
+        }
+        lines += [f"const {line}" for name, line in given.items() if name in used]
+        return [*lines, *self._printer.lines(self._program.judged)]
+
+
+# --- pieces ---------------------------------------------------------------------------------------
+
+
+def _escaped(match: re.Match[str]) -> str:
+    return f"\\u{ord(match[0]):04x}"
+
+
+def _bytes(text: str) -> bytes:
+    """The text as C holds it: UTF-8, without the character that ends strings."""
+    return text.replace("\0", "").encode("utf-8", "replace")
+
+
+def _string(text: str) -> str:
+    """A string literal in ASCII; question marks are escaped, as two begin a trigraph."""
+    characters = [chr(byte) if 32 <= byte < 127 else f"\\{byte:03o}" for byte in _bytes(text.replace("\\", "\\\\"))]
+    return '"' + "".join(characters).replace('"', '\\"').replace("?", "\\?") + '"'
+
+
+def _param_reason(param: Param) -> str:
+    return f"the param `{param.name}` cannot have that value: its range is {range_text(param.low, param.high)}"
+
+
+def _bool(value: bool) -> str:
+    return "true" if value else "false"
+
+
+def _block(lines: Iterable[str]) -> str:
+    return "\n".join(f"{_INDENT}{line}" for line in lines)
+
+
+def _list(items: Sequence[str], otherwise: str) -> str:
+    """The items between braces: on one line where they are short, else on lines of their own."""
+    line = ", ".join(items or [otherwise])
+    if len(line) <= 60:
+        return line
+    if all(len(item) < 12 for item in items):
+        items = [wrapped.rstrip(",") for wrapped in wrap(line, 100)]
+    return "\n" + "".join(f"{_INDENT * 2}{item},\n" for item in items) + _INDENT

@@ -1,0 +1,86 @@
+"""The corpus as files: a folder per case, an index, and a page on how to check a monitor against them."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import Any, Final
+
+from tltlc import backends
+from tltlc.conformance import arithmetic, operators, random_cases, shapes, written
+from tltlc.conformance.case import Case, Makers
+from tltlc.conformance.expected import Expected, Refusal, expected
+
+CASES: Final[Makers] = {
+    **written.CASES,
+    **operators.CASES,
+    **arithmetic.CASES,
+    **shapes.CASES,
+    **random_cases.CASES,
+}
+
+VERSION: Final = 1
+
+
+def files() -> backends.Files:
+    """Every file of the corpus, by its path with slashes."""
+    found: backends.Files = {}
+    index: list[dict[str, Any]] = []
+    for make in CASES.values():
+        case = make()
+        outcomes = [expected(case.fspa, trace) for trace in case.traces]
+        index.append(_entry(case, outcomes))
+        found.update(_folder(case, outcomes))
+    document = {"version": VERSION, "cases": index}
+    return {
+        "README.md": _page(),
+        "index.json": json.dumps(document, indent=1, ensure_ascii=False) + "\n",
+        **found,
+    }
+
+
+def _folder(case: Case, outcomes: Sequence[Expected]) -> backends.Files:
+    """The files of one case."""
+    name = case.fspa.name
+    found = backends.emit("json", case.fspa)
+    if case.source is not None:
+        found[f"{name}.tltl"] = case.source
+    for number, (trace, outcome) in enumerate(zip(case.traces, outcomes, strict=True), start=1):
+        found[f"{name}.{number}.csv"] = trace
+        found[f"{name}.{number}.expected.csv"] = outcome.table()
+        if outcome.refusal is not None:
+            found[f"{name}.{number}.error.txt"] = _said(outcome.refusal)
+    return {f"{name}/{file}": content for file, content in found.items()}
+
+
+def _said(refusal: Refusal) -> str:
+    lines = [f"kind: {refusal.kind}", f"step: {refusal.step}", *(f"name: {name}" for name in refusal.names)]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _entry(case: Case, outcomes: Sequence[Expected]) -> dict[str, Any]:
+    """What the index says of a case."""
+    fspa, name = case.fspa, case.fspa.name
+    traces = []
+    for number, outcome in enumerate(outcomes, start=1):
+        refusal = outcome.refusal
+        error = refusal and {"kind": refusal.kind, "step": refusal.step, "names": list(refusal.names)}
+        row: dict[str, Any] = {"trace": f"{name}/{name}.{number}.csv", "rows": len(outcome.rows)}
+        traces.append(row | {"warnings": outcome.warnings, "error": error})
+    return {
+        "name": name,
+        "about": case.about,
+        "artefact": f"{name}/{name}.fspa.json",
+        "source": None if case.source is None else f"{name}/{name}.tltl",
+        "semantics": fspa.semantics,
+        "judge": fspa.judge,
+        "limit_steps": fspa.limit_steps,
+        "traces": traces,
+    }
+
+
+def _page() -> str:
+    path = os.path.join(os.path.dirname(__file__), "about.md")  # noqa: PTH118, PTH120
+    with open(path, encoding="utf-8") as file:  # noqa: PTH123
+        return file.read()

@@ -1,0 +1,32 @@
+"""Random choices that are the same on every machine and in every version of Python."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from random import Random
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+class Draw:
+    """Draws from a seed; all of it comes from ``Random.random``, whose numbers Python promises not to change."""
+
+    def __init__(self, seed: int) -> None:
+        self._random = Random(seed).random
+
+    def below(self, count: int) -> int:
+        """A number from 0 to ``count`` - 1."""
+        return int(self._random() * count)
+
+    def one(self, items: Sequence[T]) -> T:
+        """One of the items."""
+        return items[self.below(len(items))]
+
+    def chance(self, share: float) -> bool:
+        """True in a share of all cases, in [0, 1]."""
+        return self._random() < share
+
+    def between(self, low: float, high: float) -> float:
+        """A number in [low, high), with three decimals at most."""
+        return round(low + (high - low) * self._random(), 3)
