@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from tltlc.automaton.diagrams import FALSE, TRUE, Diagrams
 from tltlc.logic import formula as build
-from tltlc.logic.bounded import counted_down
+from tltlc.logic.bounded import counted_down, counted_down_from
 from tltlc.logic.formula import Formula
 from tltlc.rabin.infinite import conjunction, disjunction
 from tltlc.rabin.letters import Letters
@@ -44,11 +44,18 @@ class After:
     def obligation(self, formula: Formula) -> int:
         """The obligation of a formula in normal form."""
         found = self._obligations.get(formula)
-        if found is None:
-            found = self._obligations[formula] = self._made(formula)
+        if found is not None:
+            return found
+        # As over finite traces (`automaton/successors.py`).
+        chain = [formula, *counted_down_from(formula, self._obligations)]
+        for bound in chain[:-1]:
+            self._variable(bound)
+        for bound in reversed(chain):
+            found = self._obligations[bound] = self._made(bound)
             known = self._sources.get(found)
-            if known is None or _weight(formula) < _weight(known):
-                self._sources[found] = formula
+            if known is None or _weight(bound) < _weight(known):
+                self._sources[found] = bound
+        assert found is not None
         return found
 
     def _made(self, formula: Formula) -> int:
