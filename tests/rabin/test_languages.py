@@ -10,6 +10,7 @@ from tests.rabin.lassos import ABC, accepts_cycle
 from tests.rabin.test_automaton import made, some_made
 from tests.reference_formulas import read_formula
 from tltlc.rabin.automaton import Rabin
+from tltlc.rabin.construct import rabin
 from tltlc.rabin.languages import accepting, equal_states
 from tltlc.rabin.work import OutOfWork, Work
 
@@ -38,10 +39,17 @@ def test_each_state_reads_a_cycle_once() -> None:
     automaton = made(read_formula("X " * 60 + "a"))
     Counted.read = 0
     counted = Counted(automaton.letters, automaton.steps, automaton.labels, automaton.pairs)
-    assert accepting(counted, [[True, False, False]], Work(1_000)) .count(False) == 1
+    assert accepting(counted, [[True, False, False]], Work(1_000)).count(False) == 1
     assert Counted.read == len(automaton.steps) > 60
 
 
 def test_cycles_are_counted_as_work() -> None:
     with pytest.raises(OutOfWork):
         equal_states(made(read_formula("X X a")), len(ABC), (), Work(100))
+
+
+def test_edges_of_products_are_counted_as_work() -> None:
+    names = [f"a{number}" for number in range(8)]
+    automaton = rabin(read_formula(" & ".join(f"F {name}" for name in names)), names)
+    with pytest.raises(OutOfWork):
+        equal_states(automaton, len(names), (), Work(25_000))

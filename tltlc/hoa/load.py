@@ -6,7 +6,6 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import PurePath
-from typing import Final
 
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import DEFAULT_STATE_BUDGET
@@ -25,7 +24,7 @@ from tltlc.hoa.reader import read
 from tltlc.hoa.tree import Hoa
 from tltlc.logic.printer import ascii_text
 from tltlc.rabin.assembly import assembled
-from tltlc.rabin.work import OutOfWork, Work
+from tltlc.rabin.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.rabin.written import text_of as infinite_text
 from tltlc.record import EMPTY, record
 from tltlc.resolve.options import ResolveOptions
@@ -33,9 +32,6 @@ from tltlc.resolve.program import FormulaOf
 from tltlc.resolve.spec import Judge
 from tltlc.source import SourceFile
 from tltlc.spec_file import STDIN_NAME, is_plain_name
-
-DEFAULT_WORK: Final = 20_000_000
-"""Steps, each about a microsecond, that an import may take."""
 
 
 @record

@@ -40,7 +40,7 @@ def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
 
     def leaves(both: Both) -> list[Leaf]:
         found = together(steps[both[0]], steps[both[1]])
-        work.spend(5)
+        work.spend(5 + len(found))
         # Where both are the same state, no word tells them apart.
         return [leaf for leaf in found if leaf[0][0] != leaf[0][1]]
 
@@ -48,9 +48,7 @@ def _equal(automaton: Rabin, one: int, other: int, work: Work) -> bool:
     return telling_apart([(one, other)], leaves, [(these, those), (those, these)], work) is None
 
 
-def _signatures(
-    automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work
-) -> list[tuple[bool, ...]]:
+def _signatures(automaton: Rabin, atoms: int, exclusive: Sequence[Sequence[int]], work: Work) -> list[tuple[bool, ...]]:
     """Of each state which of some random cycles it accepts.  Raises OutOfWork."""
     # Always the same ones, so that the same formula gives the same automaton.
     chance = Random(1)
@@ -81,7 +79,8 @@ def accepting(automaton: Rabin, cycle: Sequence[Sequence[bool]], work: Work) -> 
         if accepted is None:
             way = list(met)
             for_ever = set().union(*(rounds[each][1] for each in way[way.index(state) :]))
-            accepted = any((pair, "fin") not in for_ever and (pair, "inf") in for_ever for pair in range(automaton.pairs))
+            pairs = range(automaton.pairs)
+            accepted = any((pair, "fin") not in for_ever and (pair, "inf") in for_ever for pair in pairs)
         for each in met:
             found[each] = accepted
     return [bool(each) for each in found]
