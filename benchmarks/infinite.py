@@ -14,8 +14,8 @@ from benchmarks.store import Record, Store, measure_missing, source_digest
 from tests.reference_formulas import read_formula
 from tltlc.automaton.blowup import recursion_room
 from tltlc.rabin.analysis import analysis_of_rabin
-from tltlc.rabin.construct import DEFAULT_WORK, rabin
-from tltlc.rabin.work import Work
+from tltlc.rabin.construct import rabin
+from tltlc.rabin.work import DEFAULT_WORK, Work
 
 SECTION = "infinite"
 TABLE: Final = Path(__file__).with_name("infinite.tsv")

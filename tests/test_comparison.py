@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
 from itertools import product
 
 import pytest
@@ -103,6 +105,24 @@ def test_automata_of_both_kinds_are_not_compared() -> None:
 def test_work_is_bounded() -> None:
     with pytest.raises(OutOfWork):
         separating(compiled("G F a & G F b"), compiled("F G (a | b)"), work=10)
+
+
+@pytest.mark.parametrize("compare", [is_included, are_equivalent])
+def test_the_work_of_answers_is_bounded(compare) -> None:  # type: ignore[no-untyped-def]
+    one, other = compiled("G F a & G F b"), compiled("G F b & G F a")
+    assert compare(one, other)
+    with pytest.raises(OutOfWork):
+        compare(one, other, work=10)
+
+
+def test_many_atoms_need_no_deep_stack_of_the_caller() -> None:
+    fspa = finite(" & ".join(f"a{number}" for number in range(300)))
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(len(inspect.stack(0)) + 200)
+    try:
+        assert are_equivalent(fspa, fspa)
+    finally:
+        sys.setrecursionlimit(before)
 
 
 def test_artefacts_of_sources() -> None:

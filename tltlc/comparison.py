@@ -9,16 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final, TypeVar
 
+from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.rabin.cycles import Edge, Edges, marks_of
 from tltlc.rabin.letters import LEAF, Letters, at_most_one
 from tltlc.rabin.products import Both, Leaf, conditions, telling_apart
 from tltlc.rabin.skeleton import Clause, Marks, pair_marks
-from tltlc.rabin.work import Work
+from tltlc.rabin.work import DEFAULT_WORK, Work
 from tltlc.record import record
-
-DEFAULT_WORK: Final = 20_000_000
-"""Steps that a comparison may take, each some microseconds."""
 
 _NO_EDGE: Final = -1
 _ALLOWED, _RULED_OUT = "allowed", "ruled out"
@@ -46,18 +44,19 @@ def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> Trace | None
     """
     if one.semantics != other.semantics:
         raise ValueError(f"`{one.name}` is over {one.semantics} traces, and `{other.name}` over {other.semantics} ones")
-    product = _Product(one, other, Work(work))
-    return product.trace() if one.semantics == "finite" else product.lasso()
+    with recursion_room():
+        product = _Product(one, other, Work(work))
+        return product.trace() if one.semantics == "finite" else product.lasso()
 
 
-def is_included(one: Fspa, other: Fspa) -> bool:
-    """Whether ``other`` accepts every trace that ``one`` does; errors as of :func:`separating`."""
-    return separating(one, other) is None
+def is_included(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
+    """Whether ``other`` accepts every trace that ``one`` does; ``work`` and errors as of :func:`separating`."""
+    return separating(one, other, work) is None
 
 
-def are_equivalent(one: Fspa, other: Fspa) -> bool:
-    """Whether both accept the same traces; errors as of :func:`separating`."""
-    return is_included(one, other) and is_included(other, one)
+def are_equivalent(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
+    """Whether both accept the same traces; ``work``, for each of both ways, and errors as of :func:`separating`."""
+    return is_included(one, other, work) and is_included(other, one, work)
 
 
 class _Product:
@@ -72,6 +71,7 @@ class _Product:
         # Not True and False, which the table would take for indices of edges.
         self._allowed = at_most_one(self._letters, places, _ALLOWED, _RULED_OUT)
         self._steps: dict[tuple[int, int], int] = {}
+        self._leaving = [_edges_by_source(fspa) for fspa in self._pair]
         self._known: dict[Both, list[tuple[Both, Marks, Letter]]] = {}
         # The marks of the other one come behind those of the first.
         firsts = (0, 2 * len(one.acceptance))
@@ -112,13 +112,14 @@ class _Product:
         place = begin
         left = set(clause.infs).union(*(each.fins & there for each in those))
 
-        def moves(both: Both) -> Iterator[tuple[Both, Letter]]:
-            yield from ((edge[1], each) for edge, each in letter.items() if edge[0] == both)
+        leaving: dict[Both, list[tuple[Both, Letter]]] = {}
+        for (source, target, _), each in letter.items():
+            leaving.setdefault(source, []).append((target, each))
 
         while left or place != begin or not cycle:
             edge = next((each for each in letter if left & each[2]), None)
             goal = begin if edge is None else edge[0]
-            way = _way([place], moves, goal.__eq__, at_least=int(edge is None and not cycle))
+            way = _way([place], leaving.__getitem__, goal.__eq__, at_least=int(edge is None and not cycle))
             assert way is not None
             cycle += way
             place = goal
@@ -160,9 +161,8 @@ class _Product:
             fspa, letters = self._pair[which], self._letters
             place = [self._names.index(atom.name) for atom in fspa.atoms]
             found = letters.leaf(_NO_EDGE)
-            for index, edge in enumerate(fspa.edges):
-                if edge.source == state:
-                    found = letters.combined(max, found, self._taken(index, edge.guard.primes, place), {})
+            for index in self._leaving[which][state]:
+                found = letters.combined(max, found, self._taken(index, fspa.edges[index].guard.primes, place), {})
             self._steps[which, state] = found
         return found
 
@@ -195,6 +195,14 @@ class _Product:
                 stack.append((letters.high[node], [*holding, self._names[letters.atom[node]]]))
                 stack.append((letters.low[node], holding))
         return found
+
+
+def _edges_by_source(fspa: Fspa) -> list[list[int]]:
+    """Of each state the indices of the edges that leave it."""
+    found: list[list[int]] = [[] for _ in fspa.states]
+    for index, edge in enumerate(fspa.edges):
+        found[edge.source].append(index)
+    return found
 
 
 def _if_allowed(leaf: Any, allowed: str) -> Any:

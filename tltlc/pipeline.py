@@ -37,7 +37,8 @@ class CompileOptions:
 
     ``library_dirs`` are searched for imports after the file's own folder; ``params`` override the
     values of params, as written (``{"level_size": "30 m"}``); ``state_budget`` is the greatest number
-    of states that a construction may explore; ``specs`` are the names to build, none for all.
+    of states that a construction may explore, and over infinite traces a measure of its work; ``specs``
+    are the names to build, none for all.
     """
 
     library_dirs: tuple[Path, ...] = ()
@@ -83,7 +84,7 @@ def _build(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diag
         if spec.semantics == "infinite":
             from tltlc.rabin.build import build_infinite
 
-            fspa = build_infinite(spec)
+            fspa = build_infinite(spec, state_budget=options.state_budget)
         else:
             fspa = build(spec, state_budget=options.state_budget)
     except TltlError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
+from errno import EBADF
 from typing import TYPE_CHECKING, Final
 
 from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, read_source, reading_error
@@ -43,7 +44,7 @@ def read(path: str) -> tuple[SourceFile, bool]:
     Errors: those of :func:`tltlc.files.read_source`.
     """
     if path == STDIN:
-        return _read_stream(sys.stdin.buffer, STDIN_NAME)
+        return _read_stream(_standard_input(), STDIN_NAME)
     try:
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             return _read_stream(file, path)
@@ -54,8 +55,16 @@ def read(path: str) -> tuple[SourceFile, bool]:
 def read_text(path: str, max_bytes: int) -> SourceFile:
     """The text of a file or of standard input; errors as of :func:`tltlc.files.read_source`."""
     if path == STDIN:
-        return decode(sys.stdin.buffer.read(max_bytes + 1), STDIN_NAME, max_bytes=max_bytes)
+        return decode(_standard_input().read(max_bytes + 1), STDIN_NAME, max_bytes=max_bytes)
     return read_source(path, max_bytes=max_bytes)
+
+
+def _standard_input() -> BinaryIO:
+    """Standard input; error TLT0001 where it is closed."""
+    # A process may be started without one.
+    if sys.stdin is None:
+        raise reading_error(STDIN_NAME, OSError(EBADF, "it is closed"))
+    return sys.stdin.buffer
 
 
 def _read_stream(stream: BinaryIO, name: str) -> tuple[SourceFile, bool]:

@@ -7,7 +7,9 @@ from collections.abc import Callable
 
 import pytest
 
+from tests.automaton.test_bounds import within
 from tests.reference_formulas import read_formula
+from tltlc.automaton import blowup
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic.formula import Formula, and_, atom, eventually, next_, until, weak_next
@@ -58,6 +60,13 @@ def test_deep_formulas_need_no_deep_stack(wrap: Callable[[Formula], Formula]) ->
     before = sys.getrecursionlimit()
     assert build(spec_from_formula(formula)).states
     assert sys.getrecursionlimit() == before
+
+
+def test_what_nests_too_deeply_is_not_said_to_need_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(blowup, "_RECURSION_ROOM", 1_000)
+    found = error(with_parts(read_formula("F c"), within(2_000)), 50_000).diagnostics[0]
+    assert (found.code, found.title) == ("TLT0501", "the automaton of `spec` needs formulas that nest too deeply")
+    assert [label.span for label in found.labels] == [Span(1, 2)]
 
 
 def test_a_long_chain_of_untils() -> None:

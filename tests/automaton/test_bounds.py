@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
+
 import pytest
 
 import tltlc
+from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Fspa
+from tltlc.automaton.successors import Successors
+from tltlc.automaton.written import Writer
 from tltlc.logic import formula as f
 from tltlc.logic.bounded import counted_down
 from tltlc.logic.formula import Formula
+from tltlc.rabin.after import After
+from tltlc.rabin.letters import Letters
+from tltlc.rabin.work import Work
 
 A, B = f.atom("a"), f.atom("b")
 
@@ -22,12 +31,18 @@ def compiled(formula: str, semantics: str) -> Fspa:
 
 def within(steps: int, body: Formula = A) -> Formula:
     """``F[0,steps] body``."""
-    return body if not steps else f.or_(body, f.next_(within(steps - 1, body)))
+    formula = body
+    for _ in range(steps):
+        formula = f.or_(body, f.next_(formula))
+    return formula
 
 
 def for_all(steps: int, body: Formula = A) -> Formula:
     """``G[0,steps] body``."""
-    return body if not steps else f.and_(body, f.weak_next(for_all(steps - 1, body)))
+    formula = body
+    for _ in range(steps):
+        formula = f.and_(body, f.weak_next(formula))
+    return formula
 
 
 @pytest.mark.parametrize("body", [A, f.or_(A, B), f.and_(A, B), f.next_(A)])
@@ -79,3 +94,30 @@ def test_bounds_that_run_at_once_take_as_many_states_as_they_must(formula: str, 
 def test_labels_count_down(semantics: str) -> None:
     labels = {state.label.ascii for state in compiled("G(a -> F[0,50] b)", semantics).states}
     assert labels >= {f"G(a -> F[0,50] b) & F[0,{steps}] b" for steps in range(2, 50)}
+
+
+@pytest.mark.parametrize("bound", [within, for_all])
+def test_long_bounds_need_no_stack_for_each_shorter_one(bound) -> None:  # type: ignore[no-untyped-def]
+    longest, before = bound(1_000), sys.getrecursionlimit()
+    step = f.next_ if bound is within else f.weak_next
+    successors, after = Successors(["a"], Diagrams()), After(["a"], Letters(Work(1_000)))
+    sys.setrecursionlimit(len(inspect.stack(0)) + 1_100)
+    try:
+        assert successors.of_obligation(successors.obligation(step(longest)))
+        assert after.after(after.obligation(f.next_(within(1_000))))
+    finally:
+        sys.setrecursionlimit(before)
+
+
+def test_labels_of_long_bounds_are_not_searched_for_what_can_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    searched: set[int] = set()
+    support = Writer.support
+
+    def watched(writer: Writer, obligation: int) -> list[int]:
+        searched.add(obligation)
+        return support(writer, obligation)
+
+    monkeypatch.setattr(Writer, "support", watched)
+    labels = [state.label.ascii for state in compiled("F[0,300] b", "finite").states]
+    assert {f"F[0,{steps}] b" for steps in range(2, 301)} <= set(labels)
+    assert len(searched) < 150

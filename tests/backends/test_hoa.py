@@ -111,6 +111,8 @@ def test_an_automaton_over_infinite_traces() -> None:
         'AP: 3 "a" "b" "alive"\n'
         "acc-name: Rabin 2\n"
         "Acceptance: 4 (Fin(0)&Inf(1))|(Fin(2)&Inf(3))\n"
+        'tltlc-formula: "(G F a -> G F b) & G alive"\n'
+        "tltlc-judge: limit\n"
         "properties: trans-labels explicit-labels trans-acc deterministic complete\n"
         "--BODY--\n"
         'State: 0 "(G F a -> G F b) & G alive"\n'

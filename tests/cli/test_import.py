@@ -1,9 +1,14 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+
+from tests.cli.conftest import ROOT
 
 LIBRARY = """\
 import stealth
@@ -95,6 +100,33 @@ def test_wrong_usage(tltlc, files: Path, arguments: list[str], message: str) -> 
     assert done.status in (2, 3)
     assert message in done.err
     assert sorted(path.name for path in files.iterdir()) == ["again.hoa", "game.tltl", "hide.tltl"]
+
+
+def test_what_is_read_is_not_written_over(tltlc, files: Path) -> None:  # type: ignore[no-untyped-def]
+    done = tltlc("import", "again.hoa", "--predicates", "game.tltl", "-t", "hoa")
+    assert done.status == 2
+    assert "`again.hoa` would be written over" in done.err
+    assert (files / "again.hoa").read_text() == AGAIN
+    assert tltlc("import", "again.hoa", "--predicates", "game.tltl", "-t", "hoa", "-o", "build").status == 0
+
+
+def test_other_commands_say_what_to_do_with_it(tltlc, files: Path) -> None:  # type: ignore[no-untyped-def]
+    (files / "late.hoa").write_text(f"/* late */ {AGAIN}")
+    for name in ("again.hoa", "late.hoa"):
+        done = tltlc("check", name)
+        assert done.status == 1
+        assert f"help: `tltlc import {name} --predicates LIB.tltl`" in done.err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a shell is asked to close standard input")
+def test_standard_input_that_is_closed(files: Path) -> None:
+    command = f'"{sys.executable}" -m tltlc import - --predicates game.tltl <&-'
+    done = subprocess.run(["/bin/sh", "-c", command], capture_output=True, check=False, env=environment(), text=True)
+    assert (done.returncode, "cannot read `<stdin>`" in done.stderr) == (3, True)
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
 
 
 def test_nothing_is_written_where_the_automaton_is_wrong(tltlc, files: Path) -> None:  # type: ignore[no-untyped-def]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 import tltlc
+from tests.docs.blocks import DOCS, blocks
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import Monitor
 from tltlc.monitor.monitor import Step
@@ -60,3 +63,10 @@ def test_progress_is_the_share_of_the_limit_that_was_survived() -> None:
     assert after(compiled("G F a", "semantics infinite limit 4 steps"), A, NONE).progress == 0.5
     assert after(compiled("G F a"), A, NONE).progress == 0.0
     assert after(compiled("a W b", "semantics infinite"), B).progress == 1.0
+
+
+def test_automata_are_compared(capsys: pytest.CaptureFixture[str]) -> None:
+    found = pairwise(blocks(DOCS / "semantics.md"))
+    ((program, printed),) = ((block, after) for block, after in found if block.kind == "python")
+    exec(program.text, {})
+    assert capsys.readouterr().out == printed.text

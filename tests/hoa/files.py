@@ -52,9 +52,21 @@ class Automaton:
         return bool(met == (op == "inf"))
 
 
-def some_automaton(chance: Random) -> Automaton:
-    """A deterministic, complete automaton with any acceptance."""
+@dataclass
+class Shape:
+    """What an automaton is to have."""
+
+    atoms: int
+    states: int
+    sets: int
+    condition: Condition
+
+
+def some_automaton(chance: Random, shape: Shape | None = None) -> Automaton:
+    """A deterministic, complete automaton; without a shape, with any acceptance."""
     atoms, states, sets = chance.randint(0, 2), chance.randint(1, 5), chance.randint(0, 3)
+    if shape is not None:
+        atoms, states, sets = shape.atoms, shape.states, shape.sets
 
     def some_sets(likely: float) -> frozenset[int]:
         return frozenset(number for number in range(sets) if chance.random() < likely)
@@ -69,7 +81,9 @@ def some_automaton(chance: Random) -> Automaton:
 
     of_edges, of_states = chance.choice(((0.3, 0.0), (0.0, 0.4), (0.2, 0.2)))
     moves = [[(chance.randrange(states), some_sets(of_edges)) for _ in range(2**atoms)] for _ in range(states)]
-    return Automaton(atoms, sets, condition(2), moves, [some_sets(of_states) for _ in range(states)])
+    return Automaton(
+        atoms, sets, shape.condition if shape else condition(2), moves, [some_sets(of_states) for _ in range(states)]
+    )
 
 
 def written(automaton: Automaton, chance: Random) -> str:

@@ -7,6 +7,7 @@ from random import Random
 
 from hypothesis import strategies as st
 
+from tltlc.automaton.fspa import Mark
 from tltlc.logic import formula as f
 from tltlc.logic.formula import Formula
 from tltlc.rabin.automaton import Rabin
@@ -79,4 +80,19 @@ def accepts(automaton: Rabin, atoms: Sequence[str], word: Lasso, state: int = 0)
     prefix, cycle = ([[atom in sample for atom in atoms] for sample in part] for part in word)
     for letter in prefix:
         state, _ = automaton.step(state, letter)
-    return automaton.accepts_cycle(state, cycle)
+    return accepts_cycle(automaton, state, cycle)
+
+
+def accepts_cycle(automaton: Rabin, state: int, cycle: Sequence[Sequence[bool]]) -> bool:
+    """Whether a state accepts the trace that goes round a cycle of letters for ever."""
+    met: dict[int, int] = {}
+    rounds: list[set[Mark]] = []
+    while state not in met:
+        met[state] = len(rounds)
+        marks: set[Mark] = set()
+        for letter in cycle:
+            state, said = automaton.step(state, letter)
+            marks |= said
+        rounds.append(marks)
+    for_ever = set().union(*rounds[met[state] :])
+    return any((pair, "fin") not in for_ever and (pair, "inf") in for_ever for pair in range(automaton.pairs))

@@ -14,8 +14,8 @@ from tltlc.automaton.blowup import recursion_room
 from tltlc.logic.formula import Formula
 from tltlc.rabin.analysis import analysis_of_rabin
 from tltlc.rabin.automaton import Rabin
-from tltlc.rabin.construct import DEFAULT_WORK, rabin
-from tltlc.rabin.work import Work
+from tltlc.rabin.construct import rabin
+from tltlc.rabin.work import DEFAULT_WORK, Work
 
 TABLE = Path(__file__).parents[1] / "corpus" / "infinite_sizes.tsv"
 _COLUMNS = ("source", "formula", "states", "pairs", "steps")

@@ -39,6 +39,13 @@ def test_parts_that_are_large_only_together_are_named_with_their_own_states_and_
     ]
 
 
+def test_more_work_is_a_way_out_where_it_is_the_work_that_is_spent() -> None:
+    assert [("--state-budget" in (found(fair(2), reason).help or "")) for reason in (OutOfWork(), OutOfSteps())] == [
+        True,
+        False,
+    ]
+
+
 def test_a_part_that_takes_too_much_alone_is_named_alone() -> None:
     spec = with_parts(read_formula("F c"), read_formula("F((a1 | G b1) & (a2 | G b2) & (a3 | G b3) & (a4 | G b4))"))
     assert found(spec).labels == (Label(spec.source, Span(1, 2), "it is this part"),)
@@ -65,5 +72,6 @@ def test_a_spec_without_parts_is_named_itself() -> None:
 
 def test_other_reasons_are_told_apart() -> None:
     assert found(fair(2), OutOfSteps()).title == "the automaton of `spec` needs too much memory"
+    assert found(fair(2), RecursionError()).title == "the automaton of `spec` needs formulas that nest too deeply"
     primes = found(fair(2), TooManyPrimes("a guard", 10))
     assert (primes.code, primes.title) == ("TLT0502", "a guard of `spec` has more than 10 prime implicants")

@@ -13,11 +13,15 @@ from tests.logic.strategies import formulas
 from tests.rabin.runs import accepts, compiled, lassos
 from tests.reference_formulas import read_formula
 from tltlc import compile_text
-from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.build import DEFAULT_STATE_BUDGET, build, spec_from_formula
 from tltlc.automaton.fspa import Fspa, State
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic.formula import Formula
-from tltlc.pipeline import compile_source
+from tltlc.pipeline import CompileOptions, compile_source
+from tltlc.rabin import construct
+from tltlc.rabin.build import STEPS_PER_STATE
 from tltlc.rabin.lasso import holds_on_lasso
+from tltlc.rabin.work import DEFAULT_WORK, OutOfWork
 from tltlc.source import SourceFile
 
 SMALL = formulas(atoms=("a", "b"), max_leaves=5)
@@ -33,6 +37,25 @@ def judged(fspa: Fspa) -> list[tuple[str, str, int | None, bool]]:
         return state.label.ascii, state.verdict, state.distance, state.accepting
 
     return list(map(of, fspa.states))
+
+
+# --- the work -------------------------------------------------------------------------------------
+
+
+def test_the_state_budget_is_one_of_work() -> None:
+    assert STEPS_PER_STATE * DEFAULT_STATE_BUDGET == DEFAULT_WORK
+    text = "signal a: bool signal b: bool spec s { semantics infinite require G F a & G F b & F G (a | b) }"
+    assert compile_text(text, options=CompileOptions(state_budget=DEFAULT_STATE_BUDGET // 100)) == compile_text(text)
+    with pytest.raises(TltlError, match="takes too long to make"):
+        compile_text(text, options=CompileOptions(state_budget=1))
+
+
+def test_a_component_may_take_more_where_more_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(construct, "_FOR_AN_ATTEMPT", 400)
+    formula = read_formula(" & ".join(f"G(p{number} -> F q{number})" for number in range(3)))
+    with pytest.raises(OutOfWork):
+        construct.rabin(formula)
+    assert len(construct.rabin(formula, work=10 * DEFAULT_WORK).steps) == 13
 
 
 # --- the language ---------------------------------------------------------------------------------

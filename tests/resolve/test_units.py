@@ -46,7 +46,7 @@ DECLARED = """
 entity e
 signal d: length in [0 m, 10 m]
 signal t: time in [0 s, 10 s]
-signal v: speed in [0 m/s, 10 m/s]
+signal v: speed in [-10 m/s, 10 m/s]
 signal w: angle in [-180 deg, 180 deg]
 signal r: ratio
 signal n in [0, 4]
@@ -62,6 +62,7 @@ signal n in [0, 4]
         "v > 3 m/s",
         "v > 3 m / 2 s",
         "v > 20 km/h",
+        "v > -20 km/h",
         "t > 0.001 h",
         "w > 90 deg",
         "w < 1 rad",

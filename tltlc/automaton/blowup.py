@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps
 from tltlc.automaton.guards import TooManyPrimes
@@ -15,6 +15,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.resolve.spec import Part, Spec
 
+ADVICE: Final = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
 _RECURSION_ROOM = 10_000
 _PART_BUDGET = 2_000
 """States tried for one part alone: enough to rank the parts, small enough to answer soon."""
@@ -40,11 +41,18 @@ def recursion_room() -> Iterator[None]:
 
 def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     """The error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
-    too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else "needs too much memory"
+    too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else why(reason)
     return blamed(spec, reason, too_large, _size)
 
 
-def blamed(spec: Spec, reason: Exception, too_large: str, size: Callable[[Part, Spec], Size | None]) -> TltlError:
+def why(reason: Exception) -> str:
+    """What is the matter with the automaton where no budget of states or work is spent."""
+    return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
+
+
+def blamed(
+    spec: Spec, reason: Exception, too_large: str, size: Callable[[Part, Spec], Size | None], advice: str = ADVICE
+) -> TltlError:
     """The error, with the parts of the spec whose own automata are largest.
 
     ``too_large`` says what is the matter with the automaton where it is none of its guards; ``size`` is None of a part
@@ -66,7 +74,6 @@ def blamed(spec: Spec, reason: Exception, too_large: str, size: Callable[[Part, 
         title = f"{reason.whose} of `{spec.name}` {verb} more than {reason.limit} prime implicants"
         return TltlError([Diagnostic("TLT0502", title, labels, "split the spec, or name the condition as a predicate")])
     title = f"the automaton of `{spec.name}` {too_large}"
-    advice = "split the spec, shorten the bounds, or declare atoms that never hold together `exclusive`"
     return TltlError([Diagnostic("TLT0501", title, labels, advice)])
 
 

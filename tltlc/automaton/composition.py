@@ -29,7 +29,7 @@ def minimal_machine(successors: Successors, formula: Formula, state_budget: int,
     try:
         with successors.diagrams.at_most(WHOLE_STEPS):
             return machine(successors, whole, state_budget, allowed)
-    except (OutOfStates, OutOfSteps):
+    except (OutOfStates, OutOfSteps, RecursionError):
         return _by_parts(successors, formula, state_budget, allowed)
 
 

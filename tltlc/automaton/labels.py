@@ -70,6 +70,8 @@ class Labels:
     def label(self, state: int) -> Formula:
         """The shortest label found for a state of the machine, in negation normal form."""
         members = self._members[state]
+        if len(members) == 1 and (bound := self._writer.long_bound(members[0])) is not None:
+            return self.simplified(bound)
         if len(members) > 1:
             members = sorted(members, key=lambda obligation: len(self._writer.support(obligation)))
         obligations = dict.fromkeys((self._needed(members[0], state), *members[:_MEMBERS]))

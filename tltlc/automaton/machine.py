@@ -38,10 +38,7 @@ def machine(successors: Successors, obligation: int, state_budget: int, allowed:
     Raises :class:`OutOfStates` where more than ``state_budget`` obligations are reached and
     :class:`OutOfSteps` where their transitions take too many steps.
     """
-    try:
-        return minimise(successors, explore(successors, obligation, state_budget, allowed))
-    except RecursionError:
-        raise OutOfSteps from None
+    return minimise(successors, explore(successors, obligation, state_budget, allowed))
 
 
 def explore(successors: Successors, initial: int, state_budget: int, allowed: int = ACCEPT) -> dict[int, int]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.automaton.diagrams import ACCEPT, FALSE, REJECT, TRUE, Diagrams
-from tltlc.logic.bounded import counted_down
+from tltlc.logic.bounded import counted_down, counted_down_from
 from tltlc.logic.formula import Formula
 
 
@@ -58,8 +58,15 @@ class Successors:
     def obligation(self, formula: Formula) -> int:
         """The obligation of a formula: its Boolean function over atoms and temporal subformulas."""
         known = self._obligation_of.get(formula)
-        if known is None:
-            known = self._obligation_of[formula] = self._as_obligation(formula)
+        if known is not None:
+            return known
+        # The shortest bound first, so that long ones need no deep stack; variables in source order all the same.
+        chain = [formula, *counted_down_from(formula, self._obligation_of)]
+        for bound in chain[:-1]:
+            self.variable(bound)
+        for bound in reversed(chain):
+            known = self._obligation_of[bound] = self._as_obligation(bound)
+        assert known is not None
         return known
 
     def _as_obligation(self, formula: Formula) -> int:
@@ -102,25 +109,36 @@ class Successors:
 
     def of_obligation(self, obligation: int) -> int:
         """The transition of an obligation."""
-        result = self._of_obligation.get(obligation)
-        if result is not None:
-            return result
+        known = self._of_obligation
+        if obligation in known:
+            return known[obligation]
+        absent, present = self.diagrams.absent, self.diagrams.present
+        # Obligations are as deep as bounds are long.
+        stack = [obligation]
+        while stack:
+            node = stack[-1]
+            missing = [child for child in (present[node], absent[node]) if child not in known]
+            if missing:
+                stack += missing
+                continue
+            stack.pop()
+            if node not in known:
+                known[node] = self._by_variable(node, known[absent[node]], known[present[node]])
+        return known[obligation]
+
+    def _by_variable(self, obligation: int, absent: int, present: int) -> int:
+        """The transition of an obligation, from those of what it is without its first variable and with it."""
         diagrams = self.diagrams
         variable = diagrams.variable[obligation]
         formula = self.formulas[variable]
-        absent = self.of_obligation(diagrams.absent[obligation])
-        present = self.of_obligation(diagrams.present[obligation])
         if formula is None:
-            result = diagrams.disjoin(absent, diagrams.conjoin(self._of_state[variable], present))
-        elif formula.op == "atom":
+            return diagrams.disjoin(absent, diagrams.conjoin(self._of_state[variable], present))
+        if formula.op == "atom":
             holds = self.of_formula(formula)
             fails = diagrams.node(self._atom_index[formula.name], ACCEPT, REJECT)
-            result = diagrams.disjoin(diagrams.conjoin(holds, present), diagrams.conjoin(fails, absent))
-        else:
-            # In negation normal form obligations grow with their temporal variables, so `absent` implies `present`.
-            result = diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
-        self._of_obligation[obligation] = result
-        return result
+            return diagrams.disjoin(diagrams.conjoin(holds, present), diagrams.conjoin(fails, absent))
+        # In negation normal form obligations grow with their temporal variables, so `absent` implies `present`.
+        return diagrams.disjoin(absent, diagrams.conjoin(self.of_formula(formula), present))
 
     def of_formula(self, formula: Formula) -> int:
         """The transition of a formula in negation normal form, operands first, without deep recursion."""

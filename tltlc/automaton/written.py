@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection
 from tltlc.automaton.diagrams import FALSE, TRUE
 from tltlc.automaton.successors import Successors
 from tltlc.logic import formula as build
-from tltlc.logic.bounded import counted_down
+from tltlc.logic.bounded import bounded, counted_down
 from tltlc.logic.formula import Formula
 
 _TERM_LIMIT = 64
@@ -24,17 +24,26 @@ _Placed = tuple[int, Formula]
 class Writer:
     """Writes the obligations of one table; operands stand in the order in which ``source`` has them."""
 
-    __slots__ = ("_position", "_successors", "_sums", "_written")
+    __slots__ = ("_long_bounds", "_position", "_successors", "_sums", "_without_shorter", "_written")
 
     def __init__(self, successors: Successors, source: Formula) -> None:
         self._successors = successors
         self._position = {part: index for index, part in enumerate(source.walk())}
+        self._long_bounds = {successors.obligation(part): part for part in self._position if _is_long_bound(part)}
+        self._without_shorter: dict[int, int] = {}
         self._written: dict[int, _Placed] = {}
         self._sums: dict[int, list[_Term] | None] = {FALSE: [], TRUE: [frozenset()]}
 
     def formula(self, obligation: int) -> Formula:
         """The formula of an obligation."""
         return self._placed(obligation)[1]
+
+    def long_bound(self, obligation: int) -> Formula | None:
+        """The bounded operator of the source that the obligation says, with steps enough that none is shorter to write.
+
+        Looking for parts of each obligation that can go would take n² steps for the n states that count it down.
+        """
+        return self._long_bounds.get(obligation)
 
     def support(self, obligation: int) -> list[int]:
         """The variables that the obligation depends on, ascending."""
@@ -78,6 +87,12 @@ class Writer:
         The obligation of a longer bound has a variable for each shorter one, by which the two are compared; labels
         would have to find out of each of these that it can go.
         """
+        known = self._without_shorter.get(obligation)
+        if known is None:
+            known = self._without_shorter[obligation] = self._with_longest_bounds(obligation)
+        return known
+
+    def _with_longest_bounds(self, obligation: int) -> int:
         diagrams, successors = self._successors.diagrams, self._successors
         gone: set[int] = set()
         for variable in self.support(obligation):
@@ -197,6 +212,11 @@ class Writer:
             return self._placed(self._successors.stands_for[variable])
         place = self._position.get(formula, len(self._position) + variable)
         return place, formula if polarity else build.not_(formula)
+
+
+def _is_long_bound(formula: Formula) -> bool:
+    found = bounded(formula)
+    return found is not None and found.steps > _MOST_FACTORED
 
 
 def _joined(join: Callable[..., Formula], operands: list[_Placed]) -> _Placed:

@@ -51,6 +51,12 @@ def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:
     infinite = fspa.semantics == "infinite"
     yield from _rabin(len(fspa.acceptance)) if infinite else ("acc-name: Buchi", "Acceptance: 1 Inf(0)")
     marks = "trans-acc" if infinite else "state-acc"
+    yield f"tltlc-formula: {_string(fspa.formula.ascii)}"
+    yield f"tltlc-judge: {fspa.judge}"
+    if fspa.limit_steps is not None:
+        yield f"tltlc-limit: {fspa.limit_steps}"
+    if fspa.level is not None:
+        yield f"tltlc-level: {_string(fspa.level)}"
     yield f"properties: trans-labels explicit-labels {marks} deterministic{'' if clashes else ' complete'}"
     if not infinite:
         yield FINITE_HEADER

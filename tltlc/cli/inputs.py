@@ -57,6 +57,8 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
     check_libraries(settings.libraries)
     project = project_for(path)
     source, is_artefact = read(path)
+    if source.text.startswith("HOA:") or path.endswith(".hoa"):
+        raise TltlError([_of_another_tool(source)])
     if is_artefact:
         return _artefact(source, settings, wanted, project)
     from tltlc.automaton.build import DEFAULT_STATE_BUDGET
@@ -70,6 +72,12 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
     )
     compiled = compile_source(source, options)
     return Input(source.name, compiled.automata, compiled.program, project, compiled.diagnostics)
+
+
+def _of_another_tool(source: SourceFile) -> Diagnostic:
+    title = f"`{source.name}` is an automaton in the Hanoi format, and no spec"
+    way_out = f"`tltlc import {source.name} --predicates LIB.tltl` makes an artefact of it"
+    return Diagnostic("TLT0652", title, help=way_out)
 
 
 def _artefact(source: SourceFile, settings: Settings, wanted: tuple[str, ...], project: Project) -> Input:

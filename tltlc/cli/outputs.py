@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -38,10 +38,19 @@ def targets_of(lists: Iterable[str]) -> list[str]:
 
 
 def write_automata(
-    automata: Iterable[Fspa], asked: Sequence[str], folder: Path, project: Project, report: Report
+    automata: Iterable[Fspa],
+    asked: Sequence[str],
+    folder: Path,
+    project: Project,
+    report: Report,
+    read: Collection[str] = (),
 ) -> tuple[Path, ...]:
-    """Write what is asked for of each automaton, all of it or nothing, and tell of each file."""
+    """Write what is asked for of each automaton, all of it or nothing, and tell of each file.
+
+    Raises click.UsageError where one of the files that were ``read`` would be written over.
+    """
     from tltlc import backends
+    from tltlc.files import is_same
     from tltlc.writing import write_files
 
     targets = dict.fromkeys(asked or project.targets or backends.DEFAULT_TARGETS)
@@ -50,6 +59,10 @@ def write_automata(
     for fspa in automata:
         for target in targets:
             files.update(backends.emit(target, fspa, options))
+    for name in files:
+        for input_ in read:
+            if is_same(folder / name, input_):
+                raise click.UsageError(f"`{input_}` would be written over: give another folder, with -o, or a --name")
     paths = write_files(folder, files)
     for path in paths:
         report.say(f"wrote {path}")

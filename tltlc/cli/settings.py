@@ -57,7 +57,7 @@ def source_options(command: Function) -> Function:
                 "--state-budget",
                 metavar="N",
                 type=click.IntRange(min=1),
-                help="Give up on an automaton that needs more states (default: 50000).",
+                help="Give up on an automaton that needs more states, or as much more work (default: 50000).",
             ),
             format_option,
         )

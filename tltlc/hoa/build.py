@@ -7,6 +7,7 @@ from typing import Any, Final
 
 from tltlc.automaton.build import distances, verdicts
 from tltlc.automaton.fspa import Verdict
+from tltlc.automaton.machine import OutOfStates
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.hoa.checks import is_finite
 from tltlc.hoa.conditions import Acceptance
@@ -50,7 +51,7 @@ class FiniteAnalysis:
 
 
 def automaton_of(
-    hoa: Hoa, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: Work
+    hoa: Hoa, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: Work, state_budget: int
 ) -> tuple[Rabin, Analysis | FiniteAnalysis]:
     """The automaton of a file that was checked, whose atoms have these names, and perhaps others behind them; of the
     atoms of a group of ``exclusive`` at most one holds.  Labels are the numbers of states in the file.
@@ -61,18 +62,14 @@ def automaton_of(
     Raises:
         TltlError: TLT0651, a label is wrong; TLT0653 and TLT0654, it is not deterministic or not complete.
         OutOfWork: pairs for the acceptance are not found in time.
+        OutOfStates: more states are reached than ``state_budget``.
     """
     letters: Letters[Any] = Letters(work)
-    moves = _moves(hoa, Transitions(hoa, atoms, letters, at_most_one(letters, exclusive, YES, NO)))
-    automaton, analysis = (_finite if is_finite(hoa) else _infinite)(hoa, moves, letters)
-    # States that an artefact may have in any order keep that of the file.
-    places = {state.number: place for place, state in enumerate(hoa.states)}
-    in_file = sorted(analysis.targets, key=lambda state: places[automaton.labels[state]])
-    analysis.targets = {state: analysis.targets[state] for state in in_file}
-    return automaton, analysis
+    moves = _moves(hoa, Transitions(hoa, atoms, letters, at_most_one(letters, exclusive, YES, NO)), state_budget)
+    return (_finite if is_finite(hoa) else _infinite)(hoa, moves, letters)
 
 
-def _moves(hoa: Hoa, transitions: Transitions) -> Moves:
+def _moves(hoa: Hoa, transitions: Transitions, state_budget: int) -> Moves:
     states = {state.number: state for state in hoa.states}
     queue = list(hoa.starts[0].states)
     found: Moves = {}
@@ -86,6 +83,8 @@ def _moves(hoa: Hoa, transitions: Transitions) -> Moves:
         for edge in states[number].edges:
             queue += [target for target in edge.targets.states if target not in seen]
             seen.update(edge.targets.states)
+        if len(seen) > state_budget:
+            raise OutOfStates
     if problems:
         raise TltlError(problems[:_MOST_PROBLEMS])
     return found

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.hoa.problems import DETERMINISTIC, broken, other_kind
-from tltlc.hoa.tree import Header, Hoa, Sets, Targets
+from tltlc.hoa.tree import Header, Hoa, Sets, Targets, Term
 from tltlc.source import Span
 
 FINITE: Final = "Tltlc-semantics:"
@@ -19,6 +19,7 @@ def check(hoa: Hoa) -> None:
     TLT0651: a state or a set that there is not, one that stands there twice; TLT0652: an automaton with several runs
     by its kind, or with a header that changes what it means and is not known here.
     """
+    _check_condition(hoa, hoa.condition)
     for header in hoa.headers:
         _check_header(hoa, header)
     _check_start(hoa)
@@ -36,7 +37,7 @@ def is_finite(hoa: Hoa) -> bool:
 
 def _check_header(hoa: Hoa, header: Header) -> None:
     """By the format a header that begins with a capital changes the meaning, and must not be passed over."""
-    if header.name == FINITE and header.values == ('"finite"',):
+    if header.name == FINITE and header.values == ("finite",):
         if (hoa.sets, hoa.condition.op, hoa.condition.outside) != (1, "inf", False):
             title = "over finite traces a state accepts or does not: `Acceptance: 1 Inf(0)`"
             raise other_kind(hoa.source, header.span, title, "set 0 holds the states in which a trace may end")
@@ -47,6 +48,9 @@ def _check_header(hoa: Hoa, header: Header) -> None:
                     raise other_kind(
                         hoa.source, edge.sets.span, title, "put the set behind the states that it leads to"
                     )
+    elif header.name == FINITE:
+        title, way_out = 'the only value of this header is `"finite"`', "leave the header out where traces are infinite"
+        raise other_kind(hoa.source, header.span, title, way_out)
     elif header.name[0].isupper():
         title = f"the header `{header.name}` changes what the automaton means, and is not known here"
         raise other_kind(hoa.source, header.span, title, "write the automaton without it")
@@ -77,10 +81,19 @@ def _check_states(hoa: Hoa) -> None:
             title = f"there is no state {targets.states[0]}"
             raise broken(hoa.source, targets.span, title, f"add it to the body: `State: {targets.states[0]}`")
     for sets in _sets(hoa):
-        check_set(hoa, max(sets.numbers, default=-1), sets.span)
+        _check_set(hoa, max(sets.numbers, default=-1), sets.span)
 
 
-def check_set(hoa: Hoa, number: int, span: Span) -> None:
+def _check_condition(hoa: Hoa, condition: Term) -> None:
+    """Raise TltlError, TLT0651, where an acceptance condition speaks of a set that there is not."""
+    for term in condition.args:
+        _check_condition(hoa, term)
+    if condition.op in ("fin", "inf"):
+        assert isinstance(condition.value, int)
+        _check_set(hoa, condition.value, condition.span)
+
+
+def _check_set(hoa: Hoa, number: int, span: Span) -> None:
     """Raise TltlError, TLT0651, where there is no set of that number."""
     if number >= hoa.sets:
         title = f"there is no set {number}: `Acceptance:` declares {hoa.sets}, counted from 0"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from tltlc.hoa.checks import check_set
 from tltlc.hoa.tree import Hoa, Term
 from tltlc.rabin.skeleton import Clause, Kind, Marks, Skeleton, clauses
 from tltlc.rabin.work import Work
@@ -13,13 +12,10 @@ from tltlc.rabin.work import Work
 class Acceptance:
     """The disjunctive normal form of a condition; a mark stands for a ``Fin`` or ``Inf`` that is in it.
 
-    Raises:
-        TltlError: TLT0651, there is no such set.
-        OutOfWork: it has too many clauses.
+    Raises :class:`~tltlc.rabin.work.OutOfWork` where there are too many.
     """
 
     def __init__(self, hoa: Hoa, work: Work) -> None:
-        self._hoa = hoa
         self._places: dict[tuple[Kind, int, bool], int] = {}
         skeleton = self._skeleton(hoa.condition)
         kinds: list[Kind] = [kind for kind, _, _ in self._places]
@@ -36,7 +32,6 @@ class Acceptance:
         if term.op in ("fin", "inf"):
             number = term.value
             assert isinstance(number, int)
-            check_set(self._hoa, number, term.span)
             kind: Kind = "fin" if term.op == "fin" else "inf"
             return ("leaf", self._places.setdefault((kind, number, term.outside), len(self._places)))
         if term.op in ("true", "false"):

@@ -3,35 +3,35 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import PurePath
-from typing import Final
 
 from tltlc.automaton.blowup import recursion_room
-from tltlc.automaton.build import DEFAULT_STATE_BUDGET, text_of
+from tltlc.automaton.build import DEFAULT_STATE_BUDGET
+from tltlc.automaton.build import text_of as finite_text
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.automaton.machine import OutOfStates
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.grammar.parser import parse, parse_formula
-from tltlc.grammar.tree import Expr
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.grammar.parser import parse_formula
+from tltlc.hoa.atoms import vocabulary_of
 from tltlc.hoa.build import automaton_of
 from tltlc.hoa.checks import check, is_finite
+from tltlc.hoa.metadata import metadata
 from tltlc.hoa.reader import read
 from tltlc.hoa.tree import Hoa
 from tltlc.logic.printer import ascii_text
 from tltlc.rabin.assembly import assembled
-from tltlc.rabin.work import OutOfWork, Work
-from tltlc.record import EMPTY, record, replace
+from tltlc.rabin.work import DEFAULT_WORK, OutOfWork, Work
+from tltlc.rabin.written import text_of as infinite_text
+from tltlc.record import EMPTY, record
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import FormulaOf, resolve_atoms
-from tltlc.resolve.spec import Judge, Vocabulary
+from tltlc.resolve.program import FormulaOf
+from tltlc.resolve.spec import Judge
 from tltlc.source import SourceFile
 from tltlc.spec_file import STDIN_NAME, is_plain_name
-
-DEFAULT_WORK: Final = 20_000_000
-"""Steps, each about a microsecond, that an import may take."""
 
 
 @record
@@ -63,31 +63,34 @@ def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tup
     """
     hoa = read(source)
     check(hoa)
-    words, formula_of, found = _vocabulary(hoa, library, options)
+    words, formula_of, found = vocabulary_of(hoa, library, options.atoms, options.resolve)
     names = [atom.name for atom in words.atoms]
+    finite = is_finite(hoa)
     with recursion_room():
         try:
-            automaton, analysis = automaton_of(hoa, names, words.exclusive, Work(options.work))
+            automaton, analysis = automaton_of(hoa, names, words.exclusive, Work(options.work), options.state_budget)
             if len(automaton.steps) > options.state_budget:
                 raise OutOfStates
-            names_of = {state.number: state.name for state in hoa.states}
+            called = _called(hoa, automaton.labels)
 
             def text(state: int) -> Text:
-                number = automaton.labels[state]
-                return _text(names_of[number] or f"state {number}", formula_of)
+                return _text(called[state], formula_of, finite=finite)
 
-            parts = assembled(automaton, analysis, names, words.exclusive, text)
+            places = {state.number: place for place, state in enumerate(hoa.states)}
+            in_file = sorted(range(len(called)), key=lambda state: places[automaton.labels[state]])
+            parts = assembled(automaton, analysis, names, words.exclusive, text, in_file)
         except (OutOfStates, OutOfWork, OutOfSteps, TooManyPrimes, RecursionError) as reason:
             raise TltlError([_too_large(source, reason, options)]) from None
-    title = hoa.name.text if hoa.name and not is_plain_name(hoa.name.text) else parts.states[0].label.ascii
+    own = metadata(hoa)
+    title = own.formula or (hoa.name.text if hoa.name and not is_plain_name(hoa.name.text) else called[0])
     fspa = Fspa(
         name=options.name or _name(hoa),
         doc="",
-        formula=_text(title, formula_of),
-        level=options.level,
-        limit_steps=options.limit_steps,
-        judge=options.judge or analysis.default_judge(),
-        semantics="finite" if is_finite(hoa) else "infinite",
+        formula=_text(title, formula_of, finite=finite),
+        level=options.level or own.level,
+        limit_steps=options.limit_steps or own.limit_steps,
+        judge=options.judge or own.judge or analysis.default_judge(),
+        semantics="finite" if finite else "infinite",
         tags=(),
         clock_s=words.clock_s,
         signals=words.signals,
@@ -103,7 +106,7 @@ def load(source: SourceFile, library: SourceFile, options: ImportOptions) -> tup
 
 
 def _decided(fspa: Fspa, source: SourceFile) -> tuple[Diagnostic, ...]:
-    """A warning for an automaton that accepts all traces, or none."""
+    """A warning where every trace is accepted, or no trace is."""
     if fspa.states[0].verdict == "violated":
         title, way_out = f"`{source.name}` accepts no trace", "look at its acceptance, and at what is `exclusive`"
         return (Diagnostic("TLT0410", title, help=way_out, severity="warning"),)
@@ -123,13 +126,25 @@ def _name(hoa: Hoa) -> str:
     return stem if is_plain_name(stem) else f"automaton_{stem}".rstrip("_")
 
 
-def _text(words: str, formula_of: FormulaOf) -> Text:
+def _called(hoa: Hoa, numbers: Sequence[int]) -> list[str]:
+    """What states are called that come from those of these numbers, counted where one became several."""
+    names = {state.number: state.name or f"state {state.number}" for state in hoa.states}
+    several, met = Counter(numbers), Counter[int]()
+    found = []
+    for number in numbers:
+        met[number] += 1
+        count = f" ({met[number]} of {several[number]})" if several[number] > 1 else ""
+        found.append(names[number] + count)
+    return found
+
+
+def _text(words: str, formula_of: FormulaOf, *, finite: bool) -> Text:
     """What a state is called, in three notations where that is a formula as tltlc writes it, else as it stands."""
     expression, _ = parse_formula(SourceFile("<name>", words))
     formula = None if expression is None else formula_of(expression)
     # Other tools' operators may bind otherwise.
     if formula is not None and ascii_text(formula) == words:
-        return text_of(formula)
+        return finite_text(formula) if finite else infinite_text(formula)
     return Text(words.encode("ascii", "backslashreplace").decode(), words, words)
 
 
@@ -141,67 +156,4 @@ def _too_large(source: SourceFile, reason: Exception, options: ImportOptions) ->
         title = f"the automaton of `{source.name}` needs more than {options.state_budget} states"
         return Diagnostic("TLT0501", title, help="give a smaller one, or allow more by `--state-budget`")
     title = f"the automaton of `{source.name}` is too large, or its acceptance for Rabin pairs"
-    return Diagnostic("TLT0501", title, help="give a smaller one, e.g. by Spot's `autfilt --small -G -D -C`")
-
-
-# --- atoms ----------------------------------------------------------------------------------------
-
-
-def _vocabulary(
-    hoa: Hoa, library: SourceFile, options: ImportOptions
-) -> tuple[Vocabulary, FormulaOf, tuple[Diagnostic, ...]]:
-    module, found = parse(library)
-    _stop_at_errors(found)
-    _check_given(hoa, options.atoms)
-    written: list[tuple[Expr, SourceFile]] = []
-    names: list[SourceFile] = []
-    for atom in hoa.atoms:
-        given = options.atoms.get(atom.text)
-        # Blanks up to the name, so that places are those in the file.
-        names.append(SourceFile(hoa.source.name, " " * atom.span.start + hoa.source.slice(atom.span)))
-        source = names[-1] if given is None else SourceFile(f"--atom {atom.text}", given)
-        expression, problems = parse_formula(source)
-        found += problems
-        if expression is not None:
-            written.append((expression, source))
-    found = _in_file(found, names, hoa.source)
-    _stop_at_errors(found)
-    words, formula_of, more = resolve_atoms(module, written, options.resolve)
-    found += _in_file(more, names, hoa.source)
-    _stop_at_errors(found)
-    assert words is not None
-    return words, formula_of, found
-
-
-def _in_file(found: Sequence[Diagnostic], names: Sequence[SourceFile], source: SourceFile) -> tuple[Diagnostic, ...]:
-    """Messages that speak of a name in the file alone, speaking of the whole file."""
-
-    def placed(label: Label) -> Label:
-        return replace(label, source=source) if label.source in names else label
-
-    def shown(each: Diagnostic) -> Diagnostic:
-        way_out = each.help
-        if each.code == "TLT0201" and each.labels[0].source in names:
-            name = each.labels[0].source.text.strip()
-            way_out = f'{way_out}; or say which predicate it is: `--atom "{name}=…"`'
-        return replace(each, labels=tuple(map(placed, each.labels)), help=way_out)
-
-    return tuple(map(shown, found))
-
-
-def _check_given(hoa: Hoa, given: Mapping[str, str]) -> None:
-    names = [atom.text for atom in hoa.atoms]
-    for name in given:
-        if name not in names:
-            from difflib import get_close_matches
-
-            close = get_close_matches(name, names, n=1)
-            listed = ", ".join(f"`{each}`" for each in names[:10]) or "none"
-            way_out = f"did you mean `{close[0]}`?" if close else f"the file has {listed}"
-            title = f"`{hoa.source.name}` has no atomic proposition `{name}`"
-            raise TltlError([Diagnostic("TLT0655", title, help=way_out)])
-
-
-def _stop_at_errors(found: Sequence[Diagnostic]) -> None:
-    if any(diagnostic.severity == "error" for diagnostic in found):
-        raise TltlError(found)
+    return Diagnostic("TLT0501", title, help="give one with parity acceptance, e.g. by Spot: `autfilt --parity -D -C`")

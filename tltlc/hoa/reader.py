@@ -11,7 +11,7 @@ from lark import Lark, Token, UnexpectedInput, UnexpectedToken, v_args
 from lark.exceptions import VisitError
 from lark.visitors import Transformer_NonRecursive
 
-from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.hoa.problems import broken, other_kind
 from tltlc.hoa.tree import Alias, Edge, Header, Hoa, Name, Sets, State, Targets, Term
 from tltlc.source import SourceFile, Span
@@ -19,14 +19,14 @@ from tltlc.source import SourceFile, Span
 _OUTSIDE: Final = re.compile(r'"(?:\\.|[^\\"])*"|/\*', re.DOTALL)
 _IN_A_COMMENT: Final = re.compile(r"/\*|\*/")
 _ESCAPE: Final = re.compile(r"\\(?:u([0-9a-fA-F]{4})|U(000[0-9a-fA-F]{5}|0010[0-9a-fA-F]{4})|(.))", re.DOTALL)
-_MOST_DIGITS: Final = 10
-_TOO_LARGE: Final = 10**_MOST_DIGITS
+_LARGEST: Final = 2**31 - 1
 
 _NAMES: Final = {
     "ALIAS": "an alias as `@name`",
     "HEADER": "a header as `name:`",
     "IDENTIFIER": "a word",
     "INT": "a number",
+    "LABEL": "a label as `[0 & !1]`",
     "STRING": "a text in double quotes",
     "VERSION": "a version as `v1`",
 }
@@ -43,11 +43,14 @@ def read(source: SourceFile) -> Hoa:
     Raises:
         TltlError: TLT0651, the text is not of the format; TLT0652, it holds several automata, or was given up.
     """
+    if source.text.lstrip().startswith("{"):
+        title, way_out = f"`{source.name}` is JSON, and no automaton in the Hanoi format", "an artefact needs no import"
+        raise TltlError([Diagnostic("TLT0651", title, help=way_out)])
     text = _without_comments(source)
     try:
-        found: Hoa = _Tree(source, text).transform(_parser().parse(text, start="automaton"))
+        found: Hoa = _Tree(source).transform(_parser().parse(text, start="automaton"))
     except UnexpectedInput as error:
-        raise _unreadable(source, text, error, len(text.rstrip()), "the end of the file") from None
+        raise _unreadable(source, error, Span(0, len(text.rstrip())), "the end of the file") from None
     except VisitError as error:
         raise error.orig_exc from None
     return found
@@ -85,29 +88,34 @@ def _without_comments(source: SourceFile) -> str:
 # --- what is not of the format --------------------------------------------------------------------
 
 
-def _unreadable(source: SourceFile, text: str, error: UnexpectedInput, end: int, at_end: str) -> TltlError:
-    """The message for the place where reading stopped; at ``end`` there is what ``at_end`` names."""
+def _unreadable(source: SourceFile, error: UnexpectedInput, whole: Span, at_end: str) -> TltlError:
+    """The message for where reading a part of the text stopped, behind which there is what ``at_end`` names."""
     if not isinstance(error, UnexpectedToken):
-        start = error.pos_in_stream or 0
-        span = Span(start, start + 1)
-        if text.startswith("--ABORT--", start):
+        start = whole.start + (error.pos_in_stream or 0)
+        if source.text.startswith("--ABORT--", start):
             title, way_out = "the tool that wrote this automaton gave it up", "have it written again, to its end"
             return other_kind(source, Span(start, start + len("--ABORT--")), title, way_out)
-        title = f"`{text[start]}` is not expected here"
-        return broken(
-            source, span, {'"': "this text does not end", "[": "this label does not end"}.get(text[start], title)
-        )
-    if error.token.type == "$END":
-        span, title = Span(end, min(end + 1, len(text))), f"{at_end} is not expected here"
+        character = source.text[start]
+        endless = {'"': "this text does not end", "[": "this label does not end"}
+        return broken(source, Span(start, start + 1), endless.get(character, f"`{character}` is not expected here"))
+    token = error.token
+    if token.type != "$END":
+        span, title = _moved(_span(token), whole.start), f"`{_short(token)}` is not expected here"
+    elif source.text[whole.end :].strip():
+        span, title = Span(whole.end, whole.end + 1), f"{at_end} is not expected here"
     else:
-        span, title = _span(error.token), f"`{_short(error.token)}` is not expected here"
-    if error.accepts == {"$END"} and error.token == "HOA:":
+        here = Span(whole.end, whole.end)
+        return broken(source, here, "the file ends too soon", "it was cut off: an automaton ends with `--END--`")
+    if error.accepts == {"$END"} and token == "HOA:":
         title, way_out = f"`{source.name}` holds several automata", "give a file with one of them"
         return other_kind(source, span, title, way_out, "another one")
     expected = sorted(at_end if name == "$END" else _said(name) for name in error.accepts)
-    return broken(
-        source, span, title, remark=f"expected {_listed(expected)}" if len(expected) <= _MOST_EXPECTED else ""
-    )
+    remark = f"expected {_listed(expected)}" if len(expected) <= _MOST_EXPECTED else ""
+    return broken(source, span, title, remark=remark)
+
+
+def _moved(span: Span, by: int) -> Span:
+    return Span(span.start + by, span.end + by)
 
 
 def _listed(names: list[str]) -> str:
@@ -133,16 +141,18 @@ def _short(token: str) -> str:
 class _Tree(Transformer_NonRecursive[Token, Hoa]):
     """Makes the records of :mod:`tltlc.hoa.tree`, and tells what the grammar does not of the header."""
 
-    def __init__(self, source: SourceFile, text: str) -> None:
+    def __init__(self, source: SourceFile) -> None:
         super().__init__()
-        self._source, self._text = source, text
+        self._source = source
         self._labels: dict[str, Term] = {}
+        self._start = 0
+        """Where the text begins in the file that is being read: a label is read on its own."""
 
     def automaton(self, version: Token, *items: Any) -> Hoa:
         """The whole file."""
         if version != "v1":
             way_out = "this reads version 1 of the format, `HOA: v1`"
-            raise broken(self._source, _span(version), f"`{_short(version)}` is no version known", way_out)
+            raise broken(self._source, self._span(version), f"`{_short(version)}` is no version known", way_out)
         states = tuple(item for item in items if isinstance(item, State))
         header: dict[str, list[Any]] = {}
         for kind, value, span in (item for item in items if not isinstance(item, State)):
@@ -171,7 +181,7 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
 
     def states(self, word: Token, count: Token) -> Any:
         """``States: 3``."""
-        return "States:", _number(count), _span(word)
+        return "States:", self._number(count), self._span(word)
 
     def start(self, targets: Targets) -> Any:
         """``Start: 0``."""
@@ -179,33 +189,33 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
 
     def atoms(self, word: Token, count: Token, *names: Name) -> Any:
         """``AP: 2 "a" "b"``."""
-        if _number(count) != len(names):
+        if self._number(count) != len(names):
             title = f"`AP:` says {count}, and {len(names)} {'name follows' if len(names) == 1 else 'names follow'}"
-            raise broken(self._source, _span(word), title, "give the number of names")
-        return "AP:", names, _span(word)
+            raise broken(self._source, self._span(word), title, "give the number of names")
+        return "AP:", names, self._span(word)
 
     def alias(self, name: Token, term: Term) -> Any:
         """``Alias: @a 0 & !1``."""
-        return "Alias:", Alias(str(name), term, _span(name)), _span(name)
+        return "Alias:", Alias(str(name), term, self._span(name)), self._span(name)
 
     def acceptance(self, word: Token, sets: Token, condition: Term) -> Any:
         """``Acceptance: 2 Fin(0) & Inf(1)``."""
-        return "Acceptance:", (_number(sets), condition), _span(word)
+        return "Acceptance:", (self._number(sets), condition), self._span(word)
 
     def name(self, word: Token, text: Name) -> Any:
         """``name: "G F a"``."""
-        return "name:", text, _span(word)
+        return "name:", text, self._span(word)
 
     def header(self, name: Token, *values: Token) -> Any:
         """Any other item, as ``acc-name: Buchi``."""
-        return "", Header(str(name), tuple(map(str, values)), _span(name)), _span(name)
+        return "", Header(str(name), tuple(map(_as_text, values)), self._span(name)), self._span(name)
 
     # The body.
 
     def state(self, label: Token | None, number: Token, name: Name | None, sets: Sets, *edges: Edge) -> State:
         """``State: 0 "F a" {0}`` and its edges."""
         text = None if name is None else name.text
-        return State(_number(number), text, self._label(label), sets, edges, _span(number))
+        return State(self._number(number), text, self._label(label), sets, edges, self._span(number))
 
     def edge(self, label: Token | None, targets: Targets, sets: Sets) -> Edge:
         """``[0 & !1] 3 {0}``."""
@@ -216,29 +226,30 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         if label is None:
             return None
         if label not in self._labels:
-            span = _span(label)
-            # Blanks up to it, so that places are those in the file.
-            inside = " " * (span.start + 1) + label[1:-1]
+            span = self._span(label)
+            inside = Span(span.start + 1, span.end - 1)
             try:
-                tree = _parser().parse(inside, start="label")
+                tree = _parser().parse(label[1:-1], start="label")
             except UnexpectedInput as error:
-                raise _unreadable(self._source, self._text, error, span.end - 1, "`]`") from None
+                raise _unreadable(self._source, error, inside, "`]`") from None
+            self._start = inside.start
             term: Any = self.transform(tree)
+            self._start = 0
             self._labels[str(label)] = term
         return self._labels[label]
 
     def sets(self, *numbers: Token | None) -> Sets:
         """``{0 1}``."""
         there = [number for number in numbers if number is not None]
-        return Sets(tuple(map(_number, there)), _span(there[0], there[-1])) if there else Sets()
+        return Sets(tuple(map(self._number, there)), self._span(there[0], there[-1])) if there else Sets()
 
     def targets(self, *states: Token) -> Targets:
         """``3``, or ``3 & 4``."""
-        return Targets(tuple(map(_number, states)), _span(states[0], states[-1]))
+        return Targets(tuple(map(self._number, states)), self._span(states[0], states[-1]))
 
     def string(self, text: Token) -> Name:
         """A text in double quotes."""
-        whole = _span(text)
+        whole = self._span(text)
         return Name(_ESCAPE.sub(_escaped, text[1:-1]), Span(whole.start + 1, whole.end - 1))
 
     # Boolean expressions.
@@ -257,11 +268,11 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
 
     def atom(self, index: Token) -> Term:
         """``0``."""
-        return Term("atom", (), _number(index), False, _span(index))
+        return Term("atom", (), self._number(index), False, self._span(index))
 
     def aliased(self, name: Token) -> Term:
         """``@a``."""
-        return Term("alias", (), str(name), False, _span(name))
+        return Term("alias", (), str(name), False, self._span(name))
 
     def constant(self, word: Token) -> Term:
         """``t`` or ``f``."""
@@ -271,9 +282,21 @@ class _Tree(Transformer_NonRecursive[Token, Hoa]):
         """``Fin(0)`` or ``Inf(!0)``."""
         if kind not in ("Fin", "Inf"):
             title, way_out = f"`{kind}` is no acceptance", "it is `Fin` or `Inf` of a set"
-            raise broken(self._source, _span(kind), title, way_out)
+            raise broken(self._source, self._span(kind), title, way_out)
         op: Any = kind.lower()
-        return Term(op, (), _number(number), outside is not None, _span(number))
+        return Term(op, (), self._number(number), outside is not None, self._span(number))
+
+    # Tokens.
+
+    def _number(self, digits: Token) -> int:
+        # Python refuses to read thousands of digits.
+        if len(digits) > len(str(_LARGEST)) or int(digits) > _LARGEST:
+            title, way_out = "this number is too large", f"numbers of the format end at {_LARGEST:,}"
+            raise broken(self._source, self._span(digits), title, way_out)
+        return int(digits)
+
+    def _span(self, first: Token, last: Token | None = None) -> Span:
+        return _moved(_span(first, last), self._start)
 
 
 def _escaped(match: re.Match[str]) -> str:
@@ -281,9 +304,8 @@ def _escaped(match: re.Match[str]) -> str:
     return character or chr(int(code or long_code, 16))
 
 
-def _number(digits: Token) -> int:
-    # Python refuses to read thousands of digits.
-    return int(digits) if len(digits) <= _MOST_DIGITS else _TOO_LARGE
+def _as_text(value: Token) -> str:
+    return _ESCAPE.sub(_escaped, value[1:-1]) if value.type == "STRING" else str(value)
 
 
 def _span(first: Token, last: Token | None = None) -> Span:

@@ -10,6 +10,7 @@ from tltlc.hoa.problems import DETERMINISTIC, broken
 from tltlc.hoa.tree import Edge, Hoa, State, Term
 from tltlc.rabin.letters import Letters
 
+_MOST_UNLABELLED: Final = 64
 YES, NO = "yes", "no"
 """Not True and False, which the table would take for numbers."""
 
@@ -78,8 +79,10 @@ class Transitions:
     def _unlabelled(self, state: State) -> int:
         """The first edge is that of the letter without atoms, the next one that of atom 0 alone, and so on."""
         count, letters = len(self._hoa.atoms), self._letters
-        if len(state.edges) != 2**count:
-            title = f"state {state.number} has {len(state.edges)} edges without labels, for {2**count} letters"
+        # Python refuses to write numbers of thousands of digits.
+        if count > _MOST_UNLABELLED or len(state.edges) != 2**count:
+            edges = f"{len(state.edges)} edge{'' if len(state.edges) == 1 else 's'}"
+            title = f"state {state.number} has {edges} without labels, for 2^{count} letters"
             raise broken(self._hoa.source, state.span, title, "give one edge for each letter, or labels")
 
         def function(atom: int, holding: int) -> int:

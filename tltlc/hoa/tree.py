@@ -79,7 +79,7 @@ class Alias:
 
 @record
 class Header:
-    """A line of the header that has no field of its own."""
+    """A line of the header that has no field of its own; texts among its values are without quotes."""
 
     name: str
     values: tuple[str, ...]

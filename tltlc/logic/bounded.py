@@ -6,7 +6,7 @@ which stays short whatever the bound.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Iterator, Sequence
 from typing import Final, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -59,6 +59,14 @@ def counted_down(node: Formula) -> Formula | None:
         last = _last_step(outer)
         _shorter[outer] = last if last is not None and _is_same(outer.args[0], last) else None
     return _shorter[node]
+
+
+def counted_down_from(node: Formula, known: Container[Formula]) -> Iterator[Formula]:
+    """What ``node`` is counted down to, step by step, up to one that is ``known``, exclusively."""
+    shorter = counted_down(node)
+    while shorter is not None and shorter not in known:
+        yield shorter
+        shorter = counted_down(shorter)
 
 
 def _last_step(node: Formula) -> Formula | None:

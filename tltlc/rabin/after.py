@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from tltlc.automaton.diagrams import FALSE, TRUE, Diagrams
 from tltlc.logic import formula as build
-from tltlc.logic.bounded import counted_down
+from tltlc.logic.bounded import counted_down, counted_down_from
 from tltlc.logic.formula import Formula
 from tltlc.rabin.infinite import conjunction, disjunction
 from tltlc.rabin.letters import Letters
@@ -44,11 +44,18 @@ class After:
     def obligation(self, formula: Formula) -> int:
         """The obligation of a formula in normal form."""
         found = self._obligations.get(formula)
-        if found is None:
-            found = self._obligations[formula] = self._made(formula)
+        if found is not None:
+            return found
+        # As over finite traces (`automaton/successors.py`).
+        chain = [formula, *counted_down_from(formula, self._obligations)]
+        for bound in chain[:-1]:
+            self._variable(bound)
+        for bound in reversed(chain):
+            found = self._obligations[bound] = self._made(bound)
             known = self._sources.get(found)
-            if known is None or _weight(formula) < _weight(known):
-                self._sources[found] = formula
+            if known is None or _weight(bound) < _weight(known):
+                self._sources[found] = bound
+        assert found is not None
         return found
 
     def _made(self, formula: Formula) -> int:
@@ -82,22 +89,33 @@ class After:
 
     def after(self, obligation: int) -> int:
         """What remains after each letter, as a function of the letter."""
-        found = self._of_obligation.get(obligation)
-        if found is not None:
-            return found
-        diagrams, letters = self.diagrams, self.letters
-        formula = self.formulas[diagrams.variable[obligation]]
-        absent, present = self.after(diagrams.absent[obligation]), self.after(diagrams.present[obligation])
+        known = self._of_obligation
+        if obligation in known:
+            return known[obligation]
+        absent, present = self.diagrams.absent, self.diagrams.present
+        # Obligations are as deep as bounds are long.
+        stack = [obligation]
+        while stack:
+            node = stack[-1]
+            missing = [child for child in (present[node], absent[node]) if child not in known]
+            if missing:
+                stack += missing
+                continue
+            stack.pop()
+            if node not in known:
+                known[node] = self._by_variable(node, known[absent[node]], known[present[node]])
+        return known[obligation]
+
+    def _by_variable(self, obligation: int, absent: int, present: int) -> int:
+        """What remains, from what does of the obligation without its first variable and with it."""
+        formula, letters = self.formulas[self.diagrams.variable[obligation]], self.letters
         if formula.op == "atom":
             atom = self._atoms[formula.name]
             true, false = letters.leaf(TRUE), letters.leaf(FALSE)
             holds = self.both(letters.node(atom, false, true), present)
-            found = self.either(self.both(letters.node(atom, true, false), absent), holds)
-        else:
-            # Obligations grow with their temporal variables.
-            found = self.either(absent, self.both(self.of_formula(formula), present))
-        self._of_obligation[obligation] = found
-        return found
+            return self.either(self.both(letters.node(atom, true, false), absent), holds)
+        # Obligations grow with their temporal variables.
+        return self.either(absent, self.both(self.of_formula(formula), present))
 
     def both(self, x: int, y: int) -> int:
         """``and`` on every letter."""

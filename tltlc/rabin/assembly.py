@@ -40,13 +40,17 @@ def assembled(
     atoms: Sequence[str],
     exclusive: Sequence[Sequence[int]],
     text: Callable[[int], Text],
+    first: Sequence[int] | None = None,
 ) -> Parts:
     """States in the order of an artefact; ``text`` gives the label of a state by its number in the automaton.
+
+    Of states that may come in any order those come first that do in ``first``, which has all of them.
 
     Raises :class:`~tltlc.automaton.guards.TooManyPrimes`, :class:`~tltlc.automaton.diagrams.OutOfSteps`.
     """
     distance = distances(analysis.targets, accepting=analysis.goals.__contains__)
-    order = breadth_first(0, analysis.targets, distance)
+    targets = {state: analysis.targets[state] for state in first} if first else analysis.targets
+    order = breadth_first(0, targets, distance)
     number = {state: place for place, state in enumerate(order)}
     states = tuple(
         State(number[state], text(state), state in analysis.goals, analysis.verdict(state), distance[state])

@@ -37,17 +37,3 @@ class Rabin:
         """The state after a letter, and its marks; a letter says of each atom whether it holds."""
         found: tuple[int, PairMarks] = self.letters.at(self.steps[state], letter.__getitem__)
         return found
-
-    def accepts_cycle(self, state: int, cycle: Sequence[Sequence[bool]]) -> bool:
-        """Whether a state accepts the trace that goes round a cycle of letters for ever."""
-        met: dict[int, int] = {}
-        rounds: list[set[Mark]] = []
-        while state not in met:
-            met[state] = len(rounds)
-            marks: set[Mark] = set()
-            for letter in cycle:
-                state, said = self.step(state, letter)
-                marks |= said
-            rounds.append(marks)
-        for_ever = set().union(*rounds[met[state] :])
-        return any((pair, "fin") not in for_ever and (pair, "inf") in for_ever for pair in range(self.pairs))

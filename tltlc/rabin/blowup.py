@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.automaton.blowup import Size, blamed
+from tltlc.automaton.blowup import ADVICE, Size, blamed, why
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.rabin.construct import rabin
@@ -18,7 +18,9 @@ _FOR_ALL_PARTS: Final = 2_000_000
 
 def blow_up(spec: Spec, reason: Exception) -> TltlError:
     """The error for a spec whose automaton takes too much: TLT0501, or TLT0502 for a guard's prime implicants."""
-    too_large = "takes too long to make" if isinstance(reason, OutOfWork) else "needs too much memory"
+    too_large, advice = why(reason), ADVICE
+    if isinstance(reason, OutOfWork):
+        too_large, advice = "takes too long to make", f"{ADVICE}; or allow more work by `--state-budget`"
     left = _FOR_ALL_PARTS
 
     def size(part: Part, spec: Spec) -> Size | None:
@@ -36,4 +38,4 @@ def blow_up(spec: Spec, reason: Exception) -> TltlError:
         words = f"{states} state{'s' * (states != 1)} and {pairs} pair{'s' * (pairs != 1)}"
         return Size(states * max(pairs, 1), words)
 
-    return blamed(spec, reason, too_large, size)
+    return blamed(spec, reason, too_large, size, advice)

@@ -2,37 +2,44 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.rabin.analysis import analysis_of_rabin
 from tltlc.rabin.assembly import assembled
 from tltlc.rabin.blowup import blow_up
-from tltlc.rabin.construct import DEFAULT_WORK, rabin
+from tltlc.rabin.construct import rabin
 from tltlc.rabin.work import OutOfWork, Work
 from tltlc.rabin.written import Writer, text_of
 from tltlc.resolve.spec import Spec
 
+STEPS_PER_STATE: Final = 400
+"""Steps of work allowed for each state of the budget."""
 
-def build_infinite(spec: Spec) -> Fspa:
+
+def build_infinite(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
     """The deterministic, complete Rabin automaton of a specification over infinite traces.
 
     A state accepts (``accepting``) that lies on an accepted cycle; a trap is one from which none is reached.  Raises
-    :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where the construction does not end in time, TLT0502
-    where a guard has too many prime implicants.
+    :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where the construction takes more than
+    :data:`STEPS_PER_STATE` steps for each state of ``state_budget``, TLT0502 where a guard has too many prime
+    implicants.
     """
     with recursion_room():
         try:
-            return _build(spec)
+            return _build(spec, STEPS_PER_STATE * state_budget)
         except (OutOfWork, OutOfSteps, TooManyPrimes, RecursionError) as reason:
             raise blow_up(spec, reason) from None
 
 
-def _build(spec: Spec) -> Fspa:
+def _build(spec: Spec, work: int) -> Fspa:
     names = [atom.name for atom in spec.atoms]
-    automaton = rabin(spec.formula, names, spec.exclusive)
-    analysis = analysis_of_rabin(automaton, Work(DEFAULT_WORK))
+    automaton = rabin(spec.formula, names, spec.exclusive, work)
+    analysis = analysis_of_rabin(automaton, Work(work))
     writer = Writer(spec.formula)
 
     def text(state: int) -> Text:

@@ -26,16 +26,15 @@ from tltlc.rabin.local import IMPOSSIBLE, State, has_turns, local, merged, parts
 from tltlc.rabin.pairs import Piece, with_pairs
 from tltlc.rabin.pieces import Place, joined
 from tltlc.rabin.shrink import shrunk
-from tltlc.rabin.work import OutOfWork, Work
+from tltlc.rabin.work import DEFAULT_WORK, OutOfWork, Work
 from tltlc.record import replace
-
-DEFAULT_WORK: Final = 20_000_000
-"""Steps in all; a step takes about a microsecond."""
 
 _FOR_AN_ATTEMPT: Final = 400_000
 _FOR_LANGUAGES: Final = 1_000_000
 _FOR_SHRINKING: Final = 400_000
-"""Steps for one way to make a component, and for finding states of equal language; what takes more is left out."""
+"""Steps for one way to make a component, for finding states of equal language, and for doing without states; what takes
+more is left out.
+"""
 
 Labels = dict[int, int]
 """By labels, which are obligations of :class:`~tltlc.rabin.after.After`."""
@@ -60,6 +59,8 @@ def rabin(
 class _Construction:
     def __init__(self, formula: Formula, atoms: Sequence[str], exclusive: Sequence[Sequence[int]], work: int) -> None:
         self.work = Work(work)
+        # Where more is allowed in all, it is because the default is too little for a component.
+        self._for_an_attempt = _FOR_AN_ATTEMPT * max(1, work // DEFAULT_WORK)
         self.letters: Letters[Any] = Letters(self.work)
         self.after = After(atoms, self.letters)
         self.initial = self.after.obligation(formula)
@@ -161,7 +162,7 @@ class _Construction:
             if in_turn and not has_turns(normal):
                 continue
             try:
-                with self.work.at_most(_FOR_AN_ATTEMPT):
+                with self.work.at_most(self._for_an_attempt):
                     skeleton, parts = parts_of(self.after, normal, keep=keep, in_turn=in_turn)
                     whole = local(self.letters, step_of, inside, first, skeleton, parts)
                     if found := factor(self.letters, whole, lambda state: state[:1], self.work):

@@ -39,14 +39,16 @@ def with_pairs(letters: Letters[Any], one: Local, work: Work) -> Piece:
     found: list[Piece] = []
     direct = as_it_stands(letters, one)
     try:
-        with work.at_most(work.left if direct is None else _FOR_FEWER_PAIRS):
+        with work.at_most(work.left // 2 if direct is None else _FOR_FEWER_PAIRS):
             tree = decomposition(_edges(letters, one), one.accepts, work)
-            found = [_walked(letters, one, tree, one_at_a_time=each, work=work) for each in (False, True)]
+            found.append(_walked(letters, one, tree, one_at_a_time=False, work=work))
+            found.append(_walked(letters, one, tree, one_at_a_time=True, work=work))
     except OutOfWork:
-        if direct is None:
-            raise
+        pass
     if direct is not None:
         found.append(direct)
+    if not found:
+        found.append(_in_turn(letters, one, work))
     return min(found, key=lambda piece: (len(piece.steps), piece.pairs))
 
 
@@ -66,6 +68,37 @@ def as_it_stands(letters: Letters[Any], one: Local) -> Piece | None:
     memo: dict[int, int] = {}
     steps = {state: letters.mapped(change, step, memo) for state, step in one.steps.items()}
     return Piece(one.labels, steps, len(one.accepts))
+
+
+def _in_turn(letters: Letters[Any], one: Local, work: Work) -> Piece:
+    """The component where each clause waits for its ``infs`` one after the other, which is always a Rabin pair."""
+    orders = [sorted(clause.infs) for clause in one.accepts]
+    first = next(iter(one.steps))
+
+    def step_of(state: State) -> int:
+        inner, waiting = state
+
+        def change(leaf: Leaf) -> tuple[State, PairMarks]:
+            target, marks = leaf
+            if target[0] == "exit":
+                return target, NO_MARKS
+            work.spend(1 + len(orders))
+            said: set[Mark] = {(pair, "fin") for pair, each in enumerate(one.accepts) if each.fins & marks}
+            following = []
+            for pair, (order, place) in enumerate(zip(orders, waiting, strict=True)):
+                while place < len(order) and order[place] in marks:
+                    place += 1
+                if place == len(order):
+                    said.add((pair, "inf"))
+                    place = 0
+                following.append(place)
+            return (target, tuple(following)), frozenset(said)
+
+        work.spend(10)
+        return letters.mapped(change, one.steps[inner], {})
+
+    steps, best = explored(letters, (first, (0,) * len(orders)), step_of)
+    return Piece({state: one.labels[state[0]] for state in best}, {state: steps[state] for state in best}, len(orders))
 
 
 def _edges(letters: Letters[Any], one: Local) -> list[Edge]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from tltlc.rabin.automaton import NO_MARKS, PairMarks, Rabin
@@ -68,19 +69,41 @@ def _reached(letters: Letters[Any], steps: Mapping[Place, int], initial: Place) 
 def _told_apart(
     letters: Letters[Any], steps: Mapping[Place, int], reached: Sequence[Place], apart: Sequence[bool]
 ) -> dict[Place, int]:
-    """Numbers from 0 on in order, the same for states that ``apart``, targets and marks do not tell apart."""
-    block: dict[Place, int] = dict(zip(reached, apart, strict=True))
-    count = 0
-    while count < len(set(block.values())):
-        count = len(set(block.values()))
+    """Numbers from 0 on in order, the same for states that ``apart``, targets and marks do not tell apart.
+
+    Blocks are split until they are none; only states that lead to what got a new number are looked at again.
+    """
+    sources: dict[Place, list[Place]] = {place: [] for place in reached}
+    for place in reached:
+        for leaf in letters.values(steps[place]):
+            if leaf is not None:
+                sources[leaf[0]].append(place)
+    block: dict[Place, int] = dict(zip(reached, map(int, apart), strict=True))
+    sizes = Counter(block.values())
+    signature: dict[int, int | None] = dict.fromkeys(sizes)
+    """What all states of a block had in common when it was last looked at."""
+    dirty: Iterable[Place] = reached
+    while dirty:
         memo: dict[int, int] = {}
-        numbers: dict[tuple[int, int], int] = {}
-        signatures = [(block[place], _read(letters, steps[place], block, memo)) for place in reached]
-        block = {
-            place: numbers.setdefault(signature, len(numbers))
-            for place, signature in zip(reached, signatures, strict=True)
-        }
-    return block
+        groups: dict[tuple[int, int], list[Place]] = {}
+        for place in dirty:
+            letters.work.spend()
+            groups.setdefault((block[place], _read(letters, steps[place], block, memo)), []).append(place)
+        moved: list[Place] = []
+        for (number, found), members in groups.items():
+            if signature[number] == found:
+                continue
+            if signature[number] is None or len(members) == sizes[number]:
+                signature[number] = found
+                continue
+            sizes[number] -= len(members)
+            new = len(sizes)
+            sizes[new], signature[new] = len(members), found
+            block.update(dict.fromkeys(members, new))
+            moved += members
+        dirty = dict.fromkeys(source for place in moved for source in sources[place])
+    numbers: dict[int, int] = {}
+    return {place: numbers.setdefault(block[place], len(numbers)) for place in reached}
 
 
 def _read(letters: Letters[Any], step: int, number: Mapping[Place, int], memo: dict[int, int]) -> int:

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Final
+
+DEFAULT_WORK: Final = 20_000_000
+"""Steps that making, reading or comparing automata may take, each of one to three microseconds."""
 
 
 class OutOfWork(Exception):
@@ -11,7 +15,7 @@ class OutOfWork(Exception):
 
 
 class Work:
-    """What is left of a budget of steps, each some microseconds."""
+    """What is left of a budget of steps."""
 
     __slots__ = ("left",)
 

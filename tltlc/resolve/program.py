@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
 from tltlc.logic.formula import Formula
 from tltlc.record import replace
@@ -14,13 +15,13 @@ from tltlc.resolve.context import Context
 from tltlc.resolve.declarations import declare
 from tltlc.resolve.imports import load
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.problem import ResolutionError, problem
+from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.scope import Scope, build_scopes
 from tltlc.resolve.spec import Program, Spec, Vocabulary
 from tltlc.resolve.specs import spec, vocabulary
 from tltlc.resolve.tests import resolved_test
 from tltlc.resolve.values import Env
-from tltlc.source import SourceFile
+from tltlc.source import SourceFile, Span
 
 FormulaOf = Callable[[Expr], "Formula | None"]
 """The formula that an expression stands for, None where it stands for none."""
@@ -49,32 +50,16 @@ def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Prog
 
 
 def resolve_atoms(
-    module: Module, written: Sequence[tuple[Expr, SourceFile]], options: ResolveOptions | None = None
+    module: Module, written: Sequence[SourceFile], options: ResolveOptions | None = None
 ) -> tuple[Vocabulary | None, FormulaOf, tuple[Diagnostic, ...]]:
-    """The atoms that formulas stand for which are written elsewhere, in the words of a module, and what is to be said;
-    and a way to read further formulas, of which nothing is said.
+    """The atoms that texts elsewhere stand for, in the words of a module, and what is to be said.
 
-    None where one of the formulas is in error, is no atom, or is the same atom as another one.
+    A text is a formula that is an atom, or the name that an atom of the module's own specs has, which says no units.
+    None where the module or a text is in error, and where two are one atom.  Further formulas can be read, of which
+    nothing is said.
     """
     env, groups = _declared(module, options or ResolveOptions())
     context = env.context
-    found: dict[str, Label] = {}
-    for expression, source in written:
-        outside = replace(env, scope=replace(env.scope, module=Module(source, (), ())))
-        here = Label(source, expression.span)
-        try:
-            atom = formulas.formula(expression, outside)
-            if atom.op != "atom":
-                title, advice = "this is no atom", "name a predicate, a `bool` signal or a comparison with `<` or `>`"
-                raise problem("TLT0655", title, source, here.span, advice=advice)
-            if atom.name in found:
-                title, advice = f"`{atom.name}` stands here twice", "give each atom a predicate of its own"
-                raise problem("TLT0655", title, source, here.span, advice=advice, other=(found[atom.name],))
-            found[atom.name] = here
-        except ResolutionError as failure:
-            context.log.add(failure.diagnostic)
-    check_predicates(context)
-    said = context.log.all()
     kept: list[Expr] = []
 
     def formula_of(expression: Expr) -> Formula | None:
@@ -85,7 +70,46 @@ def resolve_atoms(
         except ResolutionError:
             return None
 
+    if context.log.all():
+        return None, formula_of, context.log.all()
+    own, context.log = context.log, Log()
+    _specs(env.scope, groups, env)
+    context.log = own
+    found: dict[str, Label] = {}
+    for source in written:
+        try:
+            name, here = _atom(source, env, kept)
+            if name in found:
+                title, advice = f"`{name}` stands here twice", "give each atom a predicate of its own"
+                raise problem("TLT0655", title, source, here.span, advice=advice, other=(found[name],))
+            found[name] = here
+        except ResolutionError as failure:
+            context.log.add(failure.diagnostic)
+    check_predicates(context)
+    said = context.log.all()
     return vocabulary(found, groups, context) if len(found) == len(written) else None, formula_of, said
+
+
+def _atom(source: SourceFile, env: Env, kept: list[Expr]) -> tuple[str, Label]:
+    """The name of the atom that a text stands for, and where it stands; raises ResolutionError where it is none."""
+    text = source.text.strip()
+    start = source.text.find(text)
+    here = Label(source, Span(start, start + len(text)))
+    name = " ".join(text.split())
+    if name in env.context.atoms:
+        return name, here
+    expression, problems = parse_formula(source)
+    for each in problems:
+        if each.severity == "error":
+            raise ResolutionError(each)
+        env.context.log.add(each)
+    assert expression is not None
+    kept.append(expression)
+    found = formulas.formula(expression, replace(env, scope=replace(env.scope, module=Module(source, (), ()))))
+    if found.op != "atom":
+        title, advice = "this is no atom", "name a predicate, a `bool` signal or a comparison with `<` or `>`"
+        raise problem("TLT0655", title, source, here.span, advice=advice)
+    return found.name, here
 
 
 def _declared(module: Module, options: ResolveOptions) -> tuple[Env, tuple[tuple[str, ...], ...]]:

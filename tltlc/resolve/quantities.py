@@ -165,6 +165,8 @@ def _is_per_time(expr: tree.Binary, env: Env) -> bool:
     A signal or param of that name takes precedence, except in constants, where it could not stand.
     """
     left, per = expr.left, expr.right
+    if isinstance(left, tree.Unary) and left.op == "-":
+        left = left.operand
     if expr.op != "/" or not isinstance(left, Number) or left.unit is None:
         return False
     if not isinstance(per, Name) or per.name not in units.time_units() or per.name in env.local:

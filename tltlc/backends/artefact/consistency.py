@@ -15,7 +15,7 @@ from tltlc.resolve import spec
 Declared = Union[spec.Signal, spec.Param, spec.Atom]
 
 CYCLES_WORK: Final = 1_000_000
-"""Steps, of some microseconds each, after which what only cycles can tell is left unchecked."""
+"""Steps after which what only cycles can tell is left unchecked."""
 
 
 @record

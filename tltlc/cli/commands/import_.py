@@ -92,5 +92,5 @@ def command(
         options = ImportOptions(atoms, name, level, limit, judge, resolve, budget)
         fspa, found = load(source, library, options)
         report.add(found)
-        write_automata([fspa], asked, folder, project, report)
+        write_automata([fspa], asked, folder, project, report, (file, predicates))
     return report.status
