@@ -6,6 +6,7 @@ import os
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
+from shutil import which
 
 import pytest
 
@@ -37,3 +38,8 @@ def test_the_tutorial_runs(tmp_path: Path) -> None:
 
 def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
     assert run_page((DOCS / "guides" / "hoa.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 1
+
+
+@pytest.mark.skipif(which("g++") is None, reason="g++ is not installed")
+def test_the_guide_to_c_runs(tmp_path: Path) -> None:
+    assert run_page((DOCS / "guides" / "unreal.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 2
