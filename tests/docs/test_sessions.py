@@ -40,6 +40,11 @@ def test_the_guide_to_automata_of_other_tools_runs(tmp_path: Path) -> None:
     assert run_page((DOCS / "guides" / "hoa.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 1
 
 
-@pytest.mark.skipif(which("g++") is None, reason="g++ is not installed")
-def test_the_guide_to_c_runs(tmp_path: Path) -> None:
-    assert run_page((DOCS / "guides" / "unreal.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 2
+@pytest.mark.parametrize(
+    ("page", "tool", "commands"),
+    [("unreal", "g++", 2), ("web", "node", 2), ("love", "lua5.4", 2), ("unity", "mcs", 2), ("godot", "sh", 1)],
+)
+def test_the_guides_to_engines_run(page: str, tool: str, commands: int, tmp_path: Path) -> None:
+    if which(tool) is None:
+        pytest.skip(f"{tool} is not installed")
+    assert run_page((DOCS / "guides" / f"{page}.md").read_text(encoding="utf-8"), Shell(tmp_path)) == commands

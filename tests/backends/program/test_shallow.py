@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+import random
+from collections.abc import Iterable
+from functools import reduce
+from itertools import accumulate
+
+from tests.backends.program.interpreter import Scope
+from tltlc.backends.program.printer import Printer
+from tltlc.backends.program.shallow import shallow
+from tltlc.backends.program.tree import Assign, Bool, Call, Declare, Expression, If, Negate, Real, Statement, Variable
+
+
+def greatest(terms: Iterable[Expression]) -> Expression:
+    return reduce(lambda left, right: Call("max", (left, right)), terms)
+
+
+def depth(line: str) -> int:
+    """How deep brackets nest."""
+    return max(accumulate((character == "(") - (character == ")") for character in line))
+
+
+def test_values_stay_the_same() -> None:
+    draw = random.Random(7)
+    numbers = [Real(draw.uniform(-1.0, 1.0)) for _ in range(200)]
+    deep = Call("min", (Negate(greatest(numbers[:150])), Call("min", (Real(0.5), greatest(numbers)))))
+    statements = [If(((Bool(True), (Declare("x", "real", deep), Assign("y", Negate(Variable("x"))))),))]
+    cut = shallow(statements)
+    found, right = Scope({}), Scope({})
+    found.run([Declare("y", "real", None, changes=True), *cut])
+    right.run([Declare("y", "real", None, changes=True), *statements])
+    assert found.values["y"] == right.values["y"]
+    assert max(map(depth, Printer().lines(cut))) <= 32
+
+
+def test_what_is_shallow_stays_as_it_is() -> None:
+    statements: list[Statement] = [Assign("x", Call("min", (Real(1.0), Negate(Real(2.0)))))]
+    assert shallow(statements) == tuple(statements)
+
+
+def test_new_names_are_no_other_ones() -> None:
+    statements = [Assign("x", greatest(Variable(f"part{number}") for number in range(70)))]
+    cut = shallow(statements, [f"part{number}" for number in range(70)])
+    assert [line.name for line in cut if isinstance(line, Declare)] == ["part_1", "part_2"]

@@ -1,0 +1,341 @@
+"""The generated C# is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus has the other cases."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import shutil
+import struct
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.backends.strategies import hostile_automata
+from tests.backends.test_c import FAR, HEAD, NAMES, Outcome, batches, expected, trace_of
+from tests.conformance.runners.csharp import STRICT, assembled
+from tests.fixtures import cover_and_hide
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.expression import Const, Op, Signal
+from tltlc.logic import formula as f
+from tltlc.monitor import Monitor
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+pytestmark = pytest.mark.skipif(not (shutil.which("mcs") and shutil.which("mono")), reason="there is no Mono here")
+
+
+def written(fspa: Fspa, folder: Path) -> str:
+    for name, text in emit("csharp", fspa).items():
+        assert isinstance(text, str)
+        (folder / name).write_text(text)
+    return (folder / f"{fspa.name}_monitor.cs").read_text()
+
+
+def compiled(folder: Path, *words: str) -> None:
+    done = subprocess.run(["mcs", *STRICT[:-1], *words], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def ran(folder: Path, *words: str, stdin: bytes = b"") -> Outcome:
+    done = subprocess.run(["mono", *words], input=stdin, capture_output=True, cwd=folder, timeout=60)
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+class Programs:
+    """The programs of several automata, compiled as one."""
+
+    def __init__(self, folder: Path, fspas: Sequence[Fspa]) -> None:
+        self.fspas = [replace(fspa, name=f"spec{number}") for number, fspa in enumerate(fspas)]
+        self._folder = folder
+        for fspa in self.fspas:
+            written(fspa, folder)
+        assembled(folder, [fspa.name for fspa in self.fspas])
+
+    def run(self, number: int, trace: str) -> Outcome:
+        return ran(self._folder, "monitors.exe", f"spec{number}", "--full", "-", stdin=trace.encode())
+
+
+# --- names and texts ------------------------------------------------------------------------------
+
+
+@batches
+@given(data=st.data())
+def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
+    programs = Programs(tmp_path, [data.draw(hostile_automata()) for _ in range(6)])
+    for number, fspa in enumerate(programs.fspas):
+        assert programs.run(number, "nothing\n1\n")[0] == 1
+        name = fspa.signals[0].name
+        if name == name.strip() and "\0" not in name:
+            samples = [{name: value, "health": 1.0} for value in (-1.0, 0.0, 1.0)]
+            assert programs.run(number, trace_of(samples, [name, "health"])) == expected(fspa, samples)
+
+
+def test_hostile_names_stay_apart(tmp_path: Path) -> None:
+    """Every atom is its own signal; awkward names, and all names of the file itself."""
+    own = re.findall(r"\w+", written(cover_and_hide(), tmp_path))
+    names = [name for name in dict.fromkeys([*NAMES, *own]) if "\0" not in name]
+    atoms = [f"v{index}" for index in range(len(names))]
+    fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, atoms)))))
+    fspa = replace(
+        fspa,
+        signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
+        params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+    )
+    programs = Programs(tmp_path, [fspa])
+    samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
+    _, out, err = programs.run(0, trace_of(samples, names))
+    assert [row["limiting"] for row in csv.DictReader(io.StringIO(out, newline=""))] == names, err
+
+
+# --- as a library ---------------------------------------------------------------------------------
+
+LIBRARY = r"""
+using System;
+using Monitor = Tltl.cover_and_hide_monitor;
+
+internal static class Library
+{
+    private static void Main()
+    {
+        var given = Monitor.Params.Defaults;
+        given.level_size = 1.0;
+        try { new Monitor(given); } catch (ArgumentException problem) { Console.WriteLine(problem.Message); }
+        given.level_size = 10.0;
+        var monitor = new Monitor(given);
+        for (int round = 0; round < 2; round++)
+        {
+            var sample = Monitor.Signals.Missing;
+            sample.distance_s1 = sample.distance_s2 = sample.distance_exit = 5.0;
+            Tell(monitor, sample);
+            sample.health = 2.0;
+            var result = monitor.Step(sample);
+            Console.WriteLine("{0} {1} {2:R} {3:R}", result.Label, result.Limiting, result.Progress, monitor.ValueOf(0));
+            sample.distance_s1 = sample.distance_exit = 0.5;
+            Tell(monitor, sample);
+            Console.WriteLine("{0} {1} {2}", monitor.State, monitor.Steps, monitor.Done);
+            monitor.Reset();
+        }
+        for (int i = 0; i < monitor.NoticeCount; i++) Console.WriteLine(monitor.NoticeAt(i));
+        var far = Monitor.Signals.Missing;
+        far.distance_s1 = far.distance_s2 = far.distance_exit = 20.0;
+        far.health = 1.0;
+        Monitor.Result ignored;
+        monitor.TryStep(far, out ignored);
+        long before = GC.GetTotalMemory(false);
+        for (int i = 0; i < 2000; i++) monitor.TryStep(far, out ignored);
+        Console.WriteLine(GC.GetTotalMemory(false) - before);
+    }
+
+    private static void Tell(Monitor monitor, Monitor.Signals sample)
+    {
+        try { monitor.Step(sample); }
+        catch (Monitor.RefusedException refused) { Console.WriteLine("{0}: {1}", refused.Problem, refused.Message); }
+    }
+}
+"""
+
+
+def test_library(tmp_path: Path) -> None:
+    fspa = cover_and_hide()
+    written(fspa, tmp_path)
+    (tmp_path / "library.cs").write_text(LIBRARY)
+    compiled(tmp_path, "-out:library.exe", "library.cs", "cover_and_hide_monitor.cs")
+    monitor = Monitor(fspa, {"level_size": 10.0})
+    step = monitor.step({"distance(s1)": 5.0, "distance(s2)": 5.0, "distance(exit)": 5.0, "health": 1.0})
+    together = "step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"
+    rows = [
+        "NotFinite: step 1: no finite number for the signal `health`",
+        f"{step.label} near(s1) {step.progress!r} {monitor.values[0]!r}",
+        f"Together: {together}",
+        "0 1 False",
+    ]
+    lines = [
+        "the param `level_size` cannot be 1: its range is [2, 10000]",
+        *rows,
+        *rows,
+        "step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
+        "0",
+    ]
+    assert ran(tmp_path, "library.exe") == (0, "".join(f"{line}\n" for line in lines), "")
+
+
+UNITY = r"""
+namespace UnityEngine
+{
+    using System;
+
+    public class Object { }
+
+    public class MonoBehaviour : Object { }
+
+    [AttributeUsage(AttributeTargets.Field)]
+    public sealed class TooltipAttribute : Attribute { public TooltipAttribute(string text) { } }
+
+    [AttributeUsage(AttributeTargets.Class)]
+    public sealed class AddComponentMenu : Attribute { public AddComponentMenu(string path) { } }
+
+    public static class Debug
+    {
+        public static void LogError(object message, Object context) { Console.WriteLine("error: " + message); }
+
+        public static void LogWarning(object message, Object context) { Console.WriteLine("warning: " + message); }
+    }
+}
+
+namespace UnityEngine.Events
+{
+    using System;
+
+    public class UnityEvent
+    {
+        private Action _called;
+
+        public void AddListener(Action call) { _called += call; }
+
+        public void Invoke() { if (_called != null) _called(); }
+    }
+
+    public class UnityEvent<T>
+    {
+        private Action<T> _called;
+
+        public void AddListener(Action<T> call) { _called += call; }
+
+        public void Invoke(T value) { if (_called != null) _called(value); }
+    }
+}
+
+internal sealed class Game : Tltl.cover_and_hide_monitor_behaviour
+{
+    private static void Main()
+    {
+        var game = new Game();
+        game.onDone.AddListener(() => System.Console.WriteLine("done"));
+        game.onViolated.AddListener(() => System.Console.WriteLine("violated"));
+        game.onProgress.AddListener(value => System.Console.WriteLine("progress {0:F2}", value));
+        game.Awake();
+        game.FixedUpdate();
+        System.Console.WriteLine(game.Step());
+        game.signals.distance_s1 = game.signals.distance_s2 = game.signals.distance_exit = 20.0;
+        game.signals.health = 2.0;
+        game.stepInFixedUpdate = true;
+        game.FixedUpdate();
+        game.signals.distance_s1 = 0.5;
+        game.FixedUpdate();
+        game.signals.health = 0.0;
+        game.FixedUpdate();
+        game.FixedUpdate();
+        System.Console.WriteLine(game.Result.Verdict);
+        game.parameters.level_size = 0.0;
+        game.Restart();
+        System.Console.WriteLine(game.Step());
+    }
+}
+"""
+
+
+def test_the_component_for_unity(tmp_path: Path) -> None:
+    written(cover_and_hide(), tmp_path)
+    (tmp_path / "game.cs").write_text(UNITY)
+    sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
+    compiled(tmp_path, "-out:game.exe", *sources)
+    lines = [
+        *("error: step 1: no finite number for the signal `distance(s1)`", "False"),
+        "warning: step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
+        *("progress 0.33", "violated", "done", "Violated"),
+        *("error: the param `level_size` cannot be 0: its range is [2, 10000]", "False"),
+    ]
+    assert ran(tmp_path, "game.exe") == (0, "".join(f"{line}\n" for line in lines), "")
+
+
+# --- as a program ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("program")
+    written(cover_and_hide(), folder)
+    compiled(folder, "-define:TLTL_MAIN", "cover_and_hide_monitor.cs")
+    return folder
+
+
+def test_program(program: Path) -> None:
+    samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
+    status, out, err = expected(cover_and_hide(), samples)
+    short = "".join(line.rsplit(",", 2)[0] + "\n" for line in out.splitlines())
+    text = trace_of(samples, [*FAR])
+    (program / "trace.csv").write_text(text)
+    assert ran(program, "cover_and_hide_monitor.exe", "--full", "trace.csv") == (status, out, err)
+    assert ran(program, "cover_and_hide_monitor.exe", "-", stdin=text.encode()) == (status, short, err)
+
+
+@pytest.mark.parametrize(
+    ("trace", "arguments", "status", "message"),
+    [
+        ("", ["-"], 1, "error: the trace holds no sample\n"),
+        (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
+        ("health\n1\n", ["-"], 1, "error: the trace has no column for `distance(s1)`\n"),
+        (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
+        (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
+        (f"{HEAD}0x1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `0x1`, no number\n"),
+        (f"{HEAD}--1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `--1`, no number\n"),
+        (f"{HEAD}nan,1,1,1\n", ["-"], 1, "error: step 1: no finite number for the signal `health`\n"),
+        (f"{HEAD}1e999,1,1,1\n", ["-"], 1, "error: step 1: no finite number for the signal `health`\n"),
+        (f'{HEAD}"1"2,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
+        (f"{HEAD}1,0.5,0.5,20\n", ["-"], 1, "error: step 1: `near(s1)` and `near(s2)` hold at once, against "),
+        ("", ["missing.csv"], 3, "error: cannot read `missing.csv`: "),
+        ("", ["."], 3, "error: cannot read `.`: "),
+        ("", [], 2, "usage: "),
+        ("", ["--full"], 2, "usage: "),
+        ("", ["-", "--full"], 2, "usage: "),
+    ],
+)
+def test_program_errors(program: Path, trace: str, arguments: list[str], status: int, message: str) -> None:
+    found, out, err = ran(program, "cover_and_hide_monitor.exe", *arguments, stdin=trace.encode())
+    assert (found, out) == (status, "")
+    assert err.startswith(message)
+
+
+DECIMALS = r"""
+using System;
+using Decimals = Tltl.cover_and_hide_monitor_program.Decimals;
+
+internal static class Numbers
+{
+    private static void Main()
+    {
+        string line;
+        while ((line = Console.ReadLine()) != null)
+        {
+            double value;
+            bool read = Decimals.Parse(line, out value);
+            Console.WriteLine("{0} {1:x16} {2}", read, BitConverter.DoubleToInt64Bits(value), Decimals.Text(-value));
+        }
+    }
+}
+"""
+
+
+def test_decimals_are_exact(program: Path) -> None:
+    """Halves of the last digit, powers of two and ten, and what Mono's own functions miss by a bit."""
+    values = [0.5**power for power in range(0, 1075, 7)] + [10.0**power for power in range(-323, 309)]
+    values += [(2 * odd + 1) / 2.0**power for power in range(1, 60) for odd in (3, 5461, 131071, 200003)]
+    values += [numerator / 97 for numerator in range(98)] + [0.00454510748386383, 3.220574384798567e-232, 5e-324]
+    texts = [repr(value) for value in values]
+    texts += ["9007199254740993", "9007199254740993.00001", "1e23", "1.7976931348623159e308", "2e-324", "3e-324", ".5", "5."]
+    (program / "numbers.cs").write_text(DECIMALS)
+    words = ("-define:TLTL_MAIN", "-main:Numbers", "-out:numbers.exe", "numbers.cs", "cover_and_hide_monitor.cs")
+    compiled(program, *words)
+    status, out, err = ran(program, "numbers.exe", stdin="".join(f"{text}\n" for text in texts).encode())
+    assert (status, err) == (0, "")
+    for text, line in zip(texts, out.splitlines(), strict=True):
+        bits = struct.pack(">d", float(text)).hex()
+        assert line == f"True {bits} {-float(text):.17g}", text

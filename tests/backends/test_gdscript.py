@@ -1,0 +1,477 @@
+"""The generated scripts, run by Godot 3, are :class:`tltlc.monitor.Monitor`, whatever the names in the spec.
+
+Those for Godot 4 are parsed, where gdtoolkit's ``gdparse`` is found, and differ from the others in few lines.
+"""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import io
+import math
+import os
+import random
+import re
+import shutil
+import struct
+import subprocess
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from tests.backends.strategies import HOSTILE, hostile_automata
+from tests.fixtures import cover_and_hide
+from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
+from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.backends.godot.names import RESERVED, snake_case
+from tltlc.backends.godot.numbers import number
+from tltlc.expression import Condition, Const, Expression, Op, Signal, When
+from tltlc.logic import formula as f
+from tltlc.monitor import Monitor, MonitorError
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+HEADER = ["step", "state", "verdict", "accepting", "done", "progress", "reward", "robustness", "limiting"]
+GDPARSE = os.environ.get("GDPARSE") or shutil.which("gdparse")
+
+runs = pytest.mark.skipif(not shutil.which("godot3-server"), reason="there is no Godot 3 here")
+parses = pytest.mark.skipif(not GDPARSE, reason="gdparse is not installed: no script for Godot 4 is parsed")
+batches = settings(
+    max_examples=2,
+    deadline=None,
+    derandomize=True,
+    phases=(Phase.generate,),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture],
+)
+
+Sample = Mapping[str, float]
+Outcome = tuple[int, str, str]
+"""Exit status, standard output, standard error."""
+
+
+def write(folder: Path, fspa: Fspa, target: str = "gdscript3") -> None:
+    for name, text in emit(target, fspa).items():
+        assert isinstance(text, str)
+        (folder / name).write_text(text, encoding="utf-8")
+    (folder / "project.godot").touch()
+
+
+def run(folder: Path, script: str, *arguments: str, stdin: bytes = b"") -> Outcome:
+    """What a script prints, without what the engine says of itself."""
+    command = ["godot3-server", "--path", ".", "-s", script, *arguments]
+    environment = {**os.environ, "LANG": "en"}
+    done = subprocess.run(command, cwd=folder, input=stdin, capture_output=True, env=environment, timeout=60)
+    banner, _, out = done.stdout.decode().partition("\n \n")
+    assert banner.startswith("Godot Engine v3.")
+    return done.returncode, out, done.stderr.decode()
+
+
+def monitored(folder: Path, fspa: Fspa, trace: str) -> Outcome:
+    write(folder, fspa)
+    (folder / "trace.csv").write_text(trace, encoding="utf-8", newline="")
+    return run(folder, f"{fspa.name}_monitor_main.gd", "--full", "trace.csv")
+
+
+def trace_of(samples: Sequence[Sample], names: Sequence[str]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow([*names, "unused"])
+    writer.writerows([*(repr(sample[name]) for name in names), "-"] for sample in samples)
+    return text.getvalue()
+
+
+def expected(fspa: Fspa, samples: Sequence[Sample]) -> Outcome:
+    """What the program is to print."""
+    monitor, text, status, errors = Monitor(fspa), io.StringIO(), 0, ""
+    rows = csv.writer(text, lineterminator="\n")
+    for sample in samples:
+        try:
+            step = monitor.step(sample)
+        except MonitorError as error:
+            status, errors = 1, f"error: {error.diagnostics[0].title}\n"
+            break
+        if monitor.steps == 1:
+            rows.writerow(HEADER)
+        flags = ["true" if flag else "false" for flag in (step.accepting, step.done)]
+        figures = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
+        limiting = "" if step.limiting is None else step.limiting.replace("\0", "")
+        rows.writerow([monitor.steps, step.state, step.verdict, *flags, *figures, limiting])
+    warnings = "".join(f"warning: {notice.title}\n" for notice in monitor.notices)
+    return status, text.getvalue(), errors + warnings
+
+
+def comparable(text: str) -> str:
+    """Messages without numbers, of which Godot 3 writes six digits, and what names cannot hold."""
+    text = re.sub(r" is -?(\d|inf|nan)[^\n]*, outside [^\n]*", " is outside", text)
+    text = re.sub(r"the signal (`[^`]*`) is -?inf, not a finite number", r"no finite number for the signal \1", text)
+    return text.replace("\0", "")
+
+
+def check(folder: Path, fspa: Fspa, samples: Sequence[Sample]) -> None:
+    trace = trace_of(samples, [signal.name for signal in fspa.signals])
+    found, wanted = monitored(folder, fspa, trace), expected(fspa, samples)
+    assert (*found[:2], comparable(found[2])) == (*wanted[:2], comparable(wanted[2])), trace
+
+
+# --- equality -------------------------------------------------------------------------------------
+
+
+@runs
+@batches
+@given(data=st.data())
+def test_the_same_steps_on_random_automata(tmp_path: Path, data: st.DataObject) -> None:
+    for _ in range(6):
+        fspa = data.draw(automata())
+        names = [atom.name for atom in fspa.atoms]
+        rows = data.draw(atom_traces(fspa, max_size=12))
+        check(tmp_path, fspa, [dict(zip(names, row, strict=True)) for row in rows])
+
+
+@runs
+@batches
+@given(data=st.data())
+def test_the_same_values_of_atoms(tmp_path: Path, data: st.DataObject) -> None:
+    """Values, clamped values with their notices, and failures."""
+    whole = build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.atom("b")))))
+    for _ in range(14):
+        params = data.draw(st.tuples(numbers, numbers))
+        fspa = replace(
+            whole,
+            signals=(spec.Signal(SIGNALS[0], "number", None, 2.0), spec.Signal(SIGNALS[1], "number", -3.0, None)),
+            params=tuple(
+                spec.Param(name, "number", value, None, None) for name, value in zip(PARAMS, params, strict=True)
+            ),
+            atoms=(spec.Atom("a", data.draw(expressions())), spec.Atom("b", Signal(SIGNALS[0]))),
+        )
+        rows = data.draw(st.lists(st.tuples(numbers, numbers), min_size=3, max_size=3))
+        check(tmp_path, fspa, [dict(zip(SIGNALS, row, strict=True)) for row in rows])
+
+
+def one_atom(expression: Expression, *signals: spec.Signal) -> Fspa:
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    return replace(fspa, signals=signals, atoms=(spec.Atom("p", expression),), params=())
+
+
+NUMBER = spec.Signal("x", "number", None, None)
+X = Signal("x")
+
+
+@runs
+def test_the_same_on_special_cases(tmp_path: Path) -> None:
+    holds = spec.Signal("open", "bool", 0.0, 1.0)
+    deep: Expression = X
+    for _ in range(100):
+        deep = Op("*", (Const(0.5), Op("+", (Op("^", (deep, Const(2.0))), Const(0.25)))))
+    crowd = [f"a{index}" for index in range(10)]
+    crowded = build(spec_from_formula(f.eventually(f.atom("a0")), exclusive=[crowd, ("a1", "a2")]))
+    quiet = dict.fromkeys(crowd, -1.0)
+    order = f.atom("g")
+    for _ in range(150):
+        order = f.and_(f.atom("g"), f.next_(order))
+    decided: list[tuple[Fspa, list[Sample]]] = [
+        (build(spec_from_formula(formula)), [{}, {}]) for formula in (f.TRUE, f.FALSE, f.next_(f.TRUE))
+    ]
+    fspas: list[tuple[Fspa, list[Sample]]] = [
+        *decided,
+        (replace(build(spec_from_formula(f.next_(f.TRUE))), judge="limit", limit_steps=2), [{}, {}, {}]),
+        (one_atom(Op("-", (Signal("open"), Const(0.5))), holds), [{"open": 0.0}, {"open": 1.0}]),
+        (one_atom(Const(-0.5), holds), [{"open": 0.0}]),
+        (one_atom(Op("/", (Const(1.0), X)), NUMBER), [{"x": 4.0}, {"x": 0.0}]),
+        (one_atom(Op("sqrt", (X,)), NUMBER), [{"x": 0.25}, {"x": -0.0}, {"x": -1.0}]),
+        (one_atom(Op("^", (X, Const(0.5))), NUMBER), [{"x": 0.25}, {"x": -1.0}]),
+        (one_atom(Op("^", (X, Const(-1.0))), NUMBER), [{"x": 4.0}, {"x": 0.0}]),
+        (one_atom(Op("exp", (X,)), NUMBER), [{"x": -1.0}, {"x": 1e4}]),
+        (one_atom(Op("tanh", (Op("*", (X, X)),)), NUMBER), [{"x": 0.5}, {"x": 1e300}]),
+        (one_atom(Op("*", (X, X)), NUMBER), [{"x": 0.5}, {"x": 1e300}]),
+        (one_atom(X, NUMBER), [{"x": float("inf")}]),
+        (
+            one_atom(When(((Condition(">", (X, Const(0.0))), Op("/", (Const(1.0), X))),), Const(0.0)), NUMBER),
+            [{"x": 2.0}, {"x": 0.0}],
+        ),
+        (crowded, [quiet, {**quiet, "a3": 1.0}, {**quiet, "a3": 0.5, "a9": 1.0, "a1": 0.1}]),
+        (crowded, [{**quiet, "a1": 1.0, "a2": 1.0}]),
+        (build(spec_from_formula(order)), [{"g": 0.5}] * 152),
+    ]
+    with recursion_room():
+        fspas.append((one_atom(deep, NUMBER), [{"x": 0.5}]))
+    for fspa, samples in fspas:
+        check(tmp_path, fspa, samples)
+
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+def _values() -> list[float]:
+    draw = random.Random(11)
+    bits = [struct.unpack("<d", struct.pack("<Q", draw.getrandbits(62)))[0] for _ in range(150)]
+    edges = [5e-324, 2.2250738585072014e-308, 2.225073858507201e-308, 1e-5, 1e-4, 0.1, 1 / 3, 1.0 - 2**-53, 2**-600]
+    return [*edges, *(x if x <= 1.0 else 1.0 / x for x in bits), *(draw.random() for _ in range(50))]
+
+
+@runs
+def test_numbers_are_read_and_printed_exactly(tmp_path: Path) -> None:
+    samples: list[Sample] = [{"x": -value} for value in _values()]
+    check(tmp_path, one_atom(X, replace(NUMBER, low=-1.0, high=0.0)), samples)
+
+
+@runs
+def test_many_digits_and_ties_are_read_exactly(tmp_path: Path) -> None:
+    cells = [
+        "0.1000000000000000055511151231257827021181583404541015625",
+        f"-{0.5 + 2**-54:.60f}",
+        f"{0.75 + 2**-54:.60f}",
+    ]
+    cells += ["-" + "9" * 40 + "e-40", "1" + "0" * 30 + "E-31", "-2.4703282292062328e-324"]
+    cells += ["-1.7976931348623157e308", "-1.7976931348623158e308", "1e-9999999999", "-179769313486231580793e289"]
+    samples = [{"x": float(cell)} for cell in cells]
+    found = monitored(tmp_path, one_atom(Op("/", (X, Const(2.0))), NUMBER), "\n".join(["x", *cells, ""]))
+    wanted = expected(one_atom(Op("/", (X, Const(2.0))), NUMBER), samples)
+    assert (*found[:2], comparable(found[2])) == (*wanted[:2], comparable(wanted[2]))
+
+
+@runs
+def test_literals_are_exact(tmp_path: Path) -> None:
+    found = [*_values(), 1e22, 1e23, 1.7976931348623157e308, 123456789012345678.0, 1 / 30, 5 / 7, 1 / 365]
+    lines = ["extends SceneTree", "func _init():"]
+    lines += [f"\tprint(var2bytes({number(value)}).hex_encode())" for value in found]
+    (tmp_path / "numbers.gd").write_text("\n".join([*lines, "\tquit()", ""]))
+    (tmp_path / "project.godot").touch()
+    _, out, _ = run(tmp_path, "numbers.gd")
+    for value, text in zip(found, out.splitlines(), strict=True):
+        data = bytes.fromhex(text)
+        assert struct.unpack("<d" if len(data) == 12 else "<f", data[4:])[0] == value, number(value)
+
+
+def test_literals_are_read_by_people_where_they_can() -> None:
+    assert [number(value) for value in (20.0, 0.1, 1e-5, 2 / 13)] == ["20.0", "0.1", "1e-05", "(2.0 / 13.0)"]
+    assert math.pi == eval(number(math.pi))
+
+
+# --- names and texts ------------------------------------------------------------------------------
+
+NAMES = (
+    *("self", "state", "steps", "float", "class", "near", "signal", "min", "max", "Node", "Vector2", "PI", "node", "I"),
+    *("sample", "script", "free", "clear", "new", "target", "best", "reward", "done", "ends", "progress", "t", "OS"),
+    *("t_1", "t2_1", "INF", "NodePath", "nodePath", "Color", "match", "func", "and", "null", "bool", "_init", "values"),
+    *("x", "x_1", "x.1", "x(1)", "1", "a" * 300, "a,b", "#", "$x", "%s%n", "@@name@@", "\\", "tool", "yield", "await"),
+    *(text for text in HOSTILE if text == text.strip()),
+)
+
+
+def awkward() -> Fspa:
+    """Every atom is its own signal, all names are awkward, and each atom still means itself."""
+    names = [name for name in dict.fromkeys(NAMES) if "\0" not in name]
+    atoms = [f"v{index}" for index in range(len(names))]
+    fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, atoms)))))
+    return replace(
+        fspa,
+        signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
+        params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+    )
+
+
+@runs
+def test_hostile_names_stay_apart(tmp_path: Path) -> None:
+    fspa = awkward()
+    names = [signal.name for signal in fspa.signals]
+    samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
+    found = monitored(tmp_path, fspa, trace_of(samples, names))
+    assert found[:2] == expected(fspa, samples)[:2], found[2]
+    assert [row["limiting"] for row in csv.DictReader(io.StringIO(found[1], newline=""))] == names
+
+
+@runs
+@batches
+@given(data=st.data())
+def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
+    for _ in range(5):
+        fspa = data.draw(hostile_automata())
+        signal = fspa.signals[0].name
+        assert monitored(tmp_path, fspa, "nothing\n1\n")[0] == 1
+        if signal == signal.strip() and "\0" not in signal:
+            check(tmp_path, fspa, [{signal: value, "health": 1.0} for value in (-1.0, 0.0, 1.0)])
+
+
+def test_capitals_are_left_to_the_engine() -> None:
+    found = snake_case(["Node", "near", "isOpen", "is_open", "Sin"])
+    assert found == {"Node": "node", "isOpen": "is_open_1", "Sin": "sin_1"}
+    assert not set(found.values()) & RESERVED
+
+
+# --- the version for Godot 4 ----------------------------------------------------------------------
+
+
+def test_the_versions_differ_only_where_the_engines_do() -> None:
+    for fspa in (cover_and_hide(), awkward()):
+        four, three = (list(map(str, emit(target, fspa).values())) for target in ("gdscript", "gdscript3"))
+        for new, old, most in zip(four, three, (2, 20), strict=True):
+            lines = [line for line in difflib.ndiff(new.splitlines(), old.splitlines()) if line[0] == "+"]
+            assert len(lines) <= most, lines
+
+
+@parses
+def test_those_for_godot_4_are_parsed(tmp_path: Path) -> None:
+    number_ = spec.Signal("x", "number", None, None)
+    mean: Expression = When(((Condition("not", (Condition(">", (X, Const(0.0))),)), Op("exp", (X,))),), Op("abs", (X,)))
+    for fspa in (cover_and_hide(), awkward(), one_atom(mean, number_), build(spec_from_formula(f.TRUE))):
+        write(tmp_path, fspa, "gdscript")
+    done = subprocess.run([str(GDPARSE), *map(str, tmp_path.glob("*.gd"))], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+# --- as a library ---------------------------------------------------------------------------------
+
+LIBRARY = """extends SceneTree
+
+const Monitor = preload("cover_and_hide_monitor.gd")
+
+
+func told(monitor, taken):
+	print(taken, "|", monitor.problem, "|", monitor.message())
+
+
+func _init():
+	var monitor = Monitor.new()
+	var params = Monitor.Params.new()
+	params.level_size = 1.0
+	told(monitor, monitor.begin(params))
+	params.level_size = NAN
+	told(monitor, monitor.begin(params))
+	params.level_size = 10.0
+	told(monitor, monitor.begin(params))
+	params.level_size = 3.0
+	var sample = Monitor.Sample.new()
+	for _round in range(2):
+		sample.clear()
+		sample.distance_s1 = 5.0
+		sample.distance_s2 = 5.0
+		sample.distance_exit = 5.0
+		told(monitor, monitor.step(sample))
+		sample.health = 2.0
+		told(monitor, monitor.step(sample))
+		var verdict = Monitor.Verdict.keys()[monitor.verdict]
+		var bits = var2bytes(monitor.progress).hex_encode()
+		print(monitor.label(), "|", monitor.limiting_atom(), "|", verdict, "|", bits)
+		sample.distance_s1 = 0.5
+		sample.distance_exit = 0.5
+		told(monitor, monitor.step(sample))
+		print(monitor.state, " ", monitor.steps)
+		monitor.reset()
+	for notice in monitor.notices:
+		print(notice)
+	quit()
+"""
+
+
+@runs
+def test_library(tmp_path: Path) -> None:
+    fspa = cover_and_hide()
+    write(tmp_path, fspa)
+    (tmp_path / "library.gd").write_text(LIBRARY)
+    step = Monitor(fspa, {"level_size": 10.0}).step(
+        {"distance(s1)": 5.0, "distance(s2)": 5.0, "distance(exit)": 5.0, "health": 1.0}
+    )
+    together = "step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"
+    rows = [
+        "False|1|step 1: no finite number for the signal `health`",
+        "True|0|",
+        f"{step.label}|near(s1)|PENDING|03000100{struct.pack('<d', step.progress).hex()}",
+        f"False|5|{together}",
+        "0 1",
+    ]
+    wrong = "False|6|the param `level_size` cannot have that value: its range is [2, 10000]"
+    notice = "step 1: the signal `health` is 2, outside [0, 1]: it counts as 1"
+    status, out, err = run(tmp_path, "library.gd")
+    assert (status, out.splitlines()) == (0, [wrong, wrong, "True|0|", *rows, *rows, notice]), err
+
+
+# --- as a program ---------------------------------------------------------------------------------
+
+FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
+HEAD = "health,distance(s1),distance(s2),distance(exit)\n"
+MAIN = "cover_and_hide_monitor_main.gd"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("program")
+    write(made, cover_and_hide())
+    return made
+
+
+@runs
+def test_program(folder: Path) -> None:
+    samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
+    outcome = expected(cover_and_hide(), samples)
+    short = (outcome[0], "".join(line.rsplit(",", 2)[0] + "\n" for line in outcome[1].splitlines()), outcome[2])
+    text = trace_of(samples, [*FAR])
+    (folder / "trace.csv").write_text(text)
+    assert run(folder, MAIN, "--full", "trace.csv") == outcome
+    assert run(folder, MAIN, "trace.csv") == short
+    assert run(folder, MAIN, "-", stdin=text.encode()) == short
+
+
+@runs
+@pytest.mark.parametrize(
+    "trace",
+    [
+        b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
+        b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
+        b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
+        b'x,health,distance(s1),distance(s2),distance(exit)\n"a,\nb""c",True,20,20,20\n',
+        b"health,distance(s1),distance(s2),distance(exit)\r1,20,20,20\r",
+    ],
+)
+def test_ways_to_write_a_trace(folder: Path, trace: bytes) -> None:
+    (folder / "way.csv").write_bytes(trace)
+    assert run(folder, MAIN, "--full", "way.csv") == expected(cover_and_hide(), [FAR])
+
+
+@runs
+@pytest.mark.parametrize(
+    ("trace", "arguments", "status", "message"),
+    [
+        ("", ["bad.csv"], 1, "error: the trace holds no sample\n"),
+        ("\n\n", ["bad.csv"], 1, "error: the trace holds no sample\n"),
+        (HEAD, ["bad.csv"], 1, "error: the trace holds no sample\n"),
+        ("health\n1\n", ["bad.csv"], 1, "error: the trace has no column for `distance(s1)`\n"),
+        (f"health,{HEAD}1,1,1,1,1\n", ["bad.csv"], 1, "error: two columns are called `health`\n"),
+        (f"{HEAD}1,1\n", ["bad.csv"], 1, "error: step 1: 2 values under 4 columns\n"),
+        (f"{HEAD}x,1,1,1\n", ["bad.csv"], 1, "error: step 1: the signal `health` is `x`, no number\n"),
+        (f"{HEAD},1,1,1\n", ["bad.csv"], 1, "error: step 1: the signal `health` is ``, no number\n"),
+        (f"{HEAD}1e999,1,1,1\n", ["bad.csv"], 1, "error: step 1: no finite number for the signal `health`\n"),
+        (f'{HEAD}"1,1,1,1\n', ["bad.csv"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
+        (f'{HEAD}"1"2,1,1,1\n', ["bad.csv"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
+        (f"{HEAD}1,0.5,0.5,20\n", ["bad.csv"], 1, "error: step 1: `near(s1)` and `near(s2)` hold at once, against "),
+        ("", ["missing.csv"], 3, "error: cannot read `missing.csv`\n"),
+        ("", ["."], 3, "error: cannot read `.`\n"),
+        ("", [], 2, "usage: "),
+        ("", ["--full"], 2, "usage: "),
+        ("", ["-", "--full"], 2, "usage: "),
+        ("", ["--full", "a", "b"], 2, "usage: "),
+    ],
+)
+def test_program_errors(folder: Path, trace: str, arguments: list[str], status: int, message: str) -> None:
+    (folder / "bad.csv").write_text(trace)
+    found, out, err = run(folder, MAIN, *arguments)
+    assert (found, out) == (status, "")
+    assert err.startswith(message)
+
+
+@runs
+def test_rows_come_before_an_error(folder: Path) -> None:
+    (folder / "late.csv").write_text(f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n")
+    found, out, err = run(folder, MAIN, "late.csv")
+    assert (found, out.count("\n")) == (1, 3)
+    assert err == (
+        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
+        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
+    )

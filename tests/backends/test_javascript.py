@@ -1,0 +1,300 @@
+"""The generated module is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus holds the rest."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+import shutil
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+
+from tests.backends.strategies import HOSTILE, hostile_automata
+from tests.fixtures import cover_and_hide
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.expression import Const, Op, Signal
+from tltlc.logic import formula as f
+from tltlc.monitor import Monitor
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node here")
+
+NAMES = (
+    *("this", "state", "steps", "class", "await", "arguments", "let", "undefined", "NaN", "constructor", "__proto__"),
+    *("toString", "signals", "result", "target", "best", "entered", "min", "max", "STATES", "Math", "t_1", "nearest"),
+    *("x", "x_1", "x.1", "x(1)", "1", "a" * 300, "a,b", "//", "/*", "${1}", "@@step@@", "\\", "`"),
+    *(text for text in HOSTILE if text == text.strip() and "\0" not in text and "\ufeff" not in text),
+)
+
+Outcome = tuple[int, str, str]
+"""Exit status, standard output, standard error."""
+
+
+def written(fspa: Fspa, folder: Path) -> Path:
+    """The module, and its types beside it."""
+    files = emit("javascript", fspa)
+    assert list(files) == [f"{fspa.name}_monitor.mjs", f"{fspa.name}_monitor.d.mts"]
+    for name, text in files.items():
+        assert isinstance(text, str)
+        (folder / name).write_text(text)
+    return folder / f"{fspa.name}_monitor.mjs"
+
+
+def ran(module: Path, *arguments: str, stdin: bytes = b"") -> Outcome:
+    done = subprocess.run(["node", module.name, *arguments], input=stdin, capture_output=True, cwd=module.parent)
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+def trace_of(samples: Sequence[Mapping[str, float]]) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, quoting=csv.QUOTE_ALL)
+    writer.writerow(samples[0])
+    writer.writerows(sample.values() for sample in samples)
+    return text.getvalue().encode()
+
+
+def rows(fspa: Fspa, samples: Sequence[Mapping[str, float]]) -> list[list[str]]:
+    """What the program is to print with ``--full``, below the header."""
+    monitor, found = Monitor(fspa), []
+    for number, sample in enumerate(samples, start=1):
+        step = monitor.step(sample)
+        flags = [str(flag).lower() for flag in (step.accepting, step.done)]
+        figures = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
+        found.append([str(number), str(step.state), step.verdict, *flags, *figures, step.limiting or ""])
+    return found
+
+
+def printed(out: str) -> list[list[str]]:
+    header, *found = csv.reader(io.StringIO(out, newline=""), strict=True)
+    assert header == "step,state,verdict,accepting,done,progress,reward,robustness,limiting".split(",")
+    return found
+
+
+# --- names and texts ------------------------------------------------------------------------------
+
+
+@settings(
+    max_examples=8,
+    deadline=None,
+    derandomize=True,
+    phases=(Phase.generate,),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+)
+@given(fspa=hostile_automata())
+def test_hostile_texts_are_no_code(tmp_path: Path, fspa: Fspa) -> None:
+    samples = [{fspa.signals[0].name: value, "health": 1.0} for value in (-1.0, 0.0, -0.5)]
+    status, out, err = ran(written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    assert (status, err) == (0, "")
+    assert printed(out) == rows(fspa, samples)
+
+
+def test_hostile_names_stay_apart(tmp_path: Path) -> None:
+    """Every atom is its own signal, all names are awkward, and each atom still means itself."""
+    fspa, samples = awkward(NAMES)
+    status, out, err = ran(written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    assert (status, err) == (0, "")
+    assert printed(out) == rows(fspa, samples)
+    assert [row[-1] for row in printed(out)] == [*samples[0]]
+
+
+def awkward(given: Sequence[str]) -> tuple[Fspa, list[dict[str, float]]]:
+    """An automaton with these names of signals, params and atoms; in each sample another atom is false."""
+    names = list(dict.fromkeys(given))
+    fspa = build(spec_from_formula(f.eventually(f.and_(*(f.atom(f"v{index}") for index in range(len(names)))))))
+    fspa = replace(
+        fspa,
+        doc="*/ ends in \\",
+        signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
+        params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+    )
+    return fspa, [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
+
+
+def test_nothing_ends_a_comment_of_the_types(tmp_path: Path) -> None:
+    fspa = cover_and_hide()
+    signals = (*fspa.signals[:3], replace(fspa.signals[3], doc="*/ export const x = 1; /*"))
+    text = written(replace(fspa, signals=signals), tmp_path).with_suffix(".d.mts").read_text()
+    assert "/** * / export const x = 1; /* */\n  health: number;" in text
+
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+def test_numbers_are_printed_as_c_prints_them(tmp_path: Path) -> None:
+    """The robustness of an edge is the value of a signal, to the last digit; ties are rounded to even."""
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    fspa = replace(fspa, signals=(spec.Signal("x", "number", -1.0, 1.0),), atoms=(spec.Atom("p", Signal("x")),))
+    values = [sign * (1 + 2 * odd) * 2.0**-power for power in range(64) for odd in range(9) for sign in (1, -1)]
+    values += [math.sin(number) * 10.0**-power for power in (0, 3, 5, 9, 99, 310) for number in range(60)]
+    samples = [{"x": value} for value in values if abs(value) <= 1]
+    status, out, _ = ran(written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    assert status == 0
+    assert printed(out) == rows(fspa, samples)
+
+
+# --- as a module ----------------------------------------------------------------------------------
+
+USE = """
+import { Monitor, MonitorError, Result } from "./cover_and_hide_monitor.mjs";
+
+function told(action) {
+  try {
+    return action();
+  } catch (error) {
+    console.log(error instanceof MonitorError, error.name, error.message);
+  }
+}
+
+told(() => new Monitor({ level_size: 1 }));
+told(() => new Monitor({ level_size: NaN }));
+told(() => new Monitor({ level_size: "10" }));
+told(() => new Monitor({ size: 1 }));
+new Monitor({ level_size: undefined });
+const monitor = new Monitor({ level_size: 10 });
+const result = new Result();
+const far = { "distance(s1)": 5, "distance(s2)": 5, "distance(exit)": 5, health: true, unused: "-" };
+for (const round of [1, 2]) {
+  told(() => monitor.step({ health: 1, "distance(s2)": 5 }, result));
+  told(() => monitor.step({ ...far, health: NaN }, result));
+  told(() => monitor.step({ ...far, health: "1" }, result));
+  console.log(monitor.step({ ...far, health: 2 }, result) === result, result.progress, result.limiting);
+  told(() => monitor.step({ ...far, "distance(s1)": 0.5, "distance(exit)": 0.5 }, result));
+  console.log(monitor.state, monitor.steps, result.label, monitor.step(far) === result);
+  monitor.reset();
+}
+console.log(monitor.steps, monitor.notices.join());
+"""
+
+
+def test_module(tmp_path: Path) -> None:
+    fspa = cover_and_hide()
+    written(fspa, tmp_path)
+    (tmp_path / "use.mjs").write_text(USE)
+    step = Monitor(fspa, {"level_size": 10.0}).step({**dict.fromkeys(FAR, 5.0), "health": 1.0})
+    group = "near(s1), near(s2), near(exit)"
+    lines = [
+        "true MonitorError the param `level_size` cannot be 1: its range is [2, 10000]",
+        "true MonitorError the param `level_size` cannot be nan",
+        "true MonitorError the value given for the param `level_size` is no number",
+        "true MonitorError there is no param `size` to set",
+        *[
+            "true MonitorError step 1: no value for `distance(s1)` and `distance(exit)`",
+            "true MonitorError step 1: the signal `health` is nan, not a finite number",
+            "true MonitorError step 1: the signal `health` is no number",
+            f"true {step.progress!r} near(s1)",
+            f"true MonitorError step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive {group}`",
+            f"0 1 {step.label} false",
+        ]
+        * 2,
+        "0 step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
+    ]
+    status, out, err = ran(tmp_path / "use.mjs")
+    assert (status, err) == (0, "")
+    assert out.splitlines() == lines
+
+
+TYPED_USE = """
+import { Monitor, Result, type Verdict } from "./cover_and_hide_monitor.mjs";
+
+const monitor = new Monitor({ level_size: 10 });
+const result = new Result();
+const found: Result = monitor.step({ "distance(s1)": 5, "distance(s2)": 5, "distance(exit)": 5, health: 1 }, result);
+const verdict: Verdict = found.verdict;
+const limiting: string | null = found.limiting;
+monitor.reset();
+// @ts-expect-error: there is no such param.
+new Monitor({ size: 1 });
+// @ts-expect-error: signals are missing.
+monitor.step({ health: 1 });
+export { limiting, verdict };
+"""
+
+
+@pytest.mark.skipif(shutil.which("tsc") is None, reason="there is no TypeScript compiler here")
+def test_types(tmp_path: Path) -> None:
+    written(cover_and_hide(), tmp_path)
+    (tmp_path / "use.mts").write_text(TYPED_USE)
+    command = ["tsc", "--strict", "--noEmit", "--module", "nodenext", "--target", "es2022", "use.mts"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+
+
+def test_the_module_needs_no_node() -> None:
+    """Node's modules are loaded by the program alone, and nothing is awaited where a module is imported."""
+    text = emit("javascript", cover_and_hide())["cover_and_hide_monitor.mjs"]
+    assert isinstance(text, str)
+    assert not re.search(
+        r"^import |^ *(const .*= )?await |require\(", text.split("async function main")[0], re.MULTILINE
+    )
+    assert not re.search(r"^(if )?\(?await ", text, re.MULTILINE)
+
+
+# --- as a program ---------------------------------------------------------------------------------
+
+FAR = {"health": 1.0, "distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0}
+HEAD = "health,distance(s1),distance(s2),distance(exit)\n"
+
+ERRORS = [
+    ("", ["-"], 1, "error: the trace holds no sample\n"),
+    (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
+    ("health,distance(s1)\n1\n", ["-"], 1, "error: the trace has no column for `distance(s2)` and `distance(exit)`\n"),
+    (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
+    (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
+    (f"{HEAD}0x1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `0x1`, no number\n"),
+    (f"{HEAD},1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is ``, no number\n"),
+    (f"{HEAD}-Inf,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is -inf, not a finite number\n"),
+    (f'{HEAD}"1,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
+    (f'{HEAD}"1"2,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
+    ("", ["missing.csv"], 3, "error: cannot read `missing.csv`: "),
+    ("", ["."], 3, "error: cannot read `.`: "),
+    ("", [], 2, "usage: "),
+    ("", ["--help"], 2, "usage: "),
+    ("", ["--full"], 2, "usage: "),
+    ("", ["-", "--full"], 2, "usage: "),
+    ("", ["--full", "a", "b"], 2, "usage: "),
+]
+
+WAYS = [
+    b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
+    b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
+    b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
+    b'\xef\xbbx,health,distance(s1),distance(s2),distance(exit)\n"a,\nb""c",True,20,20,+20.\n',
+    b"health,distance(s1),distance(s2),distance(exit)\r1,20,20,20\r",
+]
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return written(cover_and_hide(), tmp_path_factory.mktemp("program"))
+
+
+@pytest.mark.parametrize("trace", WAYS)
+def test_ways_to_write_a_trace(program: Path, trace: bytes) -> None:
+    status, out, err = ran(program, "--full", "-", stdin=trace)
+    assert (status, err) == (0, "")
+    assert printed(out) == rows(cover_and_hide(), [FAR])
+
+
+@pytest.mark.parametrize(("trace", "arguments", "status", "message"), ERRORS)
+def test_program_errors(program: Path, trace: str, arguments: list[str], status: int, message: str) -> None:
+    found, out, err = ran(program, *arguments, stdin=trace.encode())
+    assert (found, out) == (status, "")
+    assert err.startswith(message)
+
+
+def test_rows_come_before_an_error(program: Path) -> None:
+    found, out, err = ran(program, "-", stdin=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n".encode())
+    assert (found, out.count("\n")) == (1, 3)
+    assert err == (
+        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
+        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
+    )

@@ -1,0 +1,274 @@
+"""The generated module is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus holds the rest."""
+
+from __future__ import annotations
+
+import math
+import random
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+
+from tests.backends.strategies import hostile_automata
+from tests.backends.test_javascript import ERRORS, FAR, HEAD, NAMES, WAYS, Outcome, awkward, printed, rows, trace_of
+from tests.fixtures import cover_and_hide
+from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.expression import Condition, Const, Expression, Op, Signal, When
+from tltlc.logic import formula as f
+from tltlc.monitor import Monitor
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+INTERPRETERS = tuple(name for name in ("lua5.1", "lua5.4", "luajit") if shutil.which(name))
+
+pytestmark = pytest.mark.skipif(not INTERPRETERS, reason="there is no Lua here")
+interpreters = pytest.mark.parametrize("interpreter", INTERPRETERS)
+
+
+def written(fspa: Fspa, folder: Path) -> Path:
+    ((name, text),) = emit("lua", fspa).items()
+    assert name == f"{fspa.name}_monitor.lua"
+    assert isinstance(text, str)
+    (folder / name).write_text(text)
+    return folder / name
+
+
+def ran(interpreter: str, module: Path, *arguments: str, stdin: bytes = b"") -> Outcome:
+    command = [interpreter, module.name, *arguments]
+    done = subprocess.run(command, input=stdin, capture_output=True, cwd=module.parent)
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+# --- names and texts ------------------------------------------------------------------------------
+
+LUA_NAMES = (
+    "and",
+    "end",
+    "nil",
+    "repeat",
+    "goto",
+    "signal",
+    "param",
+    "value",
+    "part",
+    "part1",
+    "failure",
+    "huge",
+    "--[[",
+)
+
+
+@settings(
+    max_examples=12,
+    deadline=None,
+    derandomize=True,
+    phases=(Phase.generate,),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+)
+@given(fspa=hostile_automata())
+def test_hostile_texts_are_no_code(tmp_path: Path, fspa: Fspa) -> None:
+    samples = [{fspa.signals[0].name: value, "health": 1.0} for value in (-1.0, 0.0, -0.5)]
+    module = written(fspa, tmp_path)
+    for interpreter in INTERPRETERS:
+        status, out, err = ran(interpreter, module, "--full", "-", stdin=trace_of(samples))
+        assert (status, err) == (0, "")
+        assert printed(out) == rows(fspa, samples)
+
+
+@interpreters
+def test_hostile_names_stay_apart(interpreter: str, tmp_path: Path) -> None:
+    """Every atom is its own signal, all names are awkward, and each atom still means itself."""
+    fspa, samples = awkward([*LUA_NAMES, *NAMES])
+    status, out, err = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    assert (status, err) == (0, "")
+    assert printed(out) == rows(fspa, samples)
+    assert [row[-1] for row in printed(out)] == [*samples[0]]
+
+
+# --- what Lua has little room for -----------------------------------------------------------------
+
+
+@interpreters
+def test_many_signals_and_long_guards(interpreter: str, tmp_path: Path) -> None:
+    """More of them than a function may have local variables, and than calls may nest."""
+    names = [f"a{index}" for index in range(400)]
+    fspa = build(spec_from_formula(f.eventually(f.or_(*map(f.atom, names)))))
+    draw = random.Random(5)
+    samples = [{name: -draw.random() for name in names} for _ in range(3)]
+    samples.append({**samples[0], "a399": 0.5})
+    status, out, err = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    assert (status, err) == (0, "")
+    assert printed(out) == rows(fspa, samples)
+
+
+@interpreters
+def test_long_predicates(interpreter: str, tmp_path: Path) -> None:
+    """More parts than a function may have local variables."""
+    x: Expression = Signal("x")
+    total: Expression = Const(0.0)
+    for part in range(300):
+        case = When(((Condition(">", (x, Const(part / 300))), Op("*", (x, Const(0.001)))),), Const(-0.001))
+        total = Op("+", (total, case))
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    fspa = replace(fspa, signals=(spec.Signal("x", "number", 0.0, 1.0),), atoms=(spec.Atom("p", total),))
+    samples = [{"x": value / 10} for value in range(11)]
+    with recursion_room():
+        right = rows(fspa, samples)
+        module = written(fspa, tmp_path)
+    status, out, err = ran(interpreter, module, "--full", "-", stdin=trace_of(samples))
+    assert (status, err) == (0, "")
+    assert printed(out) == right
+
+
+@interpreters
+def test_tanh(interpreter: str, tmp_path: Path) -> None:
+    """Newer versions of Lua have none; what the module has in place of it keeps signs and small values."""
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    atom = spec.Atom("p", Op("tanh", (Signal("x"),)))
+    fspa = replace(fspa, signals=(spec.Signal("x", "number", None, None),), atoms=(atom,))
+    sizes = [0.0, 1e-300, 1e-9, 0.1, 0.25, 0.4999, 0.5, 0.5001, 0.75, 1.0, 3.0, 19.0, 25.0, 1e3, 1e308]
+    samples = [{"x": sign * size} for size in sizes for sign in (-1.0, 1.0)]
+    status, out, _ = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    assert status == 0
+    for found, right in zip(printed(out), rows(fspa, samples), strict=True):
+        assert found[:5] == right[:5]
+        assert float(found[7]) == pytest.approx(float(right[7]), rel=1e-15, abs=0.0)
+
+
+@interpreters
+def test_numbers_are_printed_as_c_prints_them(interpreter: str, tmp_path: Path) -> None:
+    """The robustness of an edge is the value of a signal, to the last digit; ties are rounded to even."""
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    fspa = replace(fspa, signals=(spec.Signal("x", "number", -1.0, 1.0),), atoms=(spec.Atom("p", Signal("x")),))
+    values = [sign * (1 + 2 * odd) * 2.0**-power for power in range(64) for odd in range(9) for sign in (1, -1)]
+    values += [math.sin(number) * 10.0**-power for power in (0, 3, 5, 9, 99, 310) for number in range(60)]
+    samples = [{"x": value} for value in values if abs(value) <= 1]
+    status, out, _ = ran(interpreter, written(fspa, tmp_path), "--full", "-", stdin=trace_of(samples))
+    assert status == 0
+    assert printed(out) == rows(fspa, samples)
+
+
+# --- as a module ----------------------------------------------------------------------------------
+
+USE = """
+setmetatable(_G, {
+  __index = function(_, name) error("there is no global " .. tostring(name), 2) end,
+  __newindex = function(_, name) error("a new global " .. tostring(name), 2) end,
+})
+package.path = "./?.lua"
+local Monitor = require("cover_and_hide_monitor")
+
+print(Monitor.new({ level_size = 1 }))
+print(Monitor.new({ level_size = 0 / 0 }))
+print(Monitor.new({ level_size = "10" }))
+print(Monitor.new({ size = 1 }))
+local monitor = assert(Monitor.new({ level_size = 10 }))
+local result = {}
+local function sample(changed)
+  local made = { ["distance(s1)"] = 5, ["distance(s2)"] = 5, ["distance(exit)"] = 5, health = true, unused = "-" }
+  for name, value in pairs(changed) do made[name] = value end
+  return made
+end
+for _ = 1, 2 do
+  print(monitor:step({ health = 1, ["distance(s2)"] = 5 }, result))
+  print(monitor:step(sample({ health = 1 / 0 }), result))
+  print(monitor:step(sample({ health = "1" }), result))
+  local taken = monitor:step(sample({ health = 2 }), result)
+  print(taken == result, ("%.17g"):format(result.progress), result.limiting)
+  print(monitor:step(sample({ ["distance(s1)"] = 0.5, ["distance(exit)"] = 0.5 }), result))
+  print(monitor.state, monitor.steps, result.label, monitor:step(sample({})) == result)
+  monitor:reset()
+end
+print(monitor.steps, #monitor.notices, monitor.notices[1])
+"""
+
+
+@interpreters
+def test_module(interpreter: str, tmp_path: Path) -> None:
+    fspa = cover_and_hide()
+    written(fspa, tmp_path)
+    (tmp_path / "use.lua").write_text(USE)
+    step = Monitor(fspa, {"level_size": 10.0}).step({**dict.fromkeys(FAR, 5.0), "health": 1.0})
+    group = "near(s1), near(s2), near(exit)"
+    lines = [
+        "nil\tthe param `level_size` cannot be 1: its range is [2, 10000]",
+        "nil\tthe param `level_size` cannot be nan",
+        "nil\tthe value given for the param `level_size` is no number",
+        "nil\tthere is no param `size` to set",
+        *[
+            "nil\tstep 1: no value for `distance(s1)` and `distance(exit)`",
+            "nil\tstep 1: the signal `health` is inf, not a finite number",
+            "nil\tstep 1: the signal `health` is no number",
+            f"true\t{step.progress:.17g}\tnear(s1)",
+            f"nil\tstep 2: `near(s1)` and `near(exit)` hold at once, against `exclusive {group}`",
+            f"0\t1\t{step.label}\tfalse",
+        ]
+        * 2,
+        "0\t1\tstep 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
+    ]
+    status, out, err = ran(interpreter, tmp_path / "use.lua")
+    assert (status, err) == (0, "")
+    assert out.splitlines() == lines
+
+
+ALLOCATES = """
+local Monitor = dofile("cover_and_hide_monitor.lua")
+local monitor, result = Monitor.new(), {}
+local signals = { ["distance(s1)"] = 5.5, ["distance(s2)"] = 5.5, ["distance(exit)"] = 5.5, health = 1.0 }
+for _ = 1, 100 do monitor:step(signals, result) end
+collectgarbage("collect")
+collectgarbage("stop")
+local before = collectgarbage("count")
+for _ = 1, 1000 do monitor:step(signals, result) end
+print(collectgarbage("count") - before < 1)
+"""
+
+
+def test_a_step_allocates_nothing(tmp_path: Path) -> None:
+    """In the interpreter; a compiler keeps traces of its own."""
+    for interpreter in INTERPRETERS:
+        if interpreter != "luajit":
+            written(cover_and_hide(), tmp_path)
+            (tmp_path / "use.lua").write_text(ALLOCATES)
+            assert ran(interpreter, tmp_path / "use.lua") == (0, "true\n", "")
+
+
+# --- as a program ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return written(cover_and_hide(), tmp_path_factory.mktemp("program"))
+
+
+@interpreters
+@pytest.mark.parametrize("trace", WAYS)
+def test_ways_to_write_a_trace(interpreter: str, program: Path, trace: bytes) -> None:
+    status, out, err = ran(interpreter, program, "--full", "-", stdin=trace)
+    assert (status, err) == (0, "")
+    assert printed(out) == rows(cover_and_hide(), [FAR])
+
+
+@interpreters
+@pytest.mark.parametrize(("trace", "arguments", "status", "message"), ERRORS)
+def test_program_errors(
+    interpreter: str, program: Path, trace: str, arguments: list[str], status: int, message: str
+) -> None:
+    found, out, err = ran(interpreter, program, *arguments, stdin=trace.encode())
+    assert (found, out) == (status, "")
+    assert err.startswith(message)
+
+
+@interpreters
+def test_rows_come_before_an_error(interpreter: str, program: Path) -> None:
+    found, out, err = ran(interpreter, program, "-", stdin=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n".encode())
+    assert (found, out.count("\n")) == (1, 3)
+    assert err == (
+        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
+        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
+    )

@@ -1,0 +1,268 @@
+"""The generated Rust is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus has the other cases."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import shutil
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.backends.strategies import hostile_automata
+from tests.backends.test_c import FAR, HEAD, NAMES, Outcome, batches, expected, one_atom, trace_of
+from tests.conformance.runners.rust import STRICT, linked
+from tests.fixtures import cover_and_hide
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
+from tltlc.expression import Const, Op, Signal
+from tltlc.logic import formula as f
+from tltlc.monitor import Monitor
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+pytestmark = pytest.mark.skipif(not shutil.which("rustc"), reason="there is no Rust compiler here")
+
+
+def written(fspa: Fspa, folder: Path) -> str:
+    ((name, text),) = emit("rust", fspa).items()
+    assert name == f"{fspa.name}_monitor.rs"
+    assert isinstance(text, str)
+    (folder / name).write_text(text)
+    return text
+
+
+def compiled(folder: Path, *words: str) -> None:
+    done = subprocess.run(["rustc", *STRICT[:-2], *words], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def ran(program: Path, *words: str, stdin: bytes = b"") -> Outcome:
+    done = subprocess.run([str(program), *words], input=stdin, capture_output=True, cwd=program.parent, timeout=60)
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+class Programs:
+    """The programs of several automata, compiled as one."""
+
+    def __init__(self, folder: Path, fspas: Sequence[Fspa]) -> None:
+        self.fspas = [replace(fspa, name=f"spec{number}") for number, fspa in enumerate(fspas)]
+        self._folder = folder
+        for fspa in self.fspas:
+            written(fspa, folder)
+        linked(folder, [fspa.name for fspa in self.fspas])
+
+    def run(self, number: int, trace: str) -> Outcome:
+        return ran(self._folder / "monitors", f"spec{number}", "--full", "-", stdin=trace.encode())
+
+
+# --- names and texts ------------------------------------------------------------------------------
+
+
+@batches
+@given(data=st.data())
+def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
+    programs = Programs(tmp_path, [data.draw(hostile_automata()) for _ in range(6)])
+    for number, fspa in enumerate(programs.fspas):
+        assert programs.run(number, "nothing\n1\n")[0] == 1
+        name = fspa.signals[0].name
+        if name == name.strip() and "\0" not in name:
+            samples = [{name: value, "health": 1.0} for value in (-1.0, 0.0, 1.0)]
+            assert programs.run(number, trace_of(samples, [name, "health"])) == expected(fspa, samples)
+
+
+def test_hostile_names_stay_apart(tmp_path: Path) -> None:
+    """Every atom is its own signal; awkward names, and all names of the file itself."""
+    own = re.findall(r"\w+", written(cover_and_hide(), tmp_path))
+    names = [name for name in dict.fromkeys([*NAMES, *own]) if "\0" not in name]
+    atoms = [f"v{index}" for index in range(len(names))]
+    fspa = build(spec_from_formula(f.eventually(f.and_(*map(f.atom, atoms)))))
+    fspa = replace(
+        fspa,
+        signals=tuple(spec.Signal(name, "number", -1.0, 1.0, name) for name in names),
+        params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
+        atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
+    )
+    programs = Programs(tmp_path, [fspa])
+    samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
+    _, out, err = programs.run(0, trace_of(samples, names))
+    assert [row["limiting"] for row in csv.DictReader(io.StringIO(out, newline=""))] == names, err
+
+
+# --- as a library ---------------------------------------------------------------------------------
+
+LIBRARY = r"""
+mod cover_and_hide_monitor;
+use cover_and_hide_monitor::{Monitor, Params, Signals};
+
+fn tell(monitor: &mut Monitor, sample: &Signals) {
+    if let Err(refused) = monitor.step(sample) {
+        println!("{:?}: {refused}", refused.problem);
+    }
+}
+
+fn main() {
+    println!("{}", Monitor::with(Params { level_size: 1.0 }).unwrap_err());
+    let mut monitor = Monitor::with(Params { level_size: 10.0 }).unwrap();
+    for _ in 0..2 {
+        let mut sample =
+            Signals { distance_s1: 5.0, distance_s2: 5.0, distance_exit: 5.0, ..Signals::default() };
+        tell(&mut monitor, &sample);
+        sample.health = 2.0;
+        let step = monitor.step(&sample).unwrap();
+        println!("{} {} {:?} {:?}", step.label, step.limiting.unwrap(), step.progress, monitor.values()[0]);
+        sample.distance_s1 = 0.5;
+        sample.distance_exit = 0.5;
+        tell(&mut monitor, &sample);
+        println!("{} {} {}", monitor.state(), monitor.steps(), monitor.done());
+        monitor.reset();
+    }
+    for notice in monitor.notices() {
+        println!("{notice}");
+    }
+}
+"""
+
+
+def test_library(tmp_path: Path) -> None:
+    fspa = cover_and_hide()
+    written(fspa, tmp_path)
+    (tmp_path / "library.rs").write_text(LIBRARY)
+    compiled(tmp_path, "library.rs")
+    monitor = Monitor(fspa, {"level_size": 10.0})
+    step = monitor.step({"distance(s1)": 5.0, "distance(s2)": 5.0, "distance(exit)": 5.0, "health": 1.0})
+    together = "step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"
+    rows = [
+        "NotFinite: step 1: no finite number for the signal `health`",
+        f"{step.label} near(s1) {step.progress!r} {monitor.values[0]!r}",
+        f"Together: {together}",
+        "0 1 false",
+    ]
+    lines = [
+        "the param `level_size` cannot be 1: its range is [2, 10000]",
+        *rows,
+        *rows,
+        "step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
+    ]
+    assert ran(tmp_path / "library") == (0, "".join(f"{line}\n" for line in lines), "")
+
+
+def test_without_the_standard_library(tmp_path: Path) -> None:
+    """Alone, or with the functions that `core` does not have."""
+    x = Signal("x")
+    value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
+    written(replace(one_atom(value, spec.Signal("x", "number", None, None)), name="much"), tmp_path)
+    assert "It needs `core` alone." in written(cover_and_hide(), tmp_path)
+    lines = ["#![no_std]", "pub mod cover_and_hide_monitor;", "pub mod much_monitor;", "mod tltl_math {"]
+    lines += [f"    pub fn {name}(x: f64) -> f64 {{ x }}" for name in ("sqrt", "exp", "tanh")]
+    lines += ["    pub fn pow(x: f64, _: f64) -> f64 { x }", "}", ""]
+    (tmp_path / "bare.rs").write_text("\n".join(lines))
+    compiled(tmp_path, "--crate-type", "lib", "--cfg", "tltl_no_std", "bare.rs")
+
+
+# --- as a program ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("program")
+    written(cover_and_hide(), folder)
+    compiled(folder, "-O", "--cfg", "tltl_main", "cover_and_hide_monitor.rs")
+    return folder / "cover_and_hide_monitor"
+
+
+def test_program(program: Path) -> None:
+    samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
+    status, out, err = expected(cover_and_hide(), samples)
+    short = "".join(line.rsplit(",", 2)[0] + "\n" for line in out.splitlines())
+    text = trace_of(samples, [*FAR])
+    (program.parent / "trace.csv").write_text(text)
+    assert ran(program, "--full", "trace.csv") == (status, out, err)
+    assert ran(program, "trace.csv") == (status, short, err)
+    assert ran(program, "-", stdin=text.encode()) == (status, short, err)
+
+
+@pytest.mark.parametrize(
+    "trace",
+    [
+        b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
+        b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
+        b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
+        b'"a,\nb""c",health,distance(s1),distance(s2),distance(exit)\n\xff,True,20,20,20\n',
+        b"health,distance(s1),distance(s2),distance(exit)\r1,20,20,20\r",
+    ],
+)
+def test_ways_to_write_a_trace(program: Path, trace: bytes) -> None:
+    assert ran(program, "--full", "-", stdin=trace) == expected(cover_and_hide(), [FAR])
+
+
+@pytest.mark.parametrize(
+    ("trace", "arguments", "status", "message"),
+    [
+        ("", ["-"], 1, "error: the trace holds no sample\n"),
+        ("\n\n", ["-"], 1, "error: the trace holds no sample\n"),
+        (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
+        ("health\n1\n", ["-"], 1, "error: the trace has no column for `distance(s1)`\n"),
+        (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
+        (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
+        (f"{HEAD}x,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `x`, no number\n"),
+        (f"{HEAD}0x1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `0x1`, no number\n"),
+        (f"{HEAD},1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is ``, no number\n"),
+        (f"{HEAD}nan,1,1,1\n", ["-"], 1, "error: step 1: no finite number for the signal `health`\n"),
+        (f"{HEAD}1e999,1,1,1\n", ["-"], 1, "error: step 1: no finite number for the signal `health`\n"),
+        (f'{HEAD}"1,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
+        (f'{HEAD}"1"2,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
+        (f"{HEAD}1,0.5,0.5,20\n", ["-"], 1, "error: step 1: `near(s1)` and `near(s2)` hold at once, against "),
+        ("", ["missing.csv"], 3, "error: cannot read `missing.csv`: No such file or directory"),
+        ("", ["."], 3, "error: cannot read `.`: Is a directory"),
+        ("", [], 2, "usage: "),
+        ("", ["--help"], 2, "usage: "),
+        ("", ["--full"], 2, "usage: "),
+        ("", ["-", "--full"], 2, "usage: "),
+        ("", ["--full", "a", "b"], 2, "usage: "),
+    ],
+)
+def test_program_errors(program: Path, trace: str, arguments: list[str], status: int, message: str) -> None:
+    found, out, err = ran(program, *arguments, stdin=trace.encode())
+    assert (found, out) == (status, "")
+    assert err.startswith(message)
+
+
+def test_rows_come_before_an_error(program: Path) -> None:
+    found, out, err = ran(program, "-", stdin=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n".encode())
+    assert (found, out.count("\n")) == (1, 3)
+    assert err == (
+        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
+        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
+    )
+
+
+NUMBERS = r"""
+mod cover_and_hide_monitor;
+
+fn main() {
+    for line in std::io::stdin().lines() {
+        let value: f64 = line.unwrap().parse().unwrap();
+        println!("{}", cover_and_hide_monitor::program::general(value));
+    }
+}
+"""
+
+
+def test_decimals_are_those_of_c(tmp_path: Path) -> None:
+    """Halves of the last digit, powers of two and ten."""
+    values = [0.5**power for power in range(0, 1075, 7)] + [10.0**power for power in range(-323, 309)]
+    values += [(2 * odd + 1) / 2.0**power for power in range(1, 60) for odd in (3, 5461, 131071, 200003)]
+    values += [-numerator / 97 for numerator in range(98)] + [5e-324, 0.0, -0.0]
+    written(cover_and_hide(), tmp_path)
+    (tmp_path / "numbers.rs").write_text(NUMBERS)
+    compiled(tmp_path, "--cfg", "tltl_main", "numbers.rs")
+    status, out, err = ran(tmp_path / "numbers", stdin="".join(f"{value!r}\n" for value in values).encode())
+    assert (status, err) == (0, "")
+    assert out.splitlines() == [f"{value:.17g}" for value in values]

@@ -1,0 +1,294 @@
+"""A stand-alone monitor in C# 6, which Unity takes, and beside it a component for Unity; a step allocates nothing.
+
+It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with its default reward, where the runtime's
+``Math.Pow``, ``Math.Exp`` and ``Math.Tanh`` are those that Python was built with, as Mono's are on Linux.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from textwrap import wrap
+
+from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Files, Options, Target
+from tltlc.backends.program import judge, states
+from tltlc.backends.program.arithmetic import defined
+from tltlc.backends.program.build import program
+from tltlc.backends.program.printer import Printer, remark
+from tltlc.backends.program.template import filled
+from tltlc.backends.program.tree import If
+from tltlc.backends.program.uses import called, read
+from tltlc.monitor.samples import range_text
+from tltlc.resolve.spec import Param, Signal
+
+TARGET = Target("csharp", "a stand-alone monitor in C#, also for Unity", ("_monitor.cs", "_monitor_behaviour.cs"))
+
+_INDENT = Printer.INDENT
+_FAILING = {"divide", "sqrt", "power", "exp"}
+"""Functions that may have no value."""
+
+_FUNCTIONS = {
+    "divide": "Divide",
+    "sqrt": "Sqrt",
+    "power": "Power",
+    "exp": "Exp",
+    "min": "Min",
+    "max": "Max",
+    "abs": "Math.Abs",
+    "tanh": "Math.Tanh",
+}
+
+_WORDS = """
+    abstract as base bool break byte case catch char checked class const continue decimal default delegate do double
+    else enum event explicit extern false finally fixed float for foreach goto if implicit in int interface internal
+    is lock long namespace new null object operator out override params private protected public readonly ref return
+    sbyte sealed short sizeof stackalloc static string struct switch this throw true try typeof uint ulong unchecked
+    unsafe ushort using virtual void volatile while
+    add alias allows and args ascending async await by descending dynamic equals extension field file from get global
+    group init into join let managed nameof nint not notnull nuint on or orderby partial record remove required scoped
+    select set unmanaged value var when where with yield
+""".split()
+
+_TEMPLATE = """
+    Array Divide Equals Exp Finalize GetHashCode GetType IsFinite Keep Math Max MemberwiseClone Min Missing Defaults
+    Params Power Problem Read ReferenceEquals Refuse Result Signals Sqrt States Step ToString Verdict AtomNames Place
+    Without System Tltl none own sample result number
+""".split()
+"""What fields of records and variables of a step would hide."""
+
+
+def emit(fspa: Fspa, options: Options) -> Files:
+    """``NAME_monitor.cs``, and ``NAME_monitor_behaviour.cs`` for Unity."""
+    monitor, behaviour = (f"{fspa.name}{ending}" for ending in TARGET.endings)
+    return {monitor: _Source(fspa, monitor).text(), behaviour: filled("behaviour.cs.txt", {"p": fspa.name})}
+
+
+class _CSharp(Printer):
+    """Prints C#, each brace on a line of its own."""
+
+    def branches(self, statement: If, depth: int) -> list[str]:
+        """A branch: its cases, and what is done otherwise."""
+        indent = self.INDENT * depth
+        found: list[str] = []
+        for place, (test, body) in enumerate(statement.cases):
+            found += [f"{indent}{'else ' if place else ''}if ({self.text(test)})", f"{indent}{{"]
+            found += [*self.lines(body, depth + 1), f"{indent}}}"]
+        if statement.otherwise:
+            found += [f"{indent}else", f"{indent}{{", *self.lines(statement.otherwise, depth + 1), f"{indent}}}"]
+        return found
+
+    def call(self, function: str, arguments: Sequence[str]) -> str:
+        """A call of a method of the monitor, or of the library."""
+        return super().call(_FUNCTIONS[function], arguments)
+
+
+class _Source:
+    """The source of one monitor: the pieces that fill the template."""
+
+    def __init__(self, fspa: Fspa, file: str) -> None:
+        self._fspa, self._file = fspa, file
+        self._program = program(fspa, [*_WORDS, *_TEMPLATE])
+        self._printer = _CSharp()
+
+    def text(self) -> str:
+        """The whole file."""
+        fspa, made = self._fspa, self._program
+        signals = list(zip(fspa.signals, made.signals, strict=True))
+        params = list(zip(fspa.params, made.params, strict=True))
+        computed = called(statement for value in made.values for statement in value)
+        present: list[str] = [*computed, *called(statement for state in made.states for statement in state)]
+        present += ["note"] if computed & _FAILING else []
+        present += ["exclusive"] if fspa.exclusive else []
+        with recursion_room():
+            step = _block(self._step(), 3)
+        pieces = {
+            "p": fspa.name,
+            "title": "\n".join(self._title()),
+            "file": self._file,
+            "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
+            "param_fields": _fields([(name, "double", param) for param, name in params]),
+            "signal_names": _list([_string(signal.name) for signal in fspa.signals]),
+            "atom_names": _list([_string(atom.name) for atom in fspa.atoms]),
+            "groups": _list([f"new[] {{{', '.join(map(str, group))}}}" for group in fspa.exclusive]),
+            "signal_defaults": _block(
+                [f"none.{name} = double.NaN;" for signal, name in signals if signal.type != "bool"], 5
+            ),
+            "param_defaults": _block([f"own.{name} = {_number(param.value)};" for param, name in params], 5),
+            "param_checks": _block([line for param, name in params for line in _param_check(param, name)], 3),
+            "states": _block(self._states(), 3),
+            "step": step,
+            "give": _block(self._give(), 3),
+        }
+        return filled("monitor.cs.txt", pieces, present)
+
+    def _title(self) -> list[str]:
+        """The first comment: what the spec is called, what it is for, its formula."""
+        fspa = self._fspa
+        title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
+        about = [self._printer.comment(text) for text in (title, fspa.doc)]
+        about.append([line.replace("// ", "//     ", 1) for line in self._printer.comment(fspa.formula.ascii)])
+        parts = ["\n".join(lines) for lines in about if lines]
+        return ["\n//\n".join(parts)]
+
+    def _states(self) -> list[str]:
+        lines: list[str] = []
+        for state in self._fspa.states:
+            ends = state.verdict in ("satisfied", "violated") or (self._fspa.judge == "goal" and state.accepting)
+            values = (f"Verdict.{state.verdict.capitalize()}", _bool(state.accepting), _bool(ends))
+            lines.append(f"new Place({_string(state.label.ascii)}, {', '.join(values)}),")
+        return lines
+
+    def _give(self) -> list[str]:
+        """A case for each signal, by its number."""
+        if not self._fspa.signals:
+            return []
+        lines = ["switch (signal)", "{"]
+        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+            lines.append(f"{_INDENT}case {place}:")
+            if signal.type == "bool":
+                lines.append(f"{_INDENT * 2}if (number != 0.0 && number != 1.0) return false;")
+                lines.append(f"{_INDENT * 2}sample.{name} = number == 1.0;")
+            else:
+                lines.append(f"{_INDENT * 2}sample.{name} = number;")
+            lines.append(f"{_INDENT * 2}break;")
+        return [*lines, "}"]
+
+    # --- a step -----------------------------------------------------------------------------------
+
+    def _step(self) -> list[str]:
+        parts = [self._read(), self._compute(), self._check(), self._move(), self._judge()]
+        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+
+    def _read(self) -> list[str]:
+        """Signals in their range, and params, in variables of their own."""
+        used = read(statement for value in self._program.values for statement in value)
+        lines: list[str] = []
+        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+            if signal.type == "bool":
+                lines += [f"double {name} = sample.{name} ? 1.0 : 0.0;"] if name in used else []
+                continue
+            low, high = _number(signal.low, "double.NegativeInfinity"), _number(signal.high, "double.PositiveInfinity")
+            lines.append(f"double {name} = sample.{name};")
+            lines.append(f"if (!Read({place}, {low}, {high}, ref {name})) return false;")
+        return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
+
+    def _compute(self) -> list[str]:
+        """The atoms' values."""
+        lines: list[str] = []
+        explained: set[str] = {""}
+        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
+            statements = self._program.values[place]
+            lines += self._printer.comment(atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}")
+            explained.add(atom.doc)
+            lines += self._printer.lines(defined(name, statements))
+            if called(statements) & _FAILING:
+                lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {place});")
+        return [
+            *lines,
+            *(f"if (!Keep({place}, ref {name})) return false;" for place, name in enumerate(self._program.atoms)),
+        ]
+
+    def _check(self) -> list[str]:
+        """Exclusive atoms."""
+        lines: list[str] = []
+        for place, group in enumerate(self._fspa.exclusive):
+            holding = " + ".join(f"({self._program.atoms[atom]} > 0.0 ? 1 : 0)" for atom in group)
+            if len(group) > 1:
+                lines.append(f"if ({holding} > 1) return Refuse(Problem.Together, {place});")
+        return lines
+
+    def _move(self) -> list[str]:
+        """The transition, by state."""
+        lines = [f"int {states.TARGET} = _state;", f"int {states.LIMITING} = -1;"]
+        lines.append(f"double {states.ROBUSTNESS} = 0.0;")
+        lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
+        lines += ["switch (_state)", "{"]
+        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
+            # Braces, since declarations may follow.
+            lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
+            lines += [f"{_INDENT}case {state.id}:", f"{_INDENT}{{"]
+            lines += self._printer.lines(statements, depth=2)
+            lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
+        return [*lines, "}"]
+
+    def _judge(self) -> list[str]:
+        """Progress, reward and the end of the episode."""
+        used = read(self._program.judged)
+        verdict = f"States[{states.TARGET}].Verdict"
+        lines = [f"double {judge.BEST} = _progress;", f"bool {judge.DONE} = _done;", f"double {judge.REWARD};"]
+        given = {
+            judge.STEPS_REAL: f"double {judge.STEPS_REAL} = {judge.STEPS};",
+            judge.ENDS: f"bool {judge.ENDS} = States[{states.TARGET}].Ends;",
+            judge.VIOLATED: f"bool {judge.VIOLATED} = {verdict} == Verdict.Violated;",
+            judge.SATISFIED: f"bool {judge.SATISFIED} = {verdict} == Verdict.Satisfied;",
+        }
+        lines += [line for name, line in given.items() if name in used]
+        return [*lines, *self._printer.lines(self._program.judged)]
+
+
+# --- pieces ---------------------------------------------------------------------------------------
+
+
+def _type(signal: Signal) -> str:
+    return "bool" if signal.type == "bool" else "double"
+
+
+def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
+    """The fields of a record, each under its name in the spec and what is said of it."""
+    lines: list[str] = []
+    for name, type_, of in fields:
+        texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
+        remarks = [_in_xml(line) for line in remark(": ".join(texts))]
+        if len(remarks) == 1:
+            lines.append(f"/// <summary>{remarks[0]}</summary>")
+        elif remarks:
+            lines += ["/// <summary>", *(f"/// {line}" for line in remarks), "/// </summary>"]
+        lines += [f"public {type_} {name};", ""]
+    # The line after the last field stays empty, too.
+    return _block(lines, 3)
+
+
+def _in_xml(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def _param_check(param: Param, name: str) -> list[str]:
+    tests = [f"IsFinite(given.{name})"]
+    tests += [] if param.low is None else [f"given.{name} >= {_number(param.low)}"]
+    tests += [] if param.high is None else [f"given.{name} <= {_number(param.high)}"]
+    parts = [f"the param `{param.name}` cannot be ", f": its range is {range_text(param.low, param.high)}"]
+    message = f" + Shown(given.{name}) + ".join(map(_string, parts))
+    return [f"if (!({' && '.join(tests)}))", "{", f"{_INDENT}throw new ArgumentException({message});", "}"]
+
+
+def _number(value: float | None, otherwise: str = "") -> str:
+    return otherwise if value is None else repr(float(value))
+
+
+def _string(text: str) -> str:
+    """A string literal in ASCII."""
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(char if " " <= char < "\x7f" else _escape(ord(char)) for char in escaped) + '"'
+
+
+def _escape(code: int) -> str:
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def _bool(value: bool) -> str:
+    return "true" if value else "false"
+
+
+def _block(lines: Iterable[str], depth: int) -> str:
+    return "\n".join(f"{_INDENT * depth}{line}" if line else "" for line in lines)
+
+
+def _list(items: Sequence[str]) -> str:
+    """The items between braces: on one line where they are short, else on lines of their own."""
+    line = ", ".join(items)
+    if len(line) <= 60:
+        return line
+    if all(len(item) < 12 for item in items):
+        items = [wrapped.rstrip(",") for wrapped in wrap(line, 100)]
+    return "\n" + "".join(f"{_INDENT * 3}{item},\n" for item in items) + _INDENT * 2

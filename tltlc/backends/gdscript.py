@@ -1,0 +1,16 @@
+"""A stand-alone monitor in GDScript, for Godot 4."""
+
+from __future__ import annotations
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Files, Options, Target
+from tltlc.backends.godot.source import ENDINGS, Dialect, files
+
+TARGET = Target("gdscript", "a stand-alone monitor in GDScript, for Godot 4", ENDINGS)
+
+_DIALECT = Dialect("godot4", "Godot 4", "RefCounted", {"abs": "absf", "tanh": "tanh"}, wide=True)
+
+
+def emit(fspa: Fspa, options: Options) -> Files:
+    """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
+    return files(fspa, _DIALECT)

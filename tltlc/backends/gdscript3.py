@@ -1,0 +1,16 @@
+"""A stand-alone monitor in GDScript, for Godot 3."""
+
+from __future__ import annotations
+
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Files, Options, Target
+from tltlc.backends.godot.source import ENDINGS, Dialect, files
+
+TARGET = Target("gdscript3", "a stand-alone monitor in GDScript, for Godot 3", ENDINGS)
+
+_DIALECT = Dialect("godot3", "Godot 3", "Reference", {"abs": "abs", "tanh": "tanh"}, wide=False)
+
+
+def emit(fspa: Fspa, options: Options) -> Files:
+    """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
+    return files(fspa, _DIALECT)

@@ -1,0 +1,1 @@
+"""What monitors for Godot share, whatever the version of the engine."""

@@ -1,0 +1,43 @@
+"""Numbers that every version of the engine reads as the very same double."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from fractions import Fraction
+from typing import Final
+
+_EXACT: Final = 2**53
+_LARGEST_POWER: Final = 22
+"""Ten to that is the largest power of ten that is a double."""
+_MOST_DIGITS: Final = 18
+"""The engine leaves out what comes behind these, zeros at the front included."""
+_LARGEST_DIVISOR: Final = 10_000
+
+
+def number(value: float) -> str:
+    """A number that is not negative: a literal, else a quotient, else a whole number times a power of two.
+
+    The engine reads a literal as a whole number and a power of ten, which it multiplies or divides: that is exact
+    where both are doubles, as a rule up to 15 digits.
+    """
+    literal = repr(value)
+    _, digits, exponent = Decimal(literal).as_tuple()
+    assert isinstance(exponent, int), "a finite number"
+    whole = int("".join(map(str, digits)))
+    written = sum(character.isdigit() for character in literal.partition("e")[0])
+    if whole < _EXACT and abs(exponent) <= _LARGEST_POWER and written <= _MOST_DIGITS:
+        return literal
+    near = Fraction(value).limit_denominator(_LARGEST_DIVISOR)
+    if near.numerator < _EXACT and near.numerator / near.denominator == value:
+        return f"({near.numerator}.0 / {near.denominator}.0)"
+    factor, power = _split(value)
+    return f"({factor} * pow(2.0, {power}.0))"
+
+
+def _split(value: float) -> tuple[int, int]:
+    """An odd number and the power of two that it is to be multiplied with."""
+    factor, divisor = value.as_integer_ratio()
+    power = 1 - divisor.bit_length()
+    while factor % 2 == 0:
+        factor, power = factor // 2, power + 1
+    return factor, power

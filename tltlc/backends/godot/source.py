@@ -1,0 +1,286 @@
+"""The script of a monitor, and the one that makes a program of it, for every version of Godot.
+
+They compute what :class:`tltlc.monitor.Monitor` computes with its default reward, to the last bit where the engine's
+``pow``, ``exp`` and ``tanh`` are those that Python was built with.  The engine's own ``min``, ``max`` and ``clamp`` are
+not used: in Godot 3 they round to single precision, as does the reading of a number in a string.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.fspa import Fspa
+from tltlc.backends import Files
+from tltlc.backends.godot.names import RESERVED, snake_case
+from tltlc.backends.godot.numbers import number
+from tltlc.backends.godot.printer import FAILING, Gd
+from tltlc.backends.program import judge, states
+from tltlc.backends.program.arithmetic import defined
+from tltlc.backends.program.build import program
+from tltlc.backends.program.template import filled
+from tltlc.backends.program.uses import called, read
+from tltlc.monitor.samples import range_text
+from tltlc.record import record
+from tltlc.resolve.spec import Param, Signal
+
+ENDINGS = ("_monitor.gd", "_monitor_main.gd")
+
+_MEMBERS = {
+    states.TARGET: "state",
+    states.ROBUSTNESS: "robustness",
+    states.LIMITING: "limiting",
+    states.PROGRESS: "reached",
+    judge.BEST: "progress",
+    judge.REWARD: "reward",
+    judge.DONE: "done",
+    judge.STEPS: "steps",
+    judge.STEPS_REAL: "float(steps)",
+    judge.ENDS: "ENDS[state]",
+    judge.VIOLATED: "verdict == Verdict.VIOLATED",
+    judge.SATISFIED: "verdict == Verdict.SATISFIED",
+}
+"""What stands for the program's own variables: mostly members of the monitor, as steps that are refused end before."""
+
+
+@record
+class Dialect:
+    """How a version of the engine differs from another.
+
+    ``version`` is what templates ask for, ``base`` the class of what is counted by references.  ``functions`` are
+    functions of the engine that are exact.  ``wide`` says whether strings have escapes for characters beyond U+FFFF.
+    """
+
+    version: str
+    title: str
+    base: str
+    functions: Mapping[str, str]
+    wide: bool
+
+
+def files(fspa: Fspa, dialect: Dialect) -> Files:
+    """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
+    script, main = (f"{fspa.name}{ending}" for ending in ENDINGS)
+    pieces = {"name": fspa.name, "file": script, "main": main, "title": dialect.title}
+    return {
+        script: _Source(fspa, dialect).text(),
+        main: filled("monitor_main.gd.txt", pieces, [dialect.version]),
+    }
+
+
+class _Source:
+    """The script of one monitor: the pieces that fill the template."""
+
+    def __init__(self, fspa: Fspa, dialect: Dialect) -> None:
+        self._fspa, self._dialect = fspa, dialect
+        self._program = program(fspa, RESERVED)
+        made = self._program
+        renamed = snake_case([*made.signals, *made.params, *made.atoms])
+        self._printer = Gd({**renamed, **_MEMBERS}, dialect.functions)
+        self._signals = [self._printer.name(name) for name in made.signals]
+        self._params = [self._printer.name(name) for name in made.params]
+        self._atoms = [self._printer.name(name) for name in made.atoms]
+
+    def text(self) -> str:
+        """The whole file."""
+        fspa = self._fspa
+        failing = called(statement for value in self._program.values for statement in value) & FAILING
+        present = [self._dialect.version, *failing, *(["note"] if failing else [])]
+        present += ["atom"] if fspa.atoms else []
+        present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
+        present += ["exclusive"] if fspa.exclusive else []
+        present += ["params"] if fspa.params else []
+        with recursion_room():
+            step = _block(self._step())
+        pieces = {
+            "title": "\n".join(self._title()),
+            "engine": self._dialect.title,
+            "base": self._dialect.base,
+            "file": f"{fspa.name}{ENDINGS[0]}",
+            "signals": self._strings(signal.name for signal in fspa.signals),
+            "fields": self._strings(self._signals),
+            "atoms": self._strings(atom.name for atom in fspa.atoms),
+            "labels": self._strings(state.label.ascii for state in fspa.states),
+            "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
+            "accepting": _list([_bool(state.accepting) for state in fspa.states]),
+            "ends": _list([_bool(self._is_end(state.id)) for state in fspa.states]),
+            "exclusive": _list([str(list(group)) for group in fspa.exclusive]),
+            "reasons": self._strings(map(_param_reason, fspa.params)),
+            "sample_fields": self._sample_fields(),
+            "sample_start": _block(
+                [f"{name} = {_start(signal)}" for signal, name in zip(fspa.signals, self._signals, strict=True)]
+                or ["pass"],
+                depth=2,
+            ),
+            "param_fields": self._param_fields(),
+            "param_checks": _block(line for place in range(len(fspa.params)) for line in self._param_check(place)),
+            "param_copies": _block([f"params.{name} = given.{name}" for name in self._params]),
+            "atom_count": str(len(fspa.atoms)),
+            "sample": "sample" if "sample." in step else "_sample",
+            "step": step,
+        }
+        return filled("monitor.gd.txt", pieces, present)
+
+    def _title(self) -> list[str]:
+        """The first comment: what the spec is called, what it is for, its formula."""
+        fspa = self._fspa
+        lines = self._printer.comment(f"Monitor of the specification `{fspa.name}`, written by tltlc.")
+        if fspa.doc.strip():
+            lines += ["#", *self._printer.comment(fspa.doc)]
+        return [*lines, "#", *(line.replace("# ", "#     ", 1) for line in self._printer.comment(fspa.formula.ascii))]
+
+    def _is_end(self, state: int) -> bool:
+        """Whether an episode ends on entry."""
+        found = self._fspa.states[state]
+        return found.verdict in ("satisfied", "violated") or (self._fspa.judge == "goal" and found.accepting)
+
+    # --- records ----------------------------------------------------------------------------------
+
+    def _sample_fields(self) -> str:
+        fields = zip(self._fspa.signals, self._signals, strict=True)
+        return self._fields(
+            [(name, "bool" if signal.type == "bool" else "float", _start(signal), signal) for signal, name in fields]
+        )
+
+    def _param_fields(self) -> str:
+        fields = zip(self._fspa.params, self._params, strict=True)
+        return self._fields([(name, "float", _signed(param.value), param) for param, name in fields])
+
+    def _fields(self, fields: Sequence[tuple[str, str, str, Signal | Param]]) -> str:
+        """The members of a class, each under its name in the spec and what is said of it."""
+        lines: list[str] = []
+        for name, type_, value, of in fields:
+            texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
+            remarks = self._printer.comment(": ".join(texts))
+            field = f"var {name}: {type_} = {value}"
+            # A short remark stands behind its field.
+            if len(remarks) == 1 and len(field) + len(remarks[0]) < 90:
+                lines.append(f"{field}  {remarks[0]}")
+            else:
+                lines += [*remarks, field]
+        return _block(lines)
+
+    def _param_check(self, place: int) -> list[str]:
+        param, name = self._fspa.params[place], f"given.{self._params[place]}"
+        tests = [f"_is_number({name})"]
+        tests += [] if param.low is None else [f"{name} >= {_signed(param.low)}"]
+        tests += [] if param.high is None else [f"{name} <= {_signed(param.high)}"]
+        test = tests[0] if len(tests) == 1 else f"({' and '.join(tests)})"
+        return [f"if not {test}:", f"\treturn _refuse(Problem.WRONG_PARAM, {place})"]
+
+    # --- the step function ------------------------------------------------------------------------
+
+    def _step(self) -> list[str]:
+        parts = [self._read(), self._compute(), self._check(), self._move(), self._judge()]
+        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+
+    def _read(self) -> list[str]:
+        """Signals in their range, and params, in variables of their own."""
+        used = read(statement for value in self._program.values for statement in value)
+        lines: list[str] = []
+        checked = False
+        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
+            is_used = self._program.signals[place] in used
+            if signal.type == "bool":
+                lines += [f"var {name}: float = 1.0 if sample.{name} else 0.0"] if is_used else []
+                continue
+            low = "-INF" if signal.low is None else _signed(signal.low)
+            high = "INF" if signal.high is None else _signed(signal.high)
+            declared = f"var {name}: float = " if is_used else "_read("
+            call = f"_read({place}, sample.{name}, {low}, {high})"
+            lines.append(f"{declared}{call}" if is_used else call)
+            checked = True
+        lines += [
+            f"var {name}: float = params.{name}"
+            for name, own in zip(self._params, self._program.params, strict=True)
+            if own in used
+        ]
+        return [*lines, *self._stop()] if checked else lines
+
+    def _stop(self) -> list[str]:
+        return ["if problem != Problem.NONE:", "\treturn false"]
+
+    def _compute(self) -> list[str]:
+        """The atoms' values."""
+        lines: list[str] = []
+        explained: set[str] = {""}
+        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
+            statements = self._program.values[place]
+            lines += self._printer.comment(atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}")
+            explained.add(atom.doc)
+            lines += self._printer.lines(defined(name, statements))
+            if called(statements) & FAILING:
+                lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {place})"]
+        checks = [f"{name} = _value({place}, {name})" for place, name in enumerate(self._atoms)]
+        return [*lines, *checks, *(self._stop() if checks else [])]
+
+    def _check(self) -> list[str]:
+        """Exclusive atoms."""
+        lines: list[str] = []
+        for place, group in enumerate(self._fspa.exclusive):
+            holding = " + ".join(f"int({self._atoms[atom]} > 0.0)" for atom in group)
+            if len(group) > 1:
+                lines += [f"if {holding} > 1:", f"\treturn _refuse(Problem.TOGETHER, {place})"]
+        return lines
+
+    def _move(self) -> list[str]:
+        """The transition, by state."""
+        lines = ["var reached: float = 0.0"] if self._fspa.judge == "goal" else []
+        lines.append("match state:")
+        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
+            lines += [f"\t{line}" for line in self._printer.comment(state.label.ascii)]
+            lines += [f"\t{state.id}:", *self._printer.lines(statements, depth=2)]
+        return lines
+
+    def _judge(self) -> list[str]:
+        """Progress, reward and the end of the episode."""
+        # Adding 0 turns -0 into 0.
+        lines = ["robustness += 0.0", "verdict = VERDICTS[state]", "accepting = ACCEPTING[state]", "steps += 1"]
+        return [*lines, *self._printer.lines(self._program.judged)]
+
+    # --- pieces -----------------------------------------------------------------------------------
+
+    def _strings(self, texts: Iterable[str]) -> str:
+        return _list([self._string(text) for text in texts])
+
+    def _string(self, text: str) -> str:
+        """A string literal, with escapes for whatever does not print; strings of the engine end at U+0000."""
+        return f'"{"".join(map(self._character, text.replace(chr(0), "")))}"'
+
+    def _character(self, character: str) -> str:
+        code = ord(character)
+        if character in '"\\':
+            return f"\\{character}"
+        if 0xD800 <= code < 0xE000:
+            return "?"
+        if character.isprintable():
+            return character
+        if code > 0xFFFF:
+            return f"\\U{code:06x}" if self._dialect.wide else character
+        return {"\n": "\\n", "\r": "\\r", "\t": "\\t"}.get(character, f"\\u{code:04x}")
+
+
+def _signed(value: float) -> str:
+    return f"-{number(-value)}" if repr(value)[0] == "-" else number(float(value))
+
+
+def _start(signal: Signal) -> str:
+    return "false" if signal.type == "bool" else "INF"
+
+
+def _param_reason(param: Param) -> str:
+    return f"the param `{param.name}` cannot have that value: its range is {range_text(param.low, param.high)}"
+
+
+def _bool(value: bool) -> str:
+    return "true" if value else "false"
+
+
+def _block(lines: Iterable[str], depth: int = 1) -> str:
+    return "\n".join("\t" * depth + line if line else "" for line in lines)
+
+
+def _list(items: Sequence[str]) -> str:
+    """The items between brackets: on one line where they are short, else on lines of their own."""
+    line = ", ".join(items)
+    return f"[{line}]" if len(line) <= 80 else "[\n" + "".join(f"\t{item},\n" for item in items) + "]"
