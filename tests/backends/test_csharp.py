@@ -330,7 +330,16 @@ def test_decimals_are_exact(program: Path) -> None:
     values += [(2 * odd + 1) / 2.0**power for power in range(1, 60) for odd in (3, 5461, 131071, 200003)]
     values += [numerator / 97 for numerator in range(98)] + [0.00454510748386383, 3.220574384798567e-232, 5e-324]
     texts = [repr(value) for value in values]
-    texts += ["9007199254740993", "9007199254740993.00001", "1e23", "1.7976931348623159e308", "2e-324", "3e-324", ".5", "5."]
+    texts += [
+        "9007199254740993",
+        "9007199254740993.00001",
+        "1e23",
+        "1.7976931348623159e308",
+        "2e-324",
+        "3e-324",
+        ".5",
+        "5.",
+    ]
     (program / "numbers.cs").write_text(DECIMALS)
     words = ("-define:TLTL_MAIN", "-main:Numbers", "-out:numbers.exe", "numbers.cs", "cover_and_hide_monitor.cs")
     compiled(program, *words)

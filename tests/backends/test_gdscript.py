@@ -16,7 +16,6 @@ import shutil
 import struct
 import subprocess
 from collections.abc import Mapping, Sequence
-from decimal import Decimal
 from pathlib import Path
 
 import pytest
