@@ -1,4 +1,4 @@
-"""The generated C# is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus has the other cases."""
+"""The generated C# is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus has the rest."""
 
 from __future__ import annotations
 
@@ -117,7 +117,8 @@ internal static class Library
             Tell(monitor, sample);
             sample.health = 2.0;
             var result = monitor.Step(sample);
-            Console.WriteLine("{0} {1} {2:R} {3:R}", result.Label, result.Limiting, result.Progress, monitor.ValueOf(0));
+            Console.WriteLine(
+                "{0} {1} {2:R} {3:R}", result.Label, result.Limiting, result.Progress, monitor.ValueOf(0));
             sample.distance_s1 = sample.distance_exit = 0.5;
             Tell(monitor, sample);
             Console.WriteLine("{0} {1} {2}", monitor.State, monitor.Steps, monitor.Done);

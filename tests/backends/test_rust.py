@@ -1,4 +1,4 @@
-"""The generated Rust is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus has the other cases."""
+"""The generated Rust is :class:`tltlc.monitor.Monitor`, whatever the names in the spec; the corpus has the rest."""
 
 from __future__ import annotations
 
