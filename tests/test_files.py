@@ -9,7 +9,7 @@ from typing import NoReturn
 
 import pytest
 
-from tltlc.files import exists, is_file
+from tltlc.files import exists, is_dir, is_file, noted, read_source, stamp
 
 
 def test_what_is_there(tmp_path: Path) -> None:
@@ -37,3 +37,23 @@ def test_what_one_may_not_look_at_is_nowhere(
 
     monkeypatch.setattr(os, "stat", refused)
     assert not look(tmp_path)
+
+
+def test_what_is_looked_at_is_noted_as_it_was_before(tmp_path: Path) -> None:
+    file, missing = tmp_path / "a", tmp_path / "b"
+    file.write_text("1")
+    before = stamp(str(file))
+    with noted() as outer, noted() as inner:
+        assert is_file(file) and not exists(missing) and is_dir(tmp_path)
+        file.write_text("22")
+        read_source(file)
+    assert outer == inner == {str(file): before, str(missing): None, str(tmp_path): stamp(str(tmp_path))}
+    assert stamp(str(file)) != before
+    exists(tmp_path / "c")
+    assert len(outer) == 3
+
+
+def test_a_folder_stays_the_same_whatever_is_written_into_it(tmp_path: Path) -> None:
+    before = stamp(str(tmp_path))
+    (tmp_path / "a").touch()
+    assert before is not None and stamp(str(tmp_path)) == before

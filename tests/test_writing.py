@@ -49,6 +49,14 @@ def test_other_files_wait_for_no_disk(tmp_path: Path, done: list[int | str]) -> 
     assert done == ["a", "c"]
 
 
+def test_what_is_there_already_is_not_written(tmp_path: Path, done: list[int | str]) -> None:
+    (tmp_path / "a").write_text("one")
+    (tmp_path / "b").write_text("another")
+    assert write_files(tmp_path, {"a": "one", "b": "two", "c": b"three"}) == (tmp_path / "b", tmp_path / "c")
+    assert done == ["b", "c"]
+    assert write_files(tmp_path, {"a": "one"}, durable=True) == (tmp_path / "a",)
+
+
 @pytest.mark.parametrize("durable", [False, True])
 def test_a_failure_leaves_what_was_there(tmp_path: Path, durable: bool) -> None:
     (tmp_path / "a").write_text("older")

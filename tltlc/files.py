@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
-from typing import Final
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Final, Union
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.source import SourceFile, Span
@@ -16,20 +19,62 @@ MAX_ARTEFACT_BYTES: Final = 1 << 28
 
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 
+Stamp = Union[tuple[int, ...], None]
+"""What tells one state of a file from another; of a folder or a device only that it is there, and None of nothing."""
+
+_noted: Final[list[dict[str, Stamp]]] = []
+"""Who asks for notes of what is looked at, by the paths."""
+
+
+@contextmanager
+def noted() -> Iterator[dict[str, Stamp]]:
+    """Within, every path that is looked for or read here is noted with its state before that, if it is there or not.
+
+    They are what a result depends on: as long as :func:`stamp` says the same of each, it would come out the same.
+    """
+    notes: dict[str, Stamp] = {}
+    _noted.append(notes)
+    try:
+        yield notes
+    finally:
+        _noted.remove(notes)
+
+
+def note(path: str | os.PathLike[str]) -> None:
+    """Tell those who asked by :func:`noted` that this path is about to be looked at."""
+    for notes in _noted:
+        name = os.fspath(path)
+        if name not in notes:
+            notes[name] = stamp(name)
+
+
+def stamp(path: str) -> Stamp:
+    """The state of what is at a path now."""
+    try:
+        found = os.stat(path)  # noqa: PTH116
+    except (OSError, ValueError):
+        return None
+    if not stat.S_ISREG(found.st_mode):
+        return (stat.S_IFMT(found.st_mode),)
+    return (found.st_mtime_ns, found.st_size, found.st_ino)
+
 
 def exists(path: str | os.PathLike[str]) -> bool:
     """Whether something is there, as far as the system tells: where it allows no such name or look, nothing is."""
+    note(path)
     # pathlib's raises there, before Python 3.14.
     return os.path.exists(path)  # noqa: PTH110
 
 
 def is_file(path: str | os.PathLike[str]) -> bool:
     """Whether a file is there, as :func:`exists` has it; devices and pipes are none."""
+    note(path)
     return os.path.isfile(path)  # noqa: PTH113
 
 
 def is_dir(path: str | os.PathLike[str]) -> bool:
     """Whether a folder is there, as :func:`exists` has it."""
+    note(path)
     return os.path.isdir(path)  # noqa: PTH112
 
 
@@ -57,6 +102,7 @@ def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes
 
     Error (:class:`TltlError`): TLT0001 where the system cannot read it.
     """
+    note(path)
     try:
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             return file.read(max_bytes + 1)

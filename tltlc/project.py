@@ -9,11 +9,11 @@ notation = "unicode"                  # of formulas in pictures: unicode, ascii 
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.files import is_dir, is_file, read_source
 from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
@@ -46,7 +46,7 @@ def project_for(path: str) -> Project:
         return Project()  # the current folder has been deleted: nothing is above it
     for place in (folder, *folder.parents):
         candidate = place / FILE_NAME
-        if os.path.isfile(candidate):  # noqa: PTH113 (pathlib raises where a name is too long)
+        if is_file(candidate):
             return read_project(candidate)
     return Project()
 
@@ -56,7 +56,6 @@ def read_project(path: Path) -> Project:
 
     Errors: TLT0701 no TOML; else everything that is wrong: TLT0702 an unknown key, TLT0703 a value of the wrong kind.
     """
-    from tltlc.files import read_source
     from tltlc.toml_text import parse
 
     source = read_source(path, _shown(path))
@@ -75,7 +74,7 @@ def read_project(path: Path) -> Project:
         wrong.append(_wrong(source, "notation", 'one of "unicode", "ascii", "english"', notation))
     folders = {library: path.parent / library for library in table.get("libraries", [])}
     for library, folder in folders.items():
-        if not os.path.isdir(folder):  # noqa: PTH112
+        if not is_dir(folder):
             wrong.append(_no_folder(source, library))
     if wrong:
         raise TltlError(wrong)

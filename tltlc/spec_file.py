@@ -8,7 +8,7 @@ import sys
 from errno import EBADF
 from typing import TYPE_CHECKING, Final
 
-from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, read_source, reading_error
+from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, note, read_source, reading_error
 from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ def read(path: str) -> tuple[SourceFile, bool]:
     """
     if path == STDIN:
         return _read_stream(_standard_input(), STDIN_NAME)
+    note(path)
     try:
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             return _read_stream(file, path)

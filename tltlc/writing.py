@@ -18,9 +18,10 @@ _OPTION: Final = "name another place with -o"
 def write_files(
     folder: Path, files: Mapping[str, str | bytes], advice: str = _OPTION, *, durable: bool = False
 ) -> tuple[Path, ...]:
-    """Write all of the files into the folder, or none of them; their paths in order.  Folders are made where missing.
+    """Write all of the files into the folder, or none of them.  Folders are made where missing.
 
-    Every file is first written under a temporary name beside its place, and only when all of them are there are
+    Those that hold this already stay untouched, so that nothing is made again of them; the paths of the others in
+    order.  Every file is first written under a temporary name beside its place, and only when all of them are there are
     they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005, with ``advice`` on where else to write.
 
     Each ``durable`` file is a whole one after a loss of power, too, and is not lost once this has returned, as long as
@@ -69,11 +70,16 @@ def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
 def _write(files: Mapping[Path, str | bytes], advice: str, durable: bool) -> tuple[Path, ...]:
     waiting: list[tuple[Path, Path]] = []
     unsynced: set[Path] = set()
+    written: list[Path] = []
     shown = Path()
     try:
         for shown, content in files.items():
             data = content.encode() if isinstance(content, str) else content
             mode = _mode(shown)
+            # Nobody knows whether what is there would outlast a loss of power.
+            if not durable and mode is not None and _holds(shown, mode, data):
+                continue
+            written.append(shown)
             if mode is not None and not stat.S_ISREG(mode):
                 # A device or a pipe keeps its place, which a link of `/dev/fd` alone may name; a folder refuses.
                 with shown.open("wb") as file:
@@ -103,7 +109,15 @@ def _write(files: Mapping[Path, str | bytes], advice: str, durable: bool) -> tup
         for temporary, _ in waiting:
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
-    return tuple(files)
+    return tuple(written)
+
+
+def _holds(path: Path, mode: int, data: bytes) -> bool:
+    """Whether this is a file with that content."""
+    try:
+        return stat.S_ISREG(mode) and path.stat().st_size == len(data) and path.read_bytes() == data
+    except OSError:
+        return False
 
 
 def _sync_folder(folder: Path) -> None:

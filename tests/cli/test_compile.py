@@ -98,6 +98,32 @@ def test_links_and_rights_of_older_files_stay(tltlc, inside: Path) -> None:  # t
     assert Path("real.dot").stat().st_mode & 0o777 == 0o640
 
 
+def test_a_change_to_one_spec_changes_its_files_alone(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    from tltlc import backends
+
+    targets = ",".join(target for target in backends.targets() if target not in ("png", "svg", "gdscript3"))
+    text = "signal seen: bool\nspec calm = G !seen\nspec found = F seen\n"
+    (inside / "two.tltl").write_text(text)
+    assert tltlc("compile", "two.tltl", "-o", "out", "-t", targets).status == 0
+    before = {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in (inside / "out").iterdir()}
+
+    (inside / "two.tltl").write_text("// a comment above\n\n" + text.replace("F seen", "F(seen & X !seen)"))
+    done = tltlc("compile", "two.tltl", "-o", "out", "-t", targets)
+    changed = {path.name for path, was in before.items() if (path.read_bytes(), path.stat().st_mtime_ns) != was}
+    assert changed and all(name.startswith("found") for name in changed)
+    assert {"found.fspa.json", "found_monitor.py", "found_monitor.h"} <= changed
+    wrote = [line for line in done.err.splitlines() if line.startswith("wrote ")]
+    assert len(wrote) == len(changed)
+    assert done.err.splitlines()[-1] == f"{len(before) - len(changed)} files have not changed"
+
+
+def test_two_targets_that_write_the_same_file(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    done = tltlc("compile", "hide.tltl", "-t", "gdscript,gdscript3")
+    assert done.status == 2
+    assert "`gdscript` and `gdscript3` both write `hide_monitor.gd`: give each its own -o" in done.err
+    assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
+
+
 def test_a_device_is_written_to_and_not_replaced(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("null.svg").symlink_to("/dev/null")
     assert tltlc("render", "hide.tltl", "-o", "null.svg").status == 0

@@ -45,9 +45,10 @@ def write_automata(
     report: Report,
     read: Collection[str] = (),
 ) -> tuple[Path, ...]:
-    """Write what is asked for of each automaton, all of it or nothing, and tell of each file.
+    """Write what is asked for of each automaton, all of it or nothing, and tell of each file; their paths.
 
-    Raises click.UsageError where one of the files that were ``read`` would be written over.
+    Raises click.UsageError where one of the files that were ``read`` would be written over, or one target's file by
+    another's.
     """
     from tltlc import backends
     from tltlc.files import is_same
@@ -57,13 +58,24 @@ def write_automata(
     options = backends.Options(notation=project.notation, report=lambda diagnostic: report.add((diagnostic,)))
     files: dict[str, str | bytes] = {}
     for fspa in automata:
+        writers: dict[str, str] = {}
         for target in targets:
-            files.update(backends.emit(target, fspa, options))
+            for name, content in backends.emit(target, fspa, options).items():
+                other = writers.setdefault(name, target)
+                if other != target:
+                    raise click.UsageError(f"`{other}` and `{target}` both write `{name}`: give each its own -o")
+                files[name] = content
     for name in files:
         for input_ in read:
             if is_same(folder / name, input_):
                 raise click.UsageError(f"`{input_}` would be written over: give another folder, with -o, or a --name")
-    paths = write_files(folder, files)
-    for path in paths:
+    written = write_files(folder, files)
+    for path in written:
         report.say(f"wrote {path}")
-    return paths
+    if len(written) < len(files):
+        report.say(_unchanged(len(files) - len(written)))
+    return tuple(folder / name for name in files)
+
+
+def _unchanged(count: int) -> str:
+    return f"{count} files have not changed" if count > 1 else "1 file has not changed"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,6 +10,7 @@ import click
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.diagnostics.render import FORMATS
+from tltlc.files import is_dir
 from tltlc.record import EMPTY, record
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -77,7 +77,7 @@ format_option = click.option(
 def check_libraries(libraries: tuple[Path, ...]) -> None:
     """Error TLT0001 for a library folder that is none."""
     for folder in libraries:
-        if not os.path.isdir(folder):  # noqa: PTH112 (pathlib raises where a name is too long)
+        if not is_dir(folder):
             title = f"the library folder `{folder}` is not there"
             raise TltlError([Diagnostic("TLT0001", title, help="name a folder that is there")])
 

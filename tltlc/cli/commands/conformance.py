@@ -35,6 +35,7 @@ def command(folder: Path) -> int:
     from tltlc.writing import write_files
 
     with Report() as report:
-        paths = write_files(folder, files())
-        report.say(f"wrote {len(CASES)} cases, {len(paths)} files, to {folder}: see {folder / 'README.md'}")
+        made = files()
+        write_files(folder, made)
+        report.say(f"wrote {len(CASES)} cases, {len(made)} files, to {folder}: see {folder / 'README.md'}")
     return report.status
