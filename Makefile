@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: demo test lint format generate bench clean
+.PHONY: demo test lint format generate bench checkers clean
 
 # Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
 demo: $(VENV)/.installed-rl
@@ -52,6 +52,16 @@ generate: $(VENV)/.installed-dev
 # Measure beside the peers and write benchmarks/RESULTS.md; a run that was stopped goes on. MONA: Debian package `mona`.
 bench: $(VENV)/.installed-bench
 	$(BIN)/python -m benchmarks
+
+# Programs that check generated code, each in a folder of its own, since gdtoolkit asks for another lark than tltlc.
+checkers: $(VENV)/gdtoolkit/bin/gdparse $(VENV)/npm/node_modules/.bin/tsc
+
+$(VENV)/gdtoolkit/bin/gdparse:
+	$(PYTHON) -m venv $(VENV)/gdtoolkit
+	$(VENV)/gdtoolkit/bin/python -m pip --disable-pip-version-check --quiet install gdtoolkit==4.5.0
+
+$(VENV)/npm/node_modules/.bin/tsc:
+	npm install --prefix $(VENV)/npm --silent --no-audit --no-fund --ignore-scripts typescript@5.9.3 esbuild@0.28.2
 
 clean:
 	rm -rf $(VENV) demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

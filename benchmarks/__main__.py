@@ -13,6 +13,7 @@ from benchmarks import (
     batch,
     compile_table,
     edits,
+    engine_speed,
     expert,
     game,
     infinite,
@@ -43,6 +44,7 @@ SECTIONS = {
         edits,
         table1,
         infinite,
+        engine_speed,
         compile_table,
     )
 }

@@ -11,6 +11,7 @@ from benchmarks import (
     compile_table,
     edits,
     edits_report,
+    engine_report,
     expert,
     expert_report,
     game,
@@ -61,6 +62,7 @@ def render(store: Store) -> str:
         _large(compiled),
         _process(store.section(process.SECTION)),
         _monitors(store.section(monitors.SECTION)),
+        engine_report.section(store),
         _batch(store.section(batch.SECTION)),
         game_report.speed(store.section(game.SECTION)),
         game_report.safe(store.section(safety.SECTION)),
@@ -153,6 +155,7 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
             f"least {min(ratios_by_hand):.2f}",
             met_or_missed(min(ratios_by_hand) >= MONITOR_FACTOR),
         )
+    yield from engine_report.goals(store)
     yield from _batch_goals(store.section(batch.SECTION))
     yield from game_report.goals(store)
     yield from expert_report.goals(store)

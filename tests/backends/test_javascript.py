@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
+import os
 import re
 import shutil
 import subprocess
@@ -19,17 +21,22 @@ from tests.fixtures import cover_and_hide
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
+from tltlc.conformance.corpus import CASES
 from tltlc.expression import Const, Op, Signal
 from tltlc.logic import formula as f
 from tltlc.monitor import Monitor
 from tltlc.record import replace
 from tltlc.resolve import spec
 
+TSC = os.environ.get("TSC") or shutil.which("tsc")
+ESBUILD = os.environ.get("ESBUILD") or shutil.which("esbuild")
+
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="there is no node here")
 
 NAMES = (
     *("this", "state", "steps", "class", "await", "arguments", "let", "undefined", "NaN", "constructor", "__proto__"),
     *("toString", "signals", "result", "target", "best", "entered", "min", "max", "STATES", "Math", "t_1", "nearest"),
+    *("\x1b[31m", "a\u2028b", "entered", "hasOwnProperty", "process"),
     *("x", "x_1", "x.1", "x(1)", "1", "a" * 300, "a,b", "//", "/*", "${1}", "@@step@@", "\\", "`"),
     *(text for text in HOSTILE if text == text.strip() and "\0" not in text and "\ufeff" not in text),
 )
@@ -202,40 +209,137 @@ def test_module(tmp_path: Path) -> None:
     assert out.splitlines() == lines
 
 
+def test_a_boolean_is_a_bool_and_a_number(tmp_path: Path) -> None:
+    """As in Python, true counts as 1; nothing else is taken for a number."""
+    expression = Op("-", (Op("*", (Signal("x"), Signal("seen"))), Const(0.5)))
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    signals = (spec.Signal("x", "number", None, None), spec.Signal("seen", "bool", 0.0, 1.0))
+    written(replace(fspa, signals=signals, atoms=(spec.Atom("p", expression),)), tmp_path)
+    (tmp_path / "use.mjs").write_text(f"""
+import {{ Monitor }} from "./{fspa.name}_monitor.mjs";
+for (const [x, seen] of [[1, true], [true, 1], [1, false], [1, 0.5], ["1", 1], [null, 1], [1, [1]], [1n, 1]]) {{
+  try {{
+    console.log(new Monitor().step({{ x, seen }}).robustness);
+  }} catch (error) {{
+    console.log(error.message);
+  }}
+}}
+""")
+    _, out, err = ran(tmp_path / "use.mjs")
+    wrong = ["seen` is 0.5, not true or false", "x` is no number", "x` is no number", "seen` is no number"]
+    said = [f"step 1: the signal `{each}" for each in [*wrong, "x` is no number"]]
+    assert out.splitlines() == ["0.5", "0.5", "0.5", *said], err
+
+
+# --- for TypeScript -------------------------------------------------------------------------------
+
 TYPED_USE = """
-import { Monitor, Result, type Verdict } from "./cover_and_hide_monitor.mjs";
+import { Monitor, MonitorError, Result, type Params, type Signals, type Verdict } from "./cover_and_hide_monitor.mjs";
 
 const monitor = new Monitor({ level_size: 10 });
 const result = new Result();
-const found: Result = monitor.step({ "distance(s1)": 5, "distance(s2)": 5, "distance(exit)": 5, health: 1 }, result);
+const sample: Signals = { "distance(s1)": 5, "distance(s2)": 5, "distance(exit)": 5, health: 1 };
+const found: Result = monitor.step(sample, result);
 const verdict: Verdict = found.verdict;
 const limiting: string | null = found.limiting;
+const params: Params = { level_size: 10 };
 monitor.reset();
 // @ts-expect-error: there is no such param.
 new Monitor({ size: 1 });
+// @ts-expect-error: it is no number.
+new Monitor({ level_size: "10" });
 // @ts-expect-error: signals are missing.
 monitor.step({ health: 1 });
-export { limiting, verdict };
+// @ts-expect-error: there is no such signal.
+monitor.step({ ...sample, wealth: 1 });
+// @ts-expect-error: it is for the monitor to change.
+monitor.state = 1;
+// @ts-expect-error: it may be null.
+const name: string = found.limiting;
+// @ts-expect-error: a verdict is one of four.
+if (verdict === "unknown") throw new MonitorError("never");
+export { limiting, name, params };
+"""
+
+PLAIN_USE = """
+import { Monitor } from "./again_monitor.mjs";
+
+new Monitor({}).step({ seen: true });
+// @ts-expect-error: there are no params.
+new Monitor({ size: 1 });
+"""
+
+types = pytest.mark.skipif(not TSC, reason="there is no TypeScript compiler (tsc) here: types are not checked")
+
+
+def compiled(folder: Path, files: Sequence[str], **options: object) -> str:
+    """What TypeScript's compiler says of the files."""
+    strict = {"strict": True, "noEmit": True, "target": "es2022", "lib": ["es2022", "dom"], "types": []}
+    (folder / "tsconfig.json").write_text(json.dumps({"compilerOptions": strict | options, "files": files}))
+    return subprocess.run([str(TSC), "-p", "."], cwd=folder, capture_output=True, text=True).stdout
+
+
+@types
+@pytest.mark.parametrize(("module", "resolution"), [("nodenext", "nodenext"), ("esnext", "bundler")])
+def test_types_are_found_and_right(tmp_path: Path, module: str, resolution: str) -> None:
+    written(cover_and_hide(), tmp_path)
+    written(build(spec_from_formula(f.TRUE, "again")), tmp_path)
+    (tmp_path / "use.mts").write_text(TYPED_USE)
+    (tmp_path / "plain.mts").write_text(PLAIN_USE)
+    assert compiled(tmp_path, ["use.mts", "plain.mts"], module=module, moduleResolution=resolution) == ""
+
+
+@types
+def test_the_code_itself_has_types(tmp_path: Path) -> None:
+    """Some modules of the corpus, and hostile ones; parameters of helpers are taken for any."""
+    fspas = [*(make().fspa for make in [*CASES.values()][::5]), awkward(NAMES)[0], build(spec_from_formula(f.TRUE))]
+    modules = [written(fspa, tmp_path).name for fspa in fspas]
+    (tmp_path / "node.d.ts").write_text("declare const process: any;\n")
+    found = compiled(
+        tmp_path,
+        ["node.d.ts", *modules],
+        module="nodenext",
+        allowJs=True,
+        checkJs=True,
+        noImplicitAny=False,
+        useUnknownInCatchVariables=False,
+        noUnusedLocals=True,
+        noImplicitReturns=True,
+        noFallthroughCasesInSwitch=True,
+    )
+    assert found == ""
+
+
+# --- for bundlers ---------------------------------------------------------------------------------
+
+BUNDLED_USE = """
+import { Monitor } from "./cover_and_hide_monitor.mjs";
+const far = { "distance(s1)": 5, "distance(s2)": 5, "distance(exit)": 5, health: 1 };
+console.log(new Monitor().step(far).verdict);
 """
 
 
-@pytest.mark.skipif(shutil.which("tsc") is None, reason="there is no TypeScript compiler here")
-def test_types(tmp_path: Path) -> None:
+@pytest.mark.skipif(not ESBUILD, reason="there is no bundler (esbuild) here: no module is bundled")
+@pytest.mark.parametrize("platform", ["browser", "node"])
+@pytest.mark.parametrize("layout", ["esm", "iife", "cjs"])
+def test_bundles(tmp_path: Path, platform: str, layout: str) -> None:
+    """Nothing is missed or warned of, and the bundle is not taken for the monitor's own program."""
     written(cover_and_hide(), tmp_path)
-    (tmp_path / "use.mts").write_text(TYPED_USE)
-    command = ["tsc", "--strict", "--noEmit", "--module", "nodenext", "--target", "es2022", "use.mts"]
+    (tmp_path / "use.mjs").write_text(BUNDLED_USE)
+    bundle = "use.bundle." + ("mjs" if layout == "esm" else "cjs")
+    wanted = ["--bundle", f"--format={layout}", f"--platform={platform}", "--target=es2022", f"--outfile={bundle}"]
+    command = [str(ESBUILD), "use.mjs", *wanted, "--log-level=warning"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout
+    assert (done.returncode, done.stderr) == (0, "")
+    assert ran(tmp_path / bundle) == (0, "pending\n", "")
 
 
-def test_the_module_needs_no_node() -> None:
-    """Node's modules are loaded by the program alone, and nothing is awaited where a module is imported."""
+def test_the_module_imports_nothing() -> None:
+    """Bundlers for browsers would look for Node's modules."""
     text = emit("javascript", cover_and_hide())["cover_and_hide_monitor.mjs"]
     assert isinstance(text, str)
-    assert not re.search(
-        r"^import |^ *(const .*= )?await |require\(", text.split("async function main")[0], re.MULTILINE
-    )
-    assert not re.search(r"^(if )?\(?await ", text, re.MULTILINE)
+    code = re.sub(r"^//.*|/\*.*?\*/", "", text, flags=re.MULTILINE | re.DOTALL)
+    assert not re.search(r"\bimport\b|require\(|^(if )?\(?await ", code, re.MULTILINE)
 
 
 # --- as a program ---------------------------------------------------------------------------------

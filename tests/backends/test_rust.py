@@ -38,8 +38,9 @@ def written(fspa: Fspa, folder: Path) -> str:
     return text
 
 
-def compiled(folder: Path, *words: str) -> None:
-    done = subprocess.run(["rustc", *STRICT[:-2], *words], cwd=folder, capture_output=True, text=True)
+def compiled(folder: Path, *words: str, edition: str = "2021") -> None:
+    command = ["rustc", "--edition", edition, *STRICT[2:-2], *words]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
 
 
@@ -110,13 +111,14 @@ fn tell(monitor: &mut Monitor, sample: &Signals) {
 fn main() {
     println!("{}", Monitor::with(Params { level_size: 1.0 }).unwrap_err());
     let mut monitor = Monitor::with(Params { level_size: 10.0 }).unwrap();
+    println!("{}", monitor.params().level_size);
     for _ in 0..2 {
         let mut sample =
             Signals { distance_s1: 5.0, distance_s2: 5.0, distance_exit: 5.0, ..Signals::default() };
         tell(&mut monitor, &sample);
         sample.health = 2.0;
         let step = monitor.step(&sample).unwrap();
-        println!("{} {} {:?} {:?}", step.label, step.limiting.unwrap(), step.progress, monitor.values()[0]);
+        println!("{} {} {:?}", step.label, step.limiting.unwrap(), step.progress);
         sample.distance_s1 = 0.5;
         sample.distance_exit = 0.5;
         tell(&mut monitor, &sample);
@@ -140,12 +142,13 @@ def test_library(tmp_path: Path) -> None:
     together = "step 2: `near(s1)` and `near(exit)` hold at once, against `exclusive near(s1), near(s2), near(exit)`"
     rows = [
         "NotFinite: step 1: no finite number for the signal `health`",
-        f"{step.label} near(s1) {step.progress!r} {monitor.values[0]!r}",
+        f"{step.label} near(s1) {step.progress!r}",
         f"Together: {together}",
         "0 1 false",
     ]
     lines = [
         "the param `level_size` cannot be 1: its range is [2, 10000]",
+        "10",
         *rows,
         *rows,
         "step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
@@ -153,17 +156,42 @@ def test_library(tmp_path: Path) -> None:
     assert ran(tmp_path / "library") == (0, "".join(f"{line}\n" for line in lines), "")
 
 
-def test_without_the_standard_library(tmp_path: Path) -> None:
-    """Alone, or with the functions that `core` does not have."""
+@pytest.mark.parametrize("edition", ["2018", "2021"])
+def test_without_the_standard_library(tmp_path: Path, edition: str) -> None:
+    """Alone, or with the functions that `core` does not have; in crates that ask for much."""
     x = Signal("x")
     value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
     written(replace(one_atom(value, spec.Signal("x", "number", None, None)), name="much"), tmp_path)
     assert "It needs `core` alone." in written(cover_and_hide(), tmp_path)
-    lines = ["#![no_std]", "pub mod cover_and_hide_monitor;", "pub mod much_monitor;", "mod tltl_math {"]
-    lines += [f"    pub fn {name}(x: f64) -> f64 {{ x }}" for name in ("sqrt", "exp", "tanh")]
-    lines += ["    pub fn pow(x: f64, _: f64) -> f64 { x }", "}", ""]
+    lines = ["//! A crate.", "#![no_std]", "#![deny(missing_docs, rust_2018_idioms, unreachable_pub)]"]
+    lines += ["pub mod cover_and_hide_monitor;", "pub mod much_monitor;", "mod tltl_math {"]
+    lines += [f"    pub(crate) fn {name}(x: f64) -> f64 {{ x }}" for name in ("sqrt", "exp", "tanh")]
+    lines += ["    pub(crate) fn pow(x: f64, _: f64) -> f64 { x }", "}", ""]
     (tmp_path / "bare.rs").write_text("\n".join(lines))
-    compiled(tmp_path, "--crate-type", "lib", "--cfg", "tltl_no_std", "bare.rs")
+    compiled(tmp_path, "--crate-type", "lib", "--cfg", "tltl_no_std", "bare.rs", edition=edition)
+
+
+@pytest.mark.skipif(not shutil.which("rustdoc"), reason="there is no rustdoc here")
+@pytest.mark.parametrize("text", ["~~~ " + "x " * 60, "``` " + "x " * 60, "```", "~~~", "<script>alert(1)</script>"])
+def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
+    """Code in it would be run by the tests of a host, HTML by readers."""
+    fspa = cover_and_hide()
+    fspa = replace(
+        fspa,
+        doc=text,
+        formula=replace(fspa.formula, ascii=text),
+        signals=tuple(replace(signal, doc=text) for signal in fspa.signals),
+    )
+    written(fspa, tmp_path)
+    (tmp_path / "host.rs").write_text("pub mod cover_and_hide_monitor;\n")
+    words = ["rustdoc", "--edition", "2021", "--crate-name", "host", "host.rs"]
+    done = subprocess.run([*words, "--test"], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, "running 0 tests" in done.stdout) == (0, True), done.stdout
+    done = subprocess.run([*words, "-D", "warnings"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    pages = [page.read_text() for page in (tmp_path / "doc" / "host" / "cover_and_hide_monitor").rglob("*.html")]
+    assert pages
+    assert not any("<script>alert" in page for page in pages)
 
 
 # --- as a program ---------------------------------------------------------------------------------
@@ -173,7 +201,8 @@ def test_without_the_standard_library(tmp_path: Path) -> None:
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("program")
     written(cover_and_hide(), folder)
-    compiled(folder, "-O", "--cfg", "tltl_main", "cover_and_hide_monitor.rs")
+    # The oldest edition is what the compiler takes a file for.
+    compiled(folder, "-O", "--cfg", "tltl_main", "cover_and_hide_monitor.rs", edition="2015")
     return folder / "cover_and_hide_monitor"
 
 
@@ -186,6 +215,16 @@ def test_program(program: Path) -> None:
     assert ran(program, "--full", "trace.csv") == (status, out, err)
     assert ran(program, "trace.csv") == (status, short, err)
     assert ran(program, "-", stdin=text.encode()) == (status, short, err)
+
+
+def test_program_of_any_edition(tmp_path: Path) -> None:
+    """With all that `core` does not have."""
+    x = Signal("x")
+    value = Op("tanh", (Op("+", (Op("sqrt", (x,)), Op("exp", (x,)), Op("^", (x, Const(0.3))))),))
+    fspa = one_atom(value, spec.Signal("x", "number", None, None))
+    written(fspa, tmp_path)
+    for edition in ("2015", "2018", "2021"):
+        compiled(tmp_path, "--cfg", "tltl_main", "--emit", "metadata", f"{fspa.name}_monitor.rs", edition=edition)
 
 
 @pytest.mark.parametrize(

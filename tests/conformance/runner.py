@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import importlib
-import io
 import pkgutil
-import re
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
@@ -14,15 +11,12 @@ from pathlib import Path
 
 from tltlc import backends
 from tltlc.conformance.case import Case
-from tltlc.conformance.expected import COLUMNS, Expected, Refusal
+from tltlc.conformance.check import differences
+from tltlc.conformance.expected import COLUMNS, Expected
 from tltlc.record import record
 
 LONGEST_BUILD_S = 120
 LONGEST_RUN_S = 30
-
-_NUMBERS = ("progress", "reward", "robustness")
-_OF_A_FILE = ("no sample", "missing signal", "bad cell")
-"""Errors that are those of the file: messages need not tell the step."""
 
 
 @record
@@ -82,55 +76,7 @@ def problems(runner: Runner, name: str, folder: Path, trace: bytes, expected: Ex
     (folder / f"{name}.trace.csv").write_bytes(trace)
     command = [word.format(name=name) for word in (*runner.run, "--full", "{name}.trace.csv")]
     done = subprocess.run(command, cwd=folder, capture_output=True, timeout=LONGEST_RUN_S)
-    said = done.stderr.decode()
-    status = 1 if expected.refusal else 0
-    if done.returncode != status:
-        yield f"exit status {done.returncode}, not {status}: {said}"
-    yield from _in_rows(runner, done.stdout.decode(), expected)
-    yield from _in_words(said, expected)
-
-
-def _in_rows(runner: Runner, printed: str, expected: Expected) -> Iterator[str]:
-    """Cell by cell; where the first sample is refused, the header may be missing."""
-    rows = [tuple(row) for row in csv.reader(io.StringIO(printed, newline=""), strict=True)]
-    header, *found = rows or [COLUMNS]
-    if header != COLUMNS:
-        yield f"the header is {header}"
-    if (rows or expected.rows) and len(found) != len(expected.rows):
-        yield f"{len(found)} rows, not {len(expected.rows)}"
-    for number, (row, right) in enumerate(zip(found, expected.rows), start=1):  # noqa: B905 (counted above)
-        if len(row) != len(right):
-            yield f"row {number} has {len(row)} cells: {row}"
-            continue
-        for column, cell, wanted in zip(COLUMNS, row, right, strict=True):
-            if cell != wanted and not (column in _NUMBERS and _near(cell, wanted, runner.tolerance)):
-                yield f"row {number}: {column} is {cell!r}, not {wanted!r}"
-
-
-def _near(cell: str, wanted: str, tolerance: float) -> bool:
-    try:
-        return tolerance > 0.0 and abs(float(cell) - float(wanted)) <= tolerance
-    except ValueError:
-        return False
-
-
-def _in_words(said: str, expected: Expected) -> Iterator[str]:
-    """In standard error: a line for an error that names what is to blame, and one for each warning."""
-    lines = said.splitlines()
-    errors = [line for line in lines if line.startswith("error: ")]
-    if expected.refusal is None:
-        warnings = sum(line.startswith("warning: ") for line in lines)
-        if errors or warnings != expected.warnings:
-            yield f"{warnings} warnings, not {expected.warnings}: {said}"
-    elif len(errors) != 1:
-        yield f"{len(errors)} errors in: {said}"
-    else:
-        yield from _in_error(errors[0], expected.refusal)
-
-
-def _in_error(line: str, refusal: Refusal) -> Iterator[str]:
-    if refusal.kind not in _OF_A_FILE and not line.startswith(f"error: step {refusal.step}: "):
-        yield f"an error at step {refusal.step}, not: {line}"
-    for name in refusal.names:
-        if not re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line):
-            yield f"the error does not name {name}: {line}"
+    refusal = expected.refusal
+    error = None if refusal is None else {"kind": refusal.kind, "step": refusal.step, "names": refusal.names}
+    out, err, rows = done.stdout.decode(), done.stderr.decode(), [COLUMNS, *expected.rows]
+    return differences(done.returncode, out, err, rows, expected.warnings, error, runner.tolerance)

@@ -13,6 +13,7 @@ from typing import get_args
 
 from tests.cli.conftest import ROOT
 from tltlc.automaton.fspa import Fspa
+from tltlc.backends import emit
 from tltlc.conformance.corpus import CASES, files
 from tltlc.conformance.expected import COLUMNS, Kind
 from tltlc.expression import ArithmeticOp, Condition, ConditionOp, Const, Op, Param, When, nodes
@@ -20,6 +21,7 @@ from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace
 from tltlc.pipeline import CompileOptions, compile_text, read_artefact
 from tltlc.source import SourceFile
+from tltlc.writing import write_files
 
 FLAGS = ("true", "false")
 
@@ -61,15 +63,42 @@ def test_a_folder_holds_a_case_and_the_index_tells_of_all() -> None:
     index = json.loads(corpus()["index.json"])
     assert [case["name"] for case in index["cases"]] == list(CASES)
     assert len({name.lower() for name in CASES}) == len(CASES), "some file systems know one case of letters"
-    named = {"README.md", "index.json"}
+    named = {"README.md", "check.py", "index.json"}
     for case in index["cases"]:
         assert case["about"]
         named |= {case["artefact"], case["source"]} - {None}
         for trace in case["traces"]:
             stem = trace["trace"].removesuffix(".csv")
-            named |= {trace["trace"], f"{stem}.expected.csv"} | ({f"{stem}.error.txt"} if trace["error"] else set())
+            assert trace["expected"] == f"{stem}.expected.csv"
+            named |= {trace["trace"], trace["expected"]} | ({f"{stem}.error.txt"} if trace["error"] else set())
             assert trace["rows"] == len(corpus()[f"{stem}.expected.csv"].splitlines()) - 1 or "names" in stem
     assert named == set(corpus())
+
+
+def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
+    """As its page says, with a monitor that is right, and with one that is not."""
+    write_files(tmp_path / "corpus", files())
+    names = ("cells", "functions", "ranges")
+    for name in names:
+        fspa = CASES[name]().fspa
+        write_files(tmp_path / "build", emit("python", fspa))
+    command = [sys.executable, "corpus/check.py", "--only", ",".join(names), sys.executable, "build/{name}_monitor.py"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    count = sum(len(CASES[name]().traces) for name in names)
+    assert (done.returncode, done.stdout) == (0, f"{count} traces, 0 of them not as expected\n"), done.stderr
+    monitor = tmp_path / "build" / "ranges_monitor.py"
+    monitor.write_text(monitor.read_text().replace("reward", "rewards"))
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stdout.endswith(f"{count} traces, 1 of them not as expected\n")
+    assert done.stdout.startswith("ranges/ranges.1.csv: ")
+    assert subprocess.run(command[:2], cwd=tmp_path, capture_output=True).returncode == 2
+
+
+def test_cases_without_functions_of_the_library_are_exact() -> None:
+    exact = {case["name"]: case["exact"] for case in json.loads(corpus()["index.json"])["cases"]}
+    assert {"squares_and_cubes", "roots", "cover_and_hide", "cells"} <= {name for name in exact if exact[name]}
+    assert not {"powers", "exponentials", "hyperbolic", "functions"} & {name for name in exact if exact[name]}
 
 
 def test_artefacts_are_sound_and_the_rows_are_those_of_the_monitor() -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import tltlc
-from tests.docs.blocks import DOCS, ROOT
+from tests.docs.blocks import DOCS, ROOT, blocks
 from tltlc.backends import emit
 from tltlc.cli import exits
 from tltlc.monitor import Step
@@ -123,3 +123,13 @@ def test_the_exit_statuses_are_those() -> None:
     said = re.findall(r"^\| ([\d, ]+) \|", ARTEFACT[ARTEFACT.index("## Exit statuses") :], re.MULTILINE)
     used = {value for name, value in vars(exits).items() if name.isupper() and isinstance(value, int)}
     assert {int(number) for cell in said for number in cell.split(",")} == used
+
+
+def test_excerpts_for_contributors_stand_in_the_sources() -> None:
+    page = ROOT / "CONTRIBUTING.md"
+    sources = [ROOT / name for name in re.findall(r"`((?:tltlc|tests)/[\w/.]+\.(?:py|txt))`", page.read_text("utf-8"))]
+    texts = [source.read_text("utf-8") for source in sources]
+    excerpts = [block for block in blocks(page) if block.kind in ("python", "js")]
+    assert len(excerpts) >= 3
+    for excerpt in excerpts:
+        assert any(excerpt.text in text for text in texts), f"line {excerpt.line} of CONTRIBUTING.md is out of date"

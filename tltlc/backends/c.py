@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from functools import reduce
 from textwrap import wrap
 
 from tltlc.automaton.blowup import recursion_room
@@ -20,9 +21,10 @@ from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer, remark
 from tltlc.backends.program.template import filled
+from tltlc.backends.program.tree import Assign, Int
 from tltlc.backends.program.uses import called, read
 from tltlc.monitor.samples import range_text
-from tltlc.resolve.spec import Param, Signal
+from tltlc.resolve.spec import Atom, Param, Signal
 
 TARGET = Target("c", "a stand-alone monitor in C and C++", ("_monitor.h",))
 
@@ -85,13 +87,20 @@ def emit(fspa: Fspa, options: Options) -> Files:
 class _C(Printer):
     """Prints C; functions are those of the header of one spec."""
 
-    def __init__(self, prefix: str) -> None:
-        self._prefix = prefix
+    def __init__(self, prefix: str, atoms: Sequence[Atom]) -> None:
+        self._prefix, self._atoms = prefix, atoms
 
     def comment(self, text: str) -> list[str]:
         """Remarks in ASCII, since compilers differ in how they read others, and without trigraphs."""
         lines = remark(re.sub(r"[^\x00-\x7f]", _escaped, visible(text)).replace("??", "? ?"))
         return [f"// {line}" for line in lines]
+
+    def assignment(self, statement: Assign) -> str:
+        """The limiting atom is given by its name."""
+        match statement:
+            case Assign(states.LIMITING, Int(place)):
+                return f"{states.LIMITING} = {_string(self._atoms[place].name) if place >= 0 else 'NULL'};"
+        return super().assignment(statement)
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """What may have no value notes that in the monitor."""
@@ -107,7 +116,8 @@ class _Source:
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file, self._prefix = fspa, file, fspa.name
         self._program = program(fspa, _RESERVED)
-        self._printer = _C(fspa.name)
+        self._printer = _C(fspa.name, fspa.atoms)
+        self._explained = {""}
 
     def text(self) -> str:
         """The whole file."""
@@ -115,7 +125,7 @@ class _Source:
         signals = list(zip(fspa.signals, made.signals, strict=True))
         params = list(zip(fspa.params, made.params, strict=True))
         failing = called(statement for value in made.values for statement in value) & _FAILING
-        present = [*failing, *(["note"] if failing else []), *(["atom"] if fspa.atoms else [])]
+        present = [*failing, *(["note"] if failing else []), *([] if all(made.sure) else ["atom"])]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         present += ["exclusive"] if fspa.exclusive else []
         with recursion_room():
@@ -230,49 +240,100 @@ class _Source:
     def _read(self) -> list[str]:
         """Signals in their range, and params, in variables of their own."""
         used = read(statement for value in self._program.values for statement in value)
-        lines: list[str] = [] if self._fspa.signals else ["(void)sample;"]
-        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
-            if signal.type == "bool":
-                lines += [f"const double {name} = sample->{name} ? 1.0 : 0.0;"] if name in used else []
-                continue
-            low, high = self._number(signal.low, "-HUGE_VAL"), self._number(signal.high, "HUGE_VAL")
-            lines.append(f"double {name} = sample->{name};")
-            lines.append(f"if (!{self._prefix}_read_(monitor, {place}, {low}, {high}, &{name})) return false;")
-        lines += [f"const double {name} = monitor->params.{name};" for name in self._program.params if name in used]
+        signals = list(enumerate(zip(self._fspa.signals, self._program.signals, strict=True)))
+        lines: list[str] = []
+        for _, (signal, name) in signals:
+            if signal.type != "bool":
+                lines.append(f"double {name} = sample->{name};")
+            elif name in used:
+                lines.append(f"const double {name} = sample->{name} ? 1.0 : 0.0;")
         # A spec whose signals are bools that nothing reads.
-        return lines if any("sample" in line for line in lines) else ["(void)sample;", *lines]
+        lines = lines or ["(void)sample;"]
+        numbers = [(place, signal, name) for place, (signal, name) in signals if signal.type != "bool"]
+        if numbers:
+            lines += self._corrected(numbers)
+        return [
+            *lines,
+            *(f"const double {name} = monitor->params.{name};" for name in self._program.params if name in used),
+        ]
+
+    def _corrected(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
+        """Where not all signals are as they should be, one after the other is looked at."""
+        tests = self._usual([(signal, name) for _, signal, name in numbers])
+        lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
+        for place, signal, name in numbers:
+            low, high = self._number(signal.low, "-HUGE_VAL"), self._number(signal.high, "HUGE_VAL")
+            lines.append(f"{_INDENT}{name} = {self._prefix}_read_(monitor, {place}, {low}, {high}, {name});")
+            lines.append(f"{_INDENT}if (monitor->problem) return false;")
+        return [*lines, "}"]
+
+    def _usual(self, numbers: Sequence[tuple[Signal, str]]) -> list[str]:
+        """Tests that signals pass together only where each is finite and in its range.
+
+        The sum of those without a bound is finite only where all of them are; one that is too large costs a look at
+        each.
+        """
+        bounded: list[str] = []
+        least: dict[float, list[str]] = {}
+        greatest: dict[float, list[str]] = {}
+        summed: list[str] = []
+        for signal, name in numbers:
+            low, high = signal.low, signal.high
+            if low is not None and high is not None:
+                bounded += [f"{name} >= {self._number(low)}", f"{name} <= {self._number(high)}"]
+                continue
+            summed.append(name)
+            if low is not None:
+                least.setdefault(low, []).append(name)
+            if high is not None:
+                greatest.setdefault(high, []).append(name)
+        tests = [f"{self._fold('min', names)} >= {self._number(low)}" for low, names in least.items()]
+        tests += [f"{self._fold('max', names)} <= {self._number(high)}" for high, names in greatest.items()]
+        tests += [f"isfinite({' + '.join(summed)})"] if summed else []
+        return tests + bounded
+
+    def _fold(self, function: str, names: Sequence[str]) -> str:
+        return reduce(lambda left, right: f"{self._prefix}_{function}_({left}, {right})", names)
 
     def _compute(self) -> list[str]:
-        """The atoms' values."""
-        lines: list[str] = []
-        explained: set[str] = {""}
-        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
-            statements = self._program.values[place]
-            lines += self._printer.comment(atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}")
-            explained.add(atom.doc)
-            lines += self._printer.lines(defined(name, statements))
-            if called(statements) & _FAILING:
-                refusal = f"return {self._prefix}_refuse_(monitor, monitor->problem, {place});"
-                lines.append(f"if (monitor->problem) {refusal}")
-        checks = [
-            f"if (!{self._prefix}_value_(monitor, {place}, &{name})) return false;"
-            for place, name in enumerate(self._program.atoms)
-        ]
-        return [*lines, *checks]
+        """The values of the atoms that are computed at each step."""
+        made = self._program
+        places = [place for place, only in enumerate(made.only_in) if only is None]
+        lines = [line for place in places for line in self._value(place)]
+        for place in places:
+            name = made.atoms[place]
+            if not made.sure[place]:
+                lines.append(f"if (!(fabs({name}) <= 1.0)) {{")
+                lines.append(f"{_INDENT}{name} = {self._prefix}_value_(monitor, {place}, {name});")
+                lines += [f"{_INDENT}if (monitor->problem) return false;", "}"]
+        return lines
+
+    def _value(self, place: int) -> list[str]:
+        """The value of an atom, explained where no other atom was explained so before."""
+        atom, statements = self._fspa.atoms[place], self._program.values[place]
+        lines = self._printer.comment(atom.name if atom.doc in self._explained else f"{atom.name}: {atom.doc}")
+        self._explained.add(atom.doc)
+        lines += self._printer.lines(defined(self._program.atoms[place], statements))
+        if called(statements) & _FAILING:
+            refusal = f"return {self._prefix}_refuse_(monitor, monitor->problem, {place});"
+            lines.append(f"if (monitor->problem) {refusal}")
+        return lines
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
         for place, group in enumerate(self._fspa.exclusive):
-            holding = " + ".join(f"({self._program.atoms[atom]} > 0.0)" for atom in group)
+            tests = {atom: f"{self._program.atoms[atom]} > 0.0" for atom in group}
             if len(group) > 1:
-                refusal = f"return {self._prefix}_refuse_(monitor, {self._prefix}_together, {place});"
-                lines.append(f"if ({holding} > 1) {refusal}")
+                lines.append(f"if ({' + '.join(f'({test})' for test in tests.values())} > 1) {{")
+                lines += [f"{_INDENT}monitor->holding[{atom}] = {test};" for atom, test in tests.items()]
+                lines.append(f"{_INDENT}return {self._prefix}_refuse_(monitor, {self._prefix}_together, {place});")
+                lines.append("}")
         return lines
 
     def _move(self) -> list[str]:
         """The transition, by state."""
-        lines = [f"int {states.TARGET} = monitor->state;", f"int {states.LIMITING} = -1;"]
+        lines = [f"int {states.TARGET} = monitor->state;", f"const char *{states.LIMITING} = NULL;"]
         lines.append(f"double {states.ROBUSTNESS} = 0.0;")
         lines += [f"double {states.PROGRESS} = 0.0;"] if self._fspa.judge == "goal" else []
         lines.append("switch (monitor->state) {")
@@ -280,6 +341,8 @@ class _Source:
             # A brace, since declarations may follow.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
             lines.append(f"{_INDENT}case {state.id}: {{")
+            for place, only in enumerate(self._program.only_in):
+                lines += [f"{_INDENT * 2}{line}" for line in (self._value(place) if only == state.id else ())]
             lines += self._printer.lines(statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
@@ -328,6 +391,11 @@ def _bool(value: bool) -> str:
 
 def _block(lines: Iterable[str]) -> str:
     return "\n".join(f"{_INDENT}{line}" for line in lines)
+
+
+def _wrapped(line: str) -> list[str]:
+    """A test on as many lines as it takes."""
+    return wrap(line, 100, subsequent_indent=" " * len("if (!("), break_long_words=False, break_on_hyphens=False)
 
 
 def _list(items: Sequence[str], otherwise: str) -> str:

@@ -17,7 +17,7 @@ from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer, remark
 from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import If
+from tltlc.backends.program.tree import Assign, Binary, Comment, If, Statement, Variable
 from tltlc.backends.program.uses import called, read
 from tltlc.monitor.samples import range_text
 from tltlc.resolve.spec import Param, Signal
@@ -51,9 +51,10 @@ _WORDS = """
 """.split()
 
 _TEMPLATE = """
-    Array Divide Equals Exp Finalize GetHashCode GetType IsFinite Keep Math Max MemberwiseClone Min Missing Defaults
-    Params Power Problem Read ReferenceEquals Refuse Result Signals Sqrt States Step ToString Verdict AtomNames Place
-    Without System Tltl none own sample result number
+    Array AtomNames Defaults Divide Equals Exp Finalize GetHashCode GetType IsFinite Keep List Math Max
+    MemberwiseClone MethodImpl MethodImplOptions Min Missing Note Params Place Power Problem Read ReferenceEquals
+    Refuse Result Signals Sqrt States Step System Tltl ToString Verdict Without entered none number own result
+    sample
 """.split()
 """What fields of records and variables of a step would hide."""
 
@@ -78,6 +79,13 @@ class _CSharp(Printer):
             found += [f"{indent}else", f"{indent}{{", *self.lines(statement.otherwise, depth + 1), f"{indent}}}"]
         return found
 
+    def assignment(self, statement: Assign) -> str:
+        """An assignment; what only adds or subtracts says so."""
+        match statement:
+            case Assign(name, Binary("+" | "-" as op, Variable(left), right)) if left == name:
+                return f"{name} {op}= {self.text(right)};"
+        return super().assignment(statement)
+
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """A call of a method of the monitor, or of the library."""
         return super().call(_FUNCTIONS[function], arguments)
@@ -90,6 +98,9 @@ class _Source:
         self._fspa, self._file = fspa, file
         self._program = program(fspa, [*_WORDS, *_TEMPLATE])
         self._printer = _CSharp()
+        # The first atom of each predicate is where that is explained.
+        first = {atom.doc: place for place, atom in reversed([*enumerate(fspa.atoms)]) if atom.doc}
+        self._explained = {*first.values()}
 
     def text(self) -> str:
         """The whole file."""
@@ -100,6 +111,8 @@ class _Source:
         present: list[str] = [*computed, *called(statement for state in made.states for statement in state)]
         present += ["note"] if computed & _FAILING else []
         present += ["exclusive"] if fspa.exclusive else []
+        present += [] if all(made.sure) else ["keep"]
+        present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
         with recursion_room():
             step = _block(self._step(), 3)
         pieces = {
@@ -110,6 +123,7 @@ class _Source:
             "param_fields": _fields([(name, "double", param) for param, name in params]),
             "signal_names": _list([_string(signal.name) for signal in fspa.signals]),
             "atom_names": _list([_string(atom.name) for atom in fspa.atoms]),
+            "largest_group": str(max(map(len, fspa.exclusive), default=0)),
             "groups": _list([f"new[] {{{', '.join(map(str, group))}}}" for group in fspa.exclusive]),
             "signal_defaults": _block(
                 [f"none.{name} = double.NaN;" for signal, name in signals if signal.type != "bool"], 5
@@ -169,25 +183,34 @@ class _Source:
                 lines += [f"double {name} = sample.{name} ? 1.0 : 0.0;"] if name in used else []
                 continue
             low, high = _number(signal.low, "double.NegativeInfinity"), _number(signal.high, "double.PositiveInfinity")
+            # Of two infinities, neither is inside.
+            above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
             lines.append(f"double {name} = sample.{name};")
-            lines.append(f"if (!Read({place}, {low}, {high}, ref {name})) return false;")
+            lines += _checked(
+                f"{name} {above} {low} && {name} {below} {high}", f"{name} = Read({place}, {name}, {low}, {high});"
+            )
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
 
     def _compute(self) -> list[str]:
         """The atoms' values."""
         lines: list[str] = []
-        explained: set[str] = {""}
-        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
-            statements = self._program.values[place]
-            lines += self._printer.comment(atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}")
-            explained.add(atom.doc)
-            lines += self._printer.lines(defined(name, statements))
-            if called(statements) & _FAILING:
-                lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {place});")
-        return [
-            *lines,
-            *(f"if (!Keep({place}, ref {name})) return false;" for place, name in enumerate(self._program.atoms)),
-        ]
+        kept: list[str] = []
+        for place, name in enumerate(self._program.atoms):
+            if self._program.only_in[place] is not None:
+                continue
+            lines += self._printer.lines(self._value(place))
+            if self._program.sure[place]:
+                continue
+            if called(self._program.values[place]) & _FAILING:
+                lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {place}, out result);")
+            kept += _checked(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({place}, {name});")
+        return [*lines, *kept]
+
+    def _value(self, place: int) -> tuple[Statement, ...]:
+        """What gives an atom its value."""
+        atom, made = self._fspa.atoms[place], self._program
+        text = f"{atom.name}: {atom.doc}" if place in self._explained else atom.name
+        return (Comment(text), *defined(made.atoms[place], made.values[place]))
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
@@ -195,7 +218,12 @@ class _Source:
         for place, group in enumerate(self._fspa.exclusive):
             holding = " + ".join(f"({self._program.atoms[atom]} > 0.0 ? 1 : 0)" for atom in group)
             if len(group) > 1:
-                lines.append(f"if ({holding} > 1) return Refuse(Problem.Together, {place});")
+                lines += [f"if ({holding} > 1)", "{"]
+                lines += [
+                    f"{_INDENT}_holding[{number}] = {self._program.atoms[atom]} > 0.0;"
+                    for number, atom in enumerate(group)
+                ]
+                lines += [f"{_INDENT}return Refuse(Problem.Together, {place}, out result);", "}"]
         return lines
 
     def _move(self) -> list[str]:
@@ -208,18 +236,24 @@ class _Source:
             # Braces, since declarations may follow.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
             lines += [f"{_INDENT}case {state.id}:", f"{_INDENT}{{"]
-            lines += self._printer.lines(statements, depth=2)
+            lines += self._printer.lines((*self._alone(state.id), *statements), depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
+
+    def _alone(self, state: int) -> list[Statement]:
+        """The values of the atoms that nothing but this state needs."""
+        only_in = self._program.only_in
+        return [statement for place, only in enumerate(only_in) if only == state for statement in self._value(place)]
 
     def _judge(self) -> list[str]:
         """Progress, reward and the end of the episode."""
         used = read(self._program.judged)
-        verdict = f"States[{states.TARGET}].Verdict"
-        lines = [f"double {judge.BEST} = _progress;", f"bool {judge.DONE} = _done;", f"double {judge.REWARD};"]
+        verdict = "entered.Verdict"
+        lines = [f"Place entered = States[{states.TARGET}];"]
+        lines += [f"double {judge.BEST} = _progress;", f"bool {judge.DONE} = _done;", f"double {judge.REWARD};"]
         given = {
             judge.STEPS_REAL: f"double {judge.STEPS_REAL} = {judge.STEPS};",
-            judge.ENDS: f"bool {judge.ENDS} = States[{states.TARGET}].Ends;",
+            judge.ENDS: f"bool {judge.ENDS} = entered.Ends;",
             judge.VIOLATED: f"bool {judge.VIOLATED} = {verdict} == Verdict.Violated;",
             judge.SATISFIED: f"bool {judge.SATISFIED} = {verdict} == Verdict.Satisfied;",
         }
@@ -228,6 +262,17 @@ class _Source:
 
 
 # --- pieces ---------------------------------------------------------------------------------------
+
+
+def _checked(test: str, otherwise: str) -> list[str]:
+    """What is done where the test fails; it may find a problem."""
+    return [
+        f"if (!({test}))",
+        "{",
+        f"{_INDENT}{otherwise}",
+        f"{_INDENT}if (_problem != Problem.None) return Refuse(out result);",
+        "}",
+    ]
 
 
 def _type(signal: Signal) -> str:
@@ -239,14 +284,19 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     lines: list[str] = []
     for name, type_, of in fields:
         texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
-        remarks = [_in_xml(line) for line in remark(": ".join(texts))]
+        remarks = [_in_xml(line) for line in remark(": ".join(texts) or _kind(of))]
         if len(remarks) == 1:
             lines.append(f"/// <summary>{remarks[0]}</summary>")
-        elif remarks:
+        else:
             lines += ["/// <summary>", *(f"/// {line}" for line in remarks), "/// </summary>"]
         lines += [f"public {type_} {name};", ""]
     # The line after the last field stays empty, too.
     return _block(lines, 3)
+
+
+def _kind(of: Signal | Param) -> str:
+    """What is said of a signal or param of which the spec says nothing."""
+    return "True or false." if of.type == "bool" else f"In {range_text(of.low, of.high)}."
 
 
 def _in_xml(text: str) -> str:

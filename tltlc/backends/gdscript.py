@@ -8,9 +8,17 @@ from tltlc.backends.godot.source import ENDINGS, Dialect, files
 
 TARGET = Target("gdscript", "a stand-alone monitor in GDScript, for Godot 4", ENDINGS)
 
-_DIALECT = Dialect("godot4", "Godot 4", "RefCounted", {"abs": "absf", "tanh": "tanh"}, wide=True)
+DIALECT = Dialect(
+    version="godot4",
+    title="Godot 4",
+    base="RefCounted",
+    functions={"abs": "absf", "tanh": "tanh", "min": "minf", "max": "maxf"},
+    swapped=frozenset({"min", "max"}),
+    typed=True,
+    wide=True,
+)
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
     """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
-    return files(fspa, _DIALECT)
+    return files(fspa, DIALECT)

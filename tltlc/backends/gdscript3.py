@@ -8,9 +8,17 @@ from tltlc.backends.godot.source import ENDINGS, Dialect, files
 
 TARGET = Target("gdscript3", "a stand-alone monitor in GDScript, for Godot 3", ENDINGS)
 
-_DIALECT = Dialect("godot3", "Godot 3", "Reference", {"abs": "abs", "tanh": "tanh"}, wide=False)
+DIALECT = Dialect(
+    version="godot3",
+    title="Godot 3",
+    base="Reference",
+    functions={"abs": "abs", "tanh": "tanh"},
+    swapped=frozenset(),
+    typed=False,
+    wide=False,
+)
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
     """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
-    return files(fspa, _DIALECT)
+    return files(fspa, DIALECT)

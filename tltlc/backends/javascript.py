@@ -7,7 +7,8 @@ no ``exp``, ``tanh`` or power, else within 1e-12, since engines have functions o
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
+from itertools import combinations
 
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
@@ -21,6 +22,7 @@ from tltlc.backends.program.shallow import shallow
 from tltlc.backends.program.template import filled
 from tltlc.backends.program.tree import Assign, Compare, Declare, Expression, Int
 from tltlc.backends.program.uses import called, read
+from tltlc.record import replace
 
 TARGET = Target("javascript", "a stand-alone monitor in JavaScript", ("_monitor.mjs", "_monitor.d.mts"))
 
@@ -28,6 +30,12 @@ _FAILING = {"divide", "sqrt", "power", "exp"}
 """Functions that may have no value."""
 
 _LONGEST = 110
+
+_FEW = 3
+"""Of so many atoms, pairs are compared; more are counted."""
+
+_ENTERED = "entered"
+"""The row of the state that is entered."""
 
 _RESERVED = """
     abstract arguments as async await boolean break byte case catch char class const continue debugger default delete
@@ -52,8 +60,8 @@ class _JavaScript(Printer):
 
     INDENT = "  "
 
-    def __init__(self, atoms: Sequence[str]) -> None:
-        self._atoms = atoms
+    def __init__(self, atoms: Sequence[str], built_in: Collection[str] = ("abs", "tanh")) -> None:
+        self._atoms, self._built_in = atoms, built_in
 
     def declaration(self, statement: Declare) -> str:
         """``const`` where a variable keeps its value."""
@@ -78,7 +86,7 @@ class _JavaScript(Printer):
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """A call of a function of numbers."""
-        if function in ("abs", "tanh"):
+        if function in self._built_in:
             function = f"Math.{function}"
         return super().call(f"this.#{function}" if function in _FAILING else function, arguments)
 
@@ -97,19 +105,25 @@ class _Source:
         self._fspa, self._module, self._declarations = fspa, module, declarations
         self._program = program(fspa, _RESERVED)
         self._names = (*self._program.signals, *self._program.params, *self._program.atoms)
-        self._printer = _JavaScript([atom.name for atom in fspa.atoms])
+        names = [atom.name for atom in fspa.atoms]
+        self._printer = _JavaScript(names)
+        # Among values of atoms no sign of a 0 matters, and Math.min is quicker than a function of our own.
+        self._moves = _JavaScript(names, ("min", "max"))
 
     def module(self) -> str:
         """The whole module."""
         fspa = self._fspa
         made = self._program
-        functions = called(statement for part in (*made.values, *made.states) for statement in part)
-        present = [*functions, *(["failing"] if functions & _FAILING else []), *(["signal"] if fspa.signals else [])]
-        present += ["atom"] if fspa.atoms else []
-        present += ["some"] if fspa.signals or fspa.atoms else []
-        present += ["exclusive"] if fspa.exclusive else []
+        functions = called(statement for part in made.values for statement in part)
         with recursion_room():
             step = _block(self._step(), depth=2)
+        present = [*functions, *(["failing"] if functions & _FAILING else []), *(["signal"] if fspa.signals else [])]
+        present += [] if all(made.sure) else ["range"]
+        present += ["exclusive"] if "this.#together(" in step else []
+        present += ["atom"] if {"failing", "range", "exclusive"} & {*present} else []
+        present += ["some"] if fspa.signals or "atom" in present else []
+        present += ["clamp"] if fspa.signals or "range" in present else []
+        present += ["params"] if "this.#params[" in step else []
         pieces = {
             "title": _title(fspa),
             "file": self._module,
@@ -123,6 +137,8 @@ class _Source:
                 ]
             ),
             "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
+            # Where no atom reads a param, names are checked all the same.
+            "params_kept": "this.#params = " if "params" in present else "",
             "exclusive": _list([f"[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
             "states": _list(self._states()),
             "step": step,
@@ -139,7 +155,8 @@ class _Source:
         params = [(param.name, "number", param.doc) for param in fspa.params]
         title = f"// Types of {self._module}, written by tltlc."
         pieces = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
-        return filled("monitor.d.mts.txt", pieces)
+        present = ["signals" if signals else "no_signals", "params" if params else "no_params"]
+        return filled("monitor.d.mts.txt", pieces, present)
 
     def _example(self) -> str:
         """A sample, as a call gives it."""
@@ -166,33 +183,47 @@ class _Source:
     def _read(self) -> list[str]:
         """Signals in their range, and params, in variables of their own."""
         used = read(statement for value in self._program.values for statement in value)
-        signals = list(zip(self._fspa.signals, self._program.signals, strict=True))
-        places = [_member("signals", signal.name) for signal, _ in signals]
         lines: list[str] = []
-        if places:
-            lines += _branch([f"{place} === undefined" for place in places], "||", "throw this.#missing(signals);")
-        for number, ((_, name), place) in enumerate(zip(signals, places, strict=True)):
-            # What no atom reads is held to be a number all the same.
-            given = f"this.#number({number}, {place});"
-            lines.append(f"const {name} = {given}" if name in used else given)
-        for number, name in enumerate(self._program.params):
-            lines += [f"const {name} = this.#params[{number}];"] if name in used else []
+        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
+            checked = f"this.#signal({place}, signals)"
+            if name not in used:
+                # It is held to be a number all the same.
+                lines.append(f"{checked};")
+                continue
+            given = _member("signals", signal.name)
+            if signal.type == "bool":
+                lines.append(f"const {name} = {given} === true ? 1 : {given} === false ? 0 : {checked};")
+            else:
+                lines.append(f"let {name} = {given};")
+                lines += _branch([f"!({_in_range(name, signal.low, signal.high)})"], f"{name} = {checked};")
+        for place, name in enumerate(self._program.params):
+            lines += [f"const {name} = this.#params[{place}];"] if name in used else []
         return lines
 
     def _compute(self) -> list[str]:
-        """The atoms' values."""
-        lines: list[str] = []
-        explained: set[str] = {""}
-        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
-            statements = self._program.values[place]
-            lines += self._printer.comment(atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}")
-            explained.add(atom.doc)
-            if called(statements) & _FAILING:
-                lines.append(f"this.#atom = {place};")
-            lines += self._printer.lines(defined(name, statements))
-        for place, name in enumerate(self._program.atoms):
-            lines.append(f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({place}, {name});")
+        """The atoms' values, but for those that one state alone reads."""
+        lines = self._values(None)
+        for place, (name, sure) in enumerate(zip(self._program.atoms, self._program.sure, strict=True)):
+            if not sure:
+                lines.append(f"if (!(-1 <= {name} && {name} <= 1)) {name} = this.#inRange({place}, {name});")
         return lines
+
+    def _values(self, state: int | None) -> list[str]:
+        """The values of the atoms that are computed in a state alone, or at each step."""
+        places = [place for place, only_in in enumerate(self._program.only_in) if only_in == state]
+        return [line for place in places for line in self._value(place)]
+
+    def _value(self, place: int) -> list[str]:
+        """The value of one atom, explained where no atom before it says the same."""
+        atom, name, statements = self._fspa.atoms[place], self._program.atoms[place], self._program.values[place]
+        is_new = atom.doc and all(other.doc != atom.doc for other in self._fspa.atoms[:place])
+        lines = self._printer.comment(f"{atom.name}: {atom.doc}" if is_new else atom.name)
+        if called(statements) & _FAILING:
+            lines.append(f"this.#atom = {place};")
+        *before, last = defined(name, statements)
+        if self._program.sure[place] and isinstance(last, Declare):
+            last = replace(last, changes=False)
+        return [*lines, *self._printer.lines([*before, last])]
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
@@ -200,9 +231,14 @@ class _Source:
         for place, group in enumerate(self._fspa.exclusive):
             if len(group) > 1:
                 names = [self._program.atoms[atom] for atom in group]
-                *before, last = [f"Number({name} > 0)" for name in names]
                 refusal = f"throw this.#together({place}, [{', '.join(names)}]);"
-                lines += _branch([*before, f"{last} > 1"], "+", refusal)
+                if len(names) <= _FEW:
+                    pairs = [f"{one} > 0 && {other} > 0" for one, other in combinations(names, 2)]
+                    tests = pairs if len(pairs) == 1 else [f"({pair})" for pair in pairs]
+                    lines += _branch(tests, refusal, "||")
+                else:
+                    *before, last = [f"({name} > 0 ? 1 : 0)" for name in names]
+                    lines += _branch([*before, f"{last} > 1"], refusal, "+")
         return lines
 
     def _move(self) -> list[str]:
@@ -215,19 +251,20 @@ class _Source:
             # A brace, since declarations may follow.
             lines += [f"  {line}" for line in self._printer.comment(state.label.ascii)]
             lines.append(f"  case {state.id}: {{")
-            lines += self._printer.lines(shallow(statements, self._names), depth=2)
+            lines += [f"    {line}" for line in self._values(state.id)]
+            lines += self._moves.lines(shallow(statements, self._names), depth=2)
             lines += ["    break;", "  }"]
         return [*lines, "}"]
 
     def _judge(self) -> list[str]:
         """Progress, reward and the end of the episode."""
         used = read(self._program.judged)
-        verdict = f"STATES[{states.TARGET}].verdict"
-        lines = [f"let {judge.BEST} = this.progress;", f"let {judge.DONE} = this.done;", f"let {judge.REWARD};"]
+        lines = [f"const {_ENTERED} = STATES[{states.TARGET}];", f"let {judge.BEST} = this.progress;"]
+        lines += [f"let {judge.DONE} = this.done;", f"let {judge.REWARD};"]
         given = {
-            judge.ENDS: f"STATES[{states.TARGET}].ends",
-            judge.VIOLATED: f'{verdict} === "violated"',
-            judge.SATISFIED: f'{verdict} === "satisfied"',
+            judge.ENDS: f"{_ENTERED}.ends",
+            judge.VIOLATED: f'{_ENTERED}.verdict === "violated"',
+            judge.SATISFIED: f'{_ENTERED}.verdict === "satisfied"',
         }
         lines += [f"const {name} = {value};" for name, value in given.items() if name in used]
         return [*lines, *self._printer.lines(self._program.judged)]
@@ -281,11 +318,22 @@ def _escape(character: str) -> str:
     return f"\\u{code:04x}" if code < 0x10000 else f"\\u{{{code:x}}}"
 
 
-def _branch(tests: Sequence[str], word: str, body: str) -> list[str]:
+def _in_range(name: str, low: float | None, high: float | None) -> str:
+    """A test whether a variable is a finite number from ``low`` to ``high``."""
+    if low is None and high is None:
+        return f"Number.isFinite({name})"
+    least = f"-Infinity < {name}" if low is None else f"{_number(low)} <= {name}"
+    greatest = f"{name} < Infinity" if high is None else f"{name} <= {_number(high)}"
+    return f'typeof {name} === "number" && {least} && {greatest}'
+
+
+def _branch(tests: Sequence[str], body: str, word: str = "") -> list[str]:
     """``if (A word B) body``, on several lines where it is long."""
-    line = f"if ({f' {word} '.join(tests)}) {body}"
-    if len(line) <= _LONGEST:
-        return [line]
+    head = f"if ({f' {word} '.join(tests)})"
+    if len(head) + len(body) < _LONGEST:
+        return [f"{head} {body}"]
+    if len(head) < _LONGEST or len(tests) == 1:
+        return [f"{head} {{", f"  {body}", "}"]
     lines, text = [], tests[0]
     for test in tests[1:]:
         if len(text) + len(test) > _LONGEST - 8:

@@ -1,41 +1,55 @@
-"""A stand-alone monitor in Lua 5.1 to 5.4 and LuaJIT: one module, the standard library only.
+"""A stand-alone monitor in Lua 5.1 to 5.4, LuaJIT and Luau: one module, the standard library only.
 
 It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with its default reward, but for ``tanh``,
-which newer versions lack, and powers in LuaJIT, which has its own: these are within 1e-12.  Atoms and states have
-functions of their own and variables are fields, since Lua takes no more than 200 local variables.
+which newer versions lack, and powers in LuaJIT, which has its own: these are within 1e-12.  Lua takes no more than 200
+local variables and blocks in each other: where a spec has more, variables are fields, and inner blocks are functions.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.code.names import visible
 from tltlc.backends.program import judge, states
+from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer, remark
 from tltlc.backends.program.shallow import shallow
 from tltlc.backends.program.template import filled
 from tltlc.backends.program.tree import Assign, Compare, Declare, Expression, If, Int, Statement
 from tltlc.backends.program.uses import called, read
+from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target("lua", "a stand-alone monitor in Lua", ("_monitor.lua",))
 
 _FAILING = {"divide", "sqrt", "power", "exp"}
 """Functions that may have no value."""
 
-_MOST_LOCALS = 150
-"""How many parts of a predicate are local variables; those of more are fields."""
+_MOST_LOCALS: Final = 150
+"""How many local variables and arguments fit beside those of the step itself."""
 
-_WORDS = """
+_FEW_STATES: Final = 8
+"""How many are told apart one after the other; those of more have functions of their own."""
+
+_DEEPEST: Final = 60
+"""How deep blocks nest; the expressions in them need some of Lua's 200 levels, too."""
+
+_KEYWORDS = """
     and break do else elseif end false for function goto if in local nil not or repeat return then true until while
-    abs divide exp failure huge max min param part power signal sqrt tanh value
+    continue export typeof
 """.split()
-"""Words of the language, and what the functions of atoms and states read beside their own variables."""
+"""Words of Lua and Luau."""
+
+_OWN = """
+    MOVES STATES abs at_step divide entered exp failure huge kept max min param part power problem read result self
+    signal signals sqrt tanh together type value
+""".split()
+"""What a step reads beside the variables of its program."""
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
@@ -45,7 +59,10 @@ def emit(fspa: Fspa, options: Options) -> Files:
 
 
 class _Lua(Printer):
-    """Prints Lua; ``fields`` are the tables that variables are fields of, other variables are local."""
+    """Prints Lua; ``fields`` says how variables are written that are fields of tables, the others are local.
+
+    ``parts`` are the lines of functions that hold what would nest too deep; their variables are all fields.
+    """
 
     INDENT = "  "
     WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
@@ -53,19 +70,27 @@ class _Lua(Printer):
 
     def __init__(self, fields: Mapping[str, str], atoms: Sequence[str]) -> None:
         self._fields, self._atoms = fields, atoms
+        self._part_count = 0
+        self.parts: list[str] = []
 
     def name(self, name: str) -> str:
         """There is one kind of numbers."""
-        if name == judge.STEPS_REAL:
-            return judge.STEPS
-        return f"{self._fields[name]}.{name}" if name in self._fields else name
+        return judge.STEPS if name == judge.STEPS_REAL else self._fields.get(name, name)
+
+    def lines(self, statements: Iterable[Statement], depth: int = 0) -> list[str]:
+        """The lines of statements; a field without a value needs no declaration."""
+        needed = [
+            statement
+            for statement in statements
+            if not (isinstance(statement, Declare) and statement.value is None and statement.name in self._fields)
+        ]
+        return super().lines(needed, depth)
 
     def declaration(self, statement: Declare) -> str:
-        """A field needs none."""
-        value = "nil" if statement.value is None else self.text(statement.value)
-        if statement.name in self._fields:
-            return f"{self.name(statement.name)} = {value}"
-        return f"local {statement.name}" if statement.value is None else f"local {statement.name} = {value}"
+        """A declaration; of a field, an assignment."""
+        local = "" if statement.name in self._fields else "local "
+        value = "" if statement.value is None else f" = {self.text(statement.value)}"
+        return f"{local}{self.name(statement.name)}{value}"
 
     def assignment(self, statement: Assign) -> str:
         """The limiting atom is given by its name."""
@@ -73,6 +98,16 @@ class _Lua(Printer):
             case Assign(states.LIMITING, Int(place)):
                 return f"{states.LIMITING} = {_string(self._atoms[place]) if place >= 0 else 'nil'}"
         return super().assignment(statement)
+
+    def branches(self, statement: If, depth: int) -> list[str]:
+        """A branch, or a call of the function that holds it."""
+        if depth < _DEEPEST:
+            return super().branches(statement, depth)
+        self._part_count += 1
+        head = f"part[{self._part_count}] = function(signal, param, value)"
+        call = f"part[{self._part_count}](signal, param, value)"
+        self.parts += [head, *super().branches(statement, 1), "end", ""]
+        return [f"{self.INDENT * depth}{call}"]
 
     def head(self, test: str, *, first: bool) -> str:
         """The line that begins a case."""
@@ -102,19 +137,38 @@ class _Source:
 
     def __init__(self, fspa: Fspa, file: str) -> None:
         self._fspa, self._file = fspa, file
-        made = self._program = program(fspa, _WORDS)
+        made = self._program = program(fspa, [*_KEYWORDS, *_OWN])
         self._names = [atom.name for atom in fspa.atoms]
-        self._inputs = {**dict.fromkeys(made.signals, "signal"), **dict.fromkeys(made.params, "param")}
         self._at_goal = fspa.judge == "goal"
+        variables = (*made.signals, *made.params, *made.atoms)
+        with recursion_room():
+            parts = [declared.name for value in made.values for declared in _declared(value)]
+            deepest = max(map(_depth, made.values), default=0)
+        # Variables count twice: they are arguments, too.
+        self._many = 2 * len(variables) + len(parts) > _MOST_LOCALS or deepest >= _DEEPEST
+        fields = {
+            **{name: f"signal{_index(signal.name)}" for signal, name in zip(fspa.signals, made.signals, strict=True)},
+            **{name: f"param{_index(param.name)}" for param, name in zip(fspa.params, made.params, strict=True)},
+            **{name: f"value{_index(atom.name)}" for atom, name in zip(fspa.atoms, made.atoms, strict=True)},
+            **{name: f"part.{name}" for name in parts},
+        }
+        self._few_states = len(fspa.states) <= _FEW_STATES
+        # The first atom of each predicate is where that is explained.
+        first = {atom.doc: place for place, atom in reversed([*enumerate(fspa.atoms)]) if atom.doc}
+        self._explained = {*first.values()}
+        self._printer = _Lua(fields if self._many else {}, self._names)
 
     def text(self) -> str:
         """The whole file."""
         fspa, made = self._fspa, self._program
         functions = called(statement for part in (*made.values, *made.states) for statement in part)
         with recursion_room():
-            atoms = _block(self._atoms())
             moves = "\n".join(self._moves())
             step = _block(self._step())
+        present = [*functions, *(["failing"] if functions & _FAILING else []), *(["many"] if self._many else [])]
+        present += [] if all(made.sure) else ["kept"]
+        present += [] if self._few_states else ["moves"]
+        present += ["exclusive"] if fspa.exclusive else []
         pieces = {
             "p": fspa.name,
             "title": self._title(),
@@ -128,26 +182,26 @@ class _Source:
             "param_fields": "\n".join(_field(param.name, "number?", param.doc) for param in fspa.params),
             "signals": _list(
                 [
-                    f"{{ {_names(signal.name, name)}, is_bool = {_bool(signal.type == 'bool')}, "
-                    f"{_range(signal.low, signal.high)} }}"
-                    for signal, name in zip(fspa.signals, made.signals, strict=True)
+                    f"{{ name = {_string(signal.name)}, is_bool = {_bool(signal.type == 'bool')}, {_range(signal)} }}"
+                    for signal in fspa.signals
                 ]
             ),
             "params": _list(
                 [
-                    f"{{ {_names(param.name, name)}, value = {float(param.value)!r}, {_range(param.low, param.high)} }}"
-                    for param, name in zip(fspa.params, made.params, strict=True)
+                    f"{{ name = {_string(param.name)}, value = {float(param.value)!r}, {_range(param)} }}"
+                    for param in fspa.params
                 ]
             ),
-            "parts": "\n-- Parts of long predicates.\nlocal part = {}" if "part." in atoms else "",
-            "atoms": atoms,
-            "exclusive": _list([f"{{ {', '.join(str(atom + 1) for atom in group)} }}" for group in fspa.exclusive]),
+            "exclusive": _list(
+                [f"{{ {', '.join(_string(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
+            ),
             "states": _block(self._states()),
             "returns": ", the progress of the step" if self._at_goal else "",
             "moves": moves,
+            "parts": "\n".join(self._printer.parts).rstrip(),
             "step": step,
         }
-        return filled("monitor.lua.txt", pieces, [*functions, *(["failing"] if functions & _FAILING else [])])
+        return filled("monitor.lua.txt", pieces, present)
 
     def _title(self) -> str:
         """The first comment: what the spec is called, what it is for, its formula."""
@@ -164,39 +218,6 @@ class _Source:
         text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"
         return visible(text) if len(text) <= 60 else "signals"
 
-    def _returned(self) -> tuple[str, ...]:
-        """What the functions of states return; where a spec is judged at its limit, progress is no matter of edges."""
-        progress = (states.PROGRESS,) if self._at_goal else ()
-        return (states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING)
-
-    # --- tables -----------------------------------------------------------------------------------
-
-    def _atoms(self) -> list[str]:
-        """A table for each atom: its name, that of its variable, its function."""
-        lines: list[str] = []
-        explained: set[str] = {""}
-        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
-            statements = self._program.values[place]
-            parts = [declared.name for declared in _declared(statements)]
-            fields = {**self._inputs, **(dict.fromkeys(parts, "part") if len(parts) > _MOST_LOCALS else {})}
-            printer = _Lua(fields, self._names)
-            used = {self._inputs.get(variable) for variable in read(statements)}
-            arguments = "signal, param" if "param" in used else "signal" if "signal" in used else ""
-            if atom.doc not in explained:
-                lines += printer.comment(atom.doc)
-                explained.add(atom.doc)
-            lines += ["{", f"  {_names(atom.name, name)},", f"  value = function({arguments})"]
-            lines += self._body(printer, name, statements)
-            lines += ["  end,", "},"]
-        return lines
-
-    def _body(self, printer: _Lua, name: str, statements: Sequence[Statement]) -> list[str]:
-        """The statements of the function of an atom."""
-        *before, last = statements
-        if isinstance(last, Assign) and last.name == name:
-            return [*printer.lines(before, depth=2), f"    return {printer.text(last.value)}"]
-        return [f"    local {name}", *printer.lines(statements, depth=2), f"    return {name}"]
-
     def _states(self) -> list[str]:
         rows: list[str] = []
         for state in self._fspa.states:
@@ -205,33 +226,138 @@ class _Source:
             rows.append(f"[{state.id}] = {{ label = {_string(state.label.ascii)}, {values} }},")
         return rows
 
+    # --- the functions of states ------------------------------------------------------------------
+
+    def _returned(self) -> str:
+        """What the functions of states return; where a spec is judged at its limit, progress is no matter of edges."""
+        progress = (states.PROGRESS,) if self._at_goal else ()
+        return ", ".join((states.TARGET, states.ROBUSTNESS, *progress, states.LIMITING))
+
+    def _given(self) -> str:
+        """What they take: all atoms but those that one state alone needs, and what these are computed from."""
+        if self._many:
+            return "signal, param, value"
+        made = self._program
+        alone = [value for value, only in zip(made.values, made.only_in, strict=True) if only is not None]
+        used = read(statement for statements in (*made.states, *alone) for statement in statements)
+        atoms = [name for name, only in zip(made.atoms, made.only_in, strict=True) if only is None]
+        return ", ".join(name for name in (*made.signals, *made.params, *atoms) if name in used)
+
     def _moves(self) -> list[str]:
         """A function for each state."""
-        atoms = set(self._program.atoms)
-        printer = _Lua(dict.fromkeys(self._program.atoms, "value"), self._names)
-        returned = ", ".join(self._returned())
         lines: list[str] = []
-        for state, statements in zip(self._fspa.states, self._program.states, strict=True):
-            lines += ["", *printer.comment(state.label.ascii)]
-            lines.append(f"MOVES[{state.id}] = function({'value' if read(statements) & atoms else ''})")
-            lines += [f"  local {returned}", *printer.lines(shallow(statements), depth=1)]
-            lines += [f"  return {returned}", "end"]
+        for state in [] if self._few_states else self._fspa.states:
+            lines += ["", *self._printer.comment(state.label.ascii)]
+            lines += [f"MOVES[{state.id}] = function({self._given()})", f"  local {self._returned()}"]
+            lines += [*self._branch(state.id), f"  return {self._returned()}", "end"]
         return lines
 
-    # --- the step function ------------------------------------------------------------------------
+    def _branch(self, state: int) -> list[str]:
+        """What is done in a state: the values of the atoms that nothing else needs, and the transition."""
+        lines: list[str] = []
+        for place, only in enumerate(self._program.only_in):
+            # A line between the comments.
+            lines += ["", *(f"  {line}" for line in self._value(place))] if only == state else []
+        statements = shallow(self._program.states[state], self._program.atoms)
+        return [*lines, *self._printer.lines(statements, depth=1)]
+
+    # --- a step -----------------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        """The transition, then progress, reward and the end of the episode."""
+        parts = [self._tables(), self._read(), self._compute(), self._check(), self._move(), self._judge()]
+        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+
+    def _tables(self) -> list[str]:
+        """What is wrong with the sample, and the tables that variables are fields of."""
+        lines = ["local problem"] if self._fspa.signals or not all(self._program.sure) else []
+        if self._many:
+            lines.append("local signal, param, value = self._signal, self.params, self._value")
+        return lines
+
+    def _read(self) -> list[str]:
+        """Signals in their range, and params, in variables of their own."""
+        lines: list[str] = []
+        if any(signal.type != "bool" for signal in self._fspa.signals):
+            lines.append("-- Adding 0 makes floats of whole numbers, which would wrap around in Lua 5.3 and later.")
+        for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True), start=1):
+            variable = self._printer.name(name)
+            lines.append(f"{'' if self._many else 'local '}{variable} = signals{_index(signal.name)}")
+            lines += _taken(signal, variable)
+            lines += [
+                "else",
+                f"  {variable}, problem = read(self, {place}, signals)",
+                "  if problem then return nil, problem end",
+                "end",
+            ]
+        used = read(statement for value in self._program.values for statement in value)
+        params = zip(self._fspa.params, self._program.params, strict=True)
+        if not self._many:
+            lines += [f"local {name} = self.params{_index(param.name)}" for param, name in params if name in used]
+        return lines
+
+    def _compute(self) -> list[str]:
+        """The atoms' values."""
+        lines: list[str] = []
+        kept: list[str] = []
+        failing = False
+        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
+            if self._program.only_in[place] is not None:
+                continue
+            lines += self._value(place)
+            if self._program.sure[place]:
+                continue
+            if called(self._program.values[place]) & _FAILING:
+                failing = True
+                text = _string(f"the atom `{atom.name}` ")
+                lines.append(f"if failure then return nil, at_step(self, {text} .. failure) end")
+            variable = self._printer.name(name)
+            kept += [
+                f"if not ({variable} >= -1.0 and {variable} <= 1.0) then",
+                f"  {variable}, problem = kept(self, {_string(atom.name)}, {variable})",
+                "  if problem then return nil, problem end",
+                "end",
+            ]
+        return [*(["failure = nil"] if failing else []), *lines, *kept]
+
+    def _value(self, place: int) -> list[str]:
+        """What gives an atom its value."""
+        atom, made = self._fspa.atoms[place], self._program
+        lines = self._printer.comment(f"{atom.name}: {atom.doc}" if place in self._explained else atom.name)
+        return [*lines, *self._printer.lines(defined(made.atoms[place], made.values[place]))]
+
+    def _check(self) -> list[str]:
+        """Exclusive atoms."""
+        lines: list[str] = []
+        for place, group in enumerate(self._fspa.exclusive, start=1):
+            if len(group) > 1:
+                atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
+                holding = " + ".join(f"({atom} > 0.0 and 1 or 0)" for atom in atoms)
+                values = ", ".join(atoms)
+                lines += [f"if {holding} > 1 then", f"  return nil, together(self, {place}, {{ {values} }})", "end"]
+        return lines
+
+    def _move(self) -> list[str]:
+        """The transition, by state."""
+        if not self._few_states:
+            return [f"local {self._returned()} = MOVES[self.state]({self._given()})"]
+        lines = ["local state = self.state", f"local {self._returned()}"]
+        for state in self._fspa.states:
+            lines.append(f"{'elseif' if state.id else 'if'} state == {state.id} then")
+            lines += [f"  {line}" for line in self._printer.comment(state.label.ascii)]
+            lines += self._branch(state.id)
+        return [*lines, "end"]
+
+    def _judge(self) -> list[str]:
+        """Progress, reward and the end of the episode."""
         used = read(self._program.judged)
-        verdict = f"STATES[{states.TARGET}].verdict"
         given = {
-            judge.ENDS: f"STATES[{states.TARGET}].ends",
-            judge.VIOLATED: f'{verdict} == "violated"',
-            judge.SATISFIED: f'{verdict} == "satisfied"',
+            judge.ENDS: "entered.ends",
+            judge.VIOLATED: 'entered.verdict == "violated"',
+            judge.SATISFIED: 'entered.verdict == "satisfied"',
         }
         return [
-            f"local {', '.join(self._returned())} = MOVES[self.state](self._value)",
-            f"local {judge.BEST}, {judge.DONE} = self.progress, self.done",
+            f"local entered = STATES[{states.TARGET}]",
+            f"local {judge.STEPS}, {judge.BEST}, {judge.DONE} = self.steps + 1, self.progress, self.done",
             f"local {judge.REWARD}",
             *(f"local {name} = {value}" for name, value in given.items() if name in used),
             *_Lua({}, self._names).lines(self._program.judged),
@@ -247,9 +373,18 @@ def _declared(statements: Iterable[Statement]) -> Iterator[Declare]:
         if isinstance(statement, Declare):
             yield statement
         elif isinstance(statement, If):
-            for _, body in statement.cases:
+            for body in _bodies(statement):
                 yield from _declared(body)
-            yield from _declared(statement.otherwise)
+
+
+def _depth(statements: Iterable[Statement]) -> int:
+    """How deep branches nest."""
+    bodies = [body for statement in statements if isinstance(statement, If) for body in _bodies(statement)]
+    return 1 + max(map(_depth, bodies)) if bodies else 0
+
+
+def _bodies(statement: If) -> tuple[tuple[Statement, ...], ...]:
+    return (*(body for _, body in statement.cases), statement.otherwise)
 
 
 # --- pieces ---------------------------------------------------------------------------------------
@@ -261,13 +396,23 @@ def _field(name: str, type_: str, doc: str) -> str:
     return f"---@field {visible(_key(name))} {type_}{said}"
 
 
-def _names(name: str, field: str) -> str:
-    return f"name = {_string(name)}, field = {_string(field)}"
+def _taken(signal: Signal, variable: str) -> list[str]:
+    """The lines that begin the branch of a signal: what is done where its value needs no second look."""
+    if signal.type == "bool":
+        return [
+            f"if {variable} == true then",
+            f"  {variable} = 1.0",
+            f"elseif {variable} == false then",
+            f"  {variable} = 0.0",
+        ]
+    low = f"{variable} > -huge" if signal.low is None else f"{variable} >= {float(signal.low)!r}"
+    high = f"{variable} < huge" if signal.high is None else f"{variable} <= {float(signal.high)!r}"
+    return [f'if type({variable}) == "number" and {low} and {high} then', f"  {variable} = {variable} + 0.0"]
 
 
-def _range(low: float | None, high: float | None) -> str:
-    least = "-huge" if low is None else repr(float(low))
-    greatest = "huge" if high is None else repr(float(high))
+def _range(of: Signal | Param) -> str:
+    least = "-huge" if of.low is None else repr(float(of.low))
+    greatest = "huge" if of.high is None else repr(float(of.high))
     return f"low = {least}, high = {greatest}"
 
 
@@ -283,8 +428,14 @@ def _escape(character: str) -> str:
 
 def _key(name: str) -> str:
     """A key, where a table lists it."""
-    plain = re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) and name not in _WORDS
+    plain = re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) and name not in _KEYWORDS
     return name if plain else f"[{_string(name)}]"
+
+
+def _index(name: str) -> str:
+    """A key, behind a table."""
+    key = _key(name)
+    return key if key[0] == "[" else f".{key}"
 
 
 def _bool(value: bool) -> str:

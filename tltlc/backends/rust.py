@@ -18,8 +18,9 @@ from tltlc.backends.program import judge, states
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer, remark
 from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import Assign, Declare, If, Statement, Type
+from tltlc.backends.program.tree import Assign, Binary, Comment, Declare, If, Statement, Type, Variable
 from tltlc.backends.program.uses import called, read
+from tltlc.monitor.samples import range_text
 from tltlc.resolve.spec import Param, Signal
 
 TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",))
@@ -36,9 +37,9 @@ _RESERVED = """
     impl in let loop macro match mod move mut override priv pub raw ref return self Self static struct super trait
     true try type typeof union unsafe unsized use virtual where while yield auto default macro_rules safe
     abs core exp f64 bool char str usize isize i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f16 f32 f128 math max min place
-    sample fmt std alloc main program tltl_math
-    ATOM_NAMES Default Err GROUPS Monitor NOTICE_ROOM None Notice Ok Option Params Place Problem Refused Result
-    SIGNAL_NAMES STATES Shown Signals Some Step Verdict WrongParam
+    entered sample fmt std alloc main program tltl_math
+    ATOM_NAMES Default Err GROUPS LARGEST_GROUP Monitor NOTICE_ROOM None Notice Ok Option Params Place Problem Refused
+    Result SIGNAL_NAMES STATES Shown Signals Some Step Verdict WrongParam
 """.split()
 """Words of the language, and what stands in the template beside the program."""
 
@@ -70,6 +71,13 @@ class _Rust(Printer):
             return f"{head}: {self.TYPES[statement.type]};"
         return f"{head} = {self.text(statement.value)};"
 
+    def assignment(self, statement: Assign) -> str:
+        """An assignment; what only adds or subtracts says so."""
+        match statement:
+            case Assign(name, Binary("+" | "-" as op, Variable(left), right)) if left == name:
+                return f"{name} {op}= {self.text(right)};"
+        return super().assignment(statement)
+
     def head(self, test: str, *, first: bool) -> str:
         """The line that begins a case."""
         return f"if {test} {{" if first else f"}} else if {test} {{"
@@ -88,6 +96,9 @@ class _Source:
         self._fspa, self._file = fspa, file
         self._program = program(fspa, _RESERVED)
         self._printer = _Rust()
+        # The first atom of each predicate is where that is explained.
+        first = {atom.doc: place for place, atom in reversed([*enumerate(fspa.atoms)]) if atom.doc}
+        self._explained = {*first.values()}
 
     def text(self) -> str:
         """The whole file."""
@@ -95,7 +106,7 @@ class _Source:
         signals = list(zip(fspa.signals, made.signals, strict=True))
         params = list(zip(fspa.params, made.params, strict=True))
         computed = called(statement for value in made.values for statement in value)
-        present = [*computed, "exclusive" if fspa.exclusive else "single", *(["atom"] if fspa.atoms else [])]
+        present = [*computed, "exclusive" if fspa.exclusive else "single", *([] if all(made.sure) else ["keep"])]
         present += ["math"] if computed & _MATH else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
@@ -114,6 +125,7 @@ class _Source:
             "state_count": str(len(fspa.states)),
             "signal_names": _list([_string(signal.name) for signal in fspa.signals]),
             "atom_names": _list([_string(atom.name) for atom in fspa.atoms]),
+            "largest_group": str(max(map(len, fspa.exclusive), default=0)),
             "groups": _list([f"&[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
             "signal_defaults": _block(
                 [f"{name}: {'false' if signal.type == 'bool' else 'f64::NAN'}," for signal, name in signals], 3
@@ -132,19 +144,19 @@ class _Source:
         """The first comment: what the spec is called, what it is for, its formula."""
         fspa = self._fspa
         title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
-        about = [self._printer.comment(text) for text in (title, fspa.doc)]
-        about.append([line.replace("// ", "//     ", 1) for line in self._printer.comment(fspa.formula.ascii)])
-        parts = ["\n".join(lines) for lines in about if lines]
-        return ["\n//\n".join(parts)]
+        formula = ["```text", *remark(fspa.formula.ascii.replace("```", "'''")), "```"]
+        about = [_markdown(title), _markdown(fspa.doc), formula]
+        parts = ["\n".join(f"//! {line}" for line in lines) for lines in about if lines]
+        return ["\n//!\n".join(parts)]
 
     def _needs(self, functions: frozenset[str]) -> list[str]:
         """What the file needs beside the language."""
         if not functions:
-            return [f"// {_CORE}"]
+            return [f"//! {_CORE}"]
         names = [f"`{'pow' if function == 'power' else function}`" for function in sorted(functions)]
         listed = " and ".join([*([", ".join(names[:-1])] if names[1:] else []), names[-1]])
         text = " ".join(_MORE.format(names=listed, functions=listed).split())
-        return [f"// {line}" for line in wrap(text, 116, break_on_hyphens=False)]
+        return [f"//! {line}" for line in wrap(text, 115, break_on_hyphens=False)]
 
     def _states(self) -> list[str]:
         lines: list[str] = []
@@ -188,26 +200,37 @@ class _Source:
     def _compute(self) -> list[str]:
         """The atoms' values."""
         lines: list[str] = []
-        explained: set[str] = {""}
-        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
-            self._printer.atom = place
-            lines += self._printer.comment(atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}")
-            explained.add(atom.doc)
-            lines += self._printer.lines(_defined(name, self._program.values[place]))
         used = read([statement for state in self._program.states for statement in state])
         used |= {self._program.atoms[atom] for group in self._fspa.exclusive if len(group) > 1 for atom in group}
+        kept: list[str] = []
         for place, name in enumerate(self._program.atoms):
+            if self._program.only_in[place] is not None:
+                continue
+            lines += self._value(place)
             head = f"let {name} = " if name in used else ""
-            lines.append(f"{head}self.keep({place}, {name})?;")
-        return lines
+            kept += [] if self._program.sure[place] else [f"{head}self.keep({place}, {name})?;"]
+        return [*lines, *kept]
+
+    def _value(self, place: int, depth: int = 0) -> list[str]:
+        """What gives an atom its value."""
+        atom, made = self._fspa.atoms[place], self._program
+        self._printer.atom = place
+        text = f"{atom.name}: {atom.doc}" if place in self._explained else atom.name
+        return self._printer.lines((Comment(text), *_defined(made.atoms[place], made.values[place])), depth)
+
+    def _alone(self, state: int) -> list[str]:
+        """The values of the atoms that nothing but this state needs."""
+        only_in = self._program.only_in
+        return [line for place, only in enumerate(only_in) if only == state for line in self._value(place, depth=2)]
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
         for place, group in enumerate(self._fspa.exclusive):
-            holding = " + ".join(f"u32::from({self._program.atoms[atom]} > 0.0)" for atom in group)
+            tests = [f"{self._program.atoms[atom]} > 0.0" for atom in group]
             if len(group) > 1:
-                lines += [f"if {holding} > 1 {{", f"{_INDENT}return Err(self.refuse(Problem::Together, {place}));", "}"]
+                lines.append(f"if {' + '.join(f'u32::from({test})' for test in tests)} > 1 {{")
+                lines += [f"{_INDENT}return Err(self.together({place}, &[{', '.join(tests)}]));", "}"]
         return lines
 
     def _move(self) -> list[str]:
@@ -218,18 +241,21 @@ class _Source:
         lines.append("match self.state {")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
-            lines += [f"{_INDENT}{state.id} => {{", *self._printer.lines(statements, depth=2), f"{_INDENT}}}"]
+            lines += [f"{_INDENT}{state.id} => {{", *self._alone(state.id)]
+            lines += [*self._printer.lines(statements, depth=2), f"{_INDENT}}}"]
         return [*lines, f"{_INDENT}_ => {{}}", "}"]
 
     def _judge(self) -> list[str]:
         """Progress, reward and the end of the episode."""
         used = read(self._program.judged)
-        verdict = f"STATES[{states.TARGET}].verdict"
-        lines = [f"let mut {judge.BEST} = self.progress;", f"let mut {judge.DONE} = self.done;"]
-        lines.append(f"let mut {judge.REWARD};")
+        verdict = "entered.verdict"
+        lines = [f"let entered = &STATES[{states.TARGET}];"]
+        lines += [f"let mut {judge.BEST} = self.progress;", f"let mut {judge.DONE} = self.done;"]
+        # Penalties change it.
+        lines.append(f"let {'' if self._fspa.limit_steps is None else 'mut '}{judge.REWARD};")
         given = {
             judge.STEPS_REAL: f"let {judge.STEPS_REAL} = {judge.STEPS} as f64;",
-            judge.ENDS: f"let {judge.ENDS} = STATES[{states.TARGET}].ends;",
+            judge.ENDS: f"let {judge.ENDS} = entered.ends;",
             judge.VIOLATED: f"let {judge.VIOLATED} = {verdict} == Verdict::Violated;",
             judge.SATISFIED: f"let {judge.SATISFIED} = {verdict} == Verdict::Satisfied;",
         }
@@ -258,11 +284,20 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     lines: list[str] = []
     for name, type_, of in fields:
         texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
-        # Brackets would be links, angles HTML.
-        text = re.sub(r"([][<>`])", r"\\\1", ": ".join(texts))
-        lines += [f"/// {line}" for line in remark(text)]
+        lines += [f"/// {line}" for line in _markdown(": ".join(texts) or _kind(of))]
         lines.append(f"pub {name}: {type_},")
     return _block(lines, 1)
+
+
+def _kind(of: Signal | Param) -> str:
+    """What is said of a signal or param of which the spec says nothing."""
+    return "True or false." if of.type == "bool" else f"In {range_text(of.low, of.high)}."
+
+
+def _markdown(text: str) -> list[str]:
+    """Lines of documentation: no code, which would be run as a test, no HTML and no links."""
+    escaped = re.sub(r"`{3,}|~{3,}|<|\](?=[(\[:])", lambda found: re.sub("(.)", r"\\\1", found[0]), text)
+    return remark(escaped)
 
 
 def _param_check(param: Param, name: str) -> list[str]:

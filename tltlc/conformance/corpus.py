@@ -8,9 +8,12 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 from tltlc import backends
+from tltlc.automaton.fspa import Fspa
 from tltlc.conformance import arithmetic, operators, random_cases, shapes, written
 from tltlc.conformance.case import Case, Makers
-from tltlc.conformance.expected import Expected, Refusal, expected
+from tltlc.conformance.expected import COLUMNS, Expected, Refusal, expected
+from tltlc.expression import Const, Op, nodes
+from tltlc.expression_eval import MULTIPLIED_EXPONENTS
 
 CASES: Final[Makers] = {
     **written.CASES,
@@ -21,6 +24,11 @@ CASES: Final[Makers] = {
 }
 
 VERSION: Final = 1
+TOLERANCE: Final = 1e-12
+"""How far numbers may be off where a case is not exact."""
+
+_ROUNDED_ANYHOW: Final = ("exp", "tanh", "^")
+"""Operators that each language's library rounds in its own way."""
 
 
 def files() -> backends.Files:
@@ -32,12 +40,25 @@ def files() -> backends.Files:
         outcomes = [expected(case.fspa, trace) for trace in case.traces]
         index.append(_entry(case, outcomes))
         found.update(_folder(case, outcomes))
-    document = {"version": VERSION, "cases": index}
+    document = {"version": VERSION, "columns": list(COLUMNS), "tolerance": TOLERANCE, "cases": index}
     return {
-        "README.md": _page(),
+        "README.md": _beside("about.md"),
+        "check.py": _beside("check.py"),
         "index.json": json.dumps(document, indent=1, ensure_ascii=False) + "\n",
         **found,
     }
+
+
+def is_exact(fspa: Fspa) -> bool:
+    """Whether numbers are the same to the last digit everywhere: each operation is one that IEEE 754 defines."""
+    operations = [node for atom in fspa.atoms for node in nodes(atom.expression) if isinstance(node, Op)]
+    return all(node.op not in _ROUNDED_ANYHOW or _is_product(node) for node in operations)
+
+
+def _is_product(node: Op) -> bool:
+    """Whether it is a power that is computed by multiplication."""
+    exponent = node.args[-1]
+    return node.op == "^" and isinstance(exponent, Const) and exponent.value in MULTIPLIED_EXPONENTS
 
 
 def _folder(case: Case, outcomes: Sequence[Expected]) -> backends.Files:
@@ -66,7 +87,8 @@ def _entry(case: Case, outcomes: Sequence[Expected]) -> dict[str, Any]:
     for number, outcome in enumerate(outcomes, start=1):
         refusal = outcome.refusal
         error = refusal and {"kind": refusal.kind, "step": refusal.step, "names": list(refusal.names)}
-        row: dict[str, Any] = {"trace": f"{name}/{name}.{number}.csv", "rows": len(outcome.rows)}
+        stem = f"{name}/{name}.{number}"
+        row: dict[str, Any] = {"trace": f"{stem}.csv", "expected": f"{stem}.expected.csv", "rows": len(outcome.rows)}
         traces.append(row | {"warnings": outcome.warnings, "error": error})
     return {
         "name": name,
@@ -76,11 +98,13 @@ def _entry(case: Case, outcomes: Sequence[Expected]) -> dict[str, Any]:
         "semantics": fspa.semantics,
         "judge": fspa.judge,
         "limit_steps": fspa.limit_steps,
+        "exact": is_exact(fspa),
         "traces": traces,
     }
 
 
-def _page() -> str:
-    path = os.path.join(os.path.dirname(__file__), "about.md")  # noqa: PTH118, PTH120
+def _beside(name: str) -> str:
+    """A file that lies beside this one."""
+    path = os.path.join(os.path.dirname(__file__), name)  # noqa: PTH118, PTH120
     with open(path, encoding="utf-8") as file:  # noqa: PTH123
         return file.read()

@@ -27,7 +27,9 @@ _FUNCTIONS: Final = """
     to_json hash print_stack get_stack instance_from_id is_instance_id_valid is_instance_valid len is_same error_string
     absf absi ceilf ceili floorf floori roundf roundi signf signi maxf maxi minf mini clampf clampi lerpf posmod
     posmodv snappedf snappedi pingpong cubic_interpolate bezier_interpolate bezier_derivative rotate_toward
-    angle_difference rid_allocate_id rid_from_int64 is_instance_of color8
+    angle_difference rid_allocate_id rid_from_int64 is_instance_of color8 rand_from_seed type_convert
+    bytes_to_var_with_objects var_to_bytes_with_objects cubic_interpolate_angle cubic_interpolate_in_time
+    cubic_interpolate_angle_in_time
 """.split()
 
 _OBJECT: Final = """

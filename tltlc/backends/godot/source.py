@@ -48,20 +48,32 @@ class Dialect:
     """How a version of the engine differs from another.
 
     ``version`` is what templates ask for, ``base`` the class of what is counted by references.  ``functions`` are
-    functions of the engine that are exact.  ``wide`` says whether strings have escapes for characters beyond U+FFFF.
+    functions of the engine that are exact; of ``swapped`` ones the second argument stands first, so that of equal
+    values the first is taken.  ``typed`` says whether arrays and enums are types, and ``wide`` whether strings have
+    escapes for characters beyond U+FFFF.
     """
 
     version: str
     title: str
     base: str
     functions: Mapping[str, str]
+    swapped: frozenset[str]
+    typed: bool
     wide: bool
+
+    def types(self) -> dict[str, str]:
+        """What stands in the templates' places for types."""
+        arrays = {"strings": "String", "bools": "bool", "ints": "int", "floats": "float", "arrays": "Array"}
+        arrays["verdict_array"] = "Verdict"
+        found = {name: f"Array[{of}]" if self.typed else "Array" for name, of in arrays.items()}
+        enums = {"verdict": "Verdict", "problem": "Problem"}
+        return found | {name: enum if self.typed else "int" for name, enum in enums.items()}
 
 
 def files(fspa: Fspa, dialect: Dialect) -> Files:
     """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
     script, main = (f"{fspa.name}{ending}" for ending in ENDINGS)
-    pieces = {"name": fspa.name, "file": script, "main": main, "title": dialect.title}
+    pieces = {"name": fspa.name, "file": script, "main": main, "title": dialect.title, **dialect.types()}
     return {
         script: _Source(fspa, dialect).text(),
         main: filled("monitor_main.gd.txt", pieces, [dialect.version]),
@@ -76,23 +88,26 @@ class _Source:
         self._program = program(fspa, RESERVED)
         made = self._program
         renamed = snake_case([*made.signals, *made.params, *made.atoms])
-        self._printer = Gd({**renamed, **_MEMBERS}, dialect.functions)
+        self._printer = Gd({**renamed, **_MEMBERS}, dialect.functions, dialect.swapped)
         self._signals = [self._printer.name(name) for name in made.signals]
         self._params = [self._printer.name(name) for name in made.params]
         self._atoms = [self._printer.name(name) for name in made.atoms]
 
     def text(self) -> str:
         """The whole file."""
-        fspa = self._fspa
-        failing = called(statement for value in self._program.values for statement in value) & FAILING
+        fspa, made = self._fspa, self._program
+        failing = called(statement for value in made.values for statement in value) & FAILING
         present = [self._dialect.version, *failing, *(["note"] if failing else [])]
-        present += ["atom"] if fspa.atoms else []
+        present += [] if all(made.sure) else ["atom"]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         present += ["exclusive"] if fspa.exclusive else []
         present += ["params"] if fspa.params else []
         with recursion_room():
             step = _block(self._step())
+        present += [name for name in ("min", "max") if f"_{name}(" in step]
+        first = fspa.states[0]
         pieces = {
+            **self._dialect.types(),
             "title": "\n".join(self._title()),
             "engine": self._dialect.title,
             "base": self._dialect.base,
@@ -102,6 +117,8 @@ class _Source:
             "atoms": self._strings(atom.name for atom in fspa.atoms),
             "labels": self._strings(state.label.ascii for state in fspa.states),
             "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
+            "first_verdict": f"Verdict.{first.verdict.upper()}",
+            "first_accepting": _bool(first.accepting),
             "accepting": _list([_bool(state.accepting) for state in fspa.states]),
             "ends": _list([_bool(self._is_end(state.id)) for state in fspa.states]),
             "exclusive": _list([str(list(group)) for group in fspa.exclusive]),
@@ -114,8 +131,7 @@ class _Source:
             ),
             "param_fields": self._param_fields(),
             "param_checks": _block(line for place in range(len(fspa.params)) for line in self._param_check(place)),
-            "param_copies": _block([f"params.{name} = given.{name}" for name in self._params]),
-            "atom_count": str(len(fspa.atoms)),
+            "param_copies": _block([f"_params.{name} = given.{name}" for name in self._params]),
             "sample": "sample" if "sample." in step else "_sample",
             "step": step,
         }
@@ -151,7 +167,9 @@ class _Source:
         lines: list[str] = []
         for name, type_, value, of in fields:
             texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
-            remarks = self._printer.comment(": ".join(texts))
+            # Godot 4 shows what stands behind two signs; a bracket would begin a tag.
+            said = ": ".join(texts).replace("[", "[lb]")
+            remarks = [f"#{line}" for line in self._printer.comment(said)]
             field = f"var {name}: {type_} = {value}"
             # A short remark stands behind its field.
             if len(remarks) == 1 and len(field) + len(remarks[0]) < 90:
@@ -162,11 +180,7 @@ class _Source:
 
     def _param_check(self, place: int) -> list[str]:
         param, name = self._fspa.params[place], f"given.{self._params[place]}"
-        tests = [f"_is_number({name})"]
-        tests += [] if param.low is None else [f"{name} >= {_signed(param.low)}"]
-        tests += [] if param.high is None else [f"{name} <= {_signed(param.high)}"]
-        test = tests[0] if len(tests) == 1 else f"({' and '.join(tests)})"
-        return [f"if not {test}:", f"\treturn _refuse(Problem.WRONG_PARAM, {place})"]
+        return [f"if not ({_within(name, param)}):", f"\treturn _refuse(Problem.WRONG_PARAM, {place})"]
 
     # --- the step function ------------------------------------------------------------------------
 
@@ -184,14 +198,14 @@ class _Source:
             if signal.type == "bool":
                 lines += [f"var {name}: float = 1.0 if sample.{name} else 0.0"] if is_used else []
                 continue
-            low = "-INF" if signal.low is None else _signed(signal.low)
-            high = "INF" if signal.high is None else _signed(signal.high)
-            declared = f"var {name}: float = " if is_used else "_read("
-            call = f"_read({place}, sample.{name}, {low}, {high})"
-            lines.append(f"{declared}{call}" if is_used else call)
+            value = name if is_used else f"sample.{name}"
+            low, high = _ends(signal)
+            call = f"_read({place}, {value}, {low}, {high})"
+            lines += [f"var {name}: float = sample.{name}"] if is_used else []
+            lines += [f"if not ({_within(value, signal)}):", f"\t{f'{name} = ' if is_used else ''}{call}"]
             checked = True
         lines += [
-            f"var {name}: float = params.{name}"
+            f"var {name}: float = _params.{name}"
             for name, own in zip(self._params, self._program.params, strict=True)
             if own in used
         ]
@@ -201,35 +215,47 @@ class _Source:
         return ["if problem != Problem.NONE:", "\treturn false"]
 
     def _compute(self) -> list[str]:
-        """The atoms' values."""
-        lines: list[str] = []
-        explained: set[str] = {""}
-        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
-            statements = self._program.values[place]
-            lines += self._printer.comment(atom.name if atom.doc in explained else f"{atom.name}: {atom.doc}")
-            explained.add(atom.doc)
-            lines += self._printer.lines(defined(name, statements))
-            if called(statements) & FAILING:
-                lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {place})"]
-        checks = [f"{name} = _value({place}, {name})" for place, name in enumerate(self._atoms)]
-        return [*lines, *checks, *(self._stop() if checks else [])]
+        """The atoms' values, but for those that one state alone reads."""
+        lines = self._values(None)
+        unsure = [(place, name) for place, name in enumerate(self._atoms) if not self._program.sure[place]]
+        for place, name in unsure:
+            lines += [f"if not ({name} >= -1.0 and {name} <= 1.0):", f"\t{name} = _value({place}, {name})"]
+        return [*lines, *(self._stop() if unsure else [])]
+
+    def _values(self, state: int | None) -> list[str]:
+        """The values of the atoms that are computed in a state alone, or at each step."""
+        places = [place for place, only_in in enumerate(self._program.only_in) if only_in == state]
+        return [line for place in places for line in self._value(place)]
+
+    def _value(self, place: int) -> list[str]:
+        """The value of one atom, explained where no atom before it says the same."""
+        atom, name, statements = self._fspa.atoms[place], self._program.atoms[place], self._program.values[place]
+        is_new = atom.doc and all(other.doc != atom.doc for other in self._fspa.atoms[:place])
+        lines = self._printer.comment(f"{atom.name}: {atom.doc}" if is_new else atom.name)
+        lines += self._printer.lines(defined(name, statements))
+        if called(statements) & FAILING:
+            lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {place})"]
+        return lines
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
         for place, group in enumerate(self._fspa.exclusive):
-            holding = " + ".join(f"int({self._atoms[atom]} > 0.0)" for atom in group)
+            names = [self._atoms[atom] for atom in group]
+            holding = " + ".join(f"int({name} > 0.0)" for name in names)
             if len(group) > 1:
-                lines += [f"if {holding} > 1:", f"\treturn _refuse(Problem.TOGETHER, {place})"]
+                lines += [f"if {holding} > 1:", f"\t_clashing = [{', '.join(names)}]"]
+                lines.append(f"\treturn _refuse(Problem.TOGETHER, {place})")
         return lines
 
     def _move(self) -> list[str]:
-        """The transition, by state."""
+        """The transition, by state: tests one after the other, which is what a ``match`` does, more slowly."""
         lines = ["var reached: float = 0.0"] if self._fspa.judge == "goal" else []
-        lines.append("match state:")
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
+            lines.append(self._printer.head(f"state == {state.id}", first=state.id == 0))
             lines += [f"\t{line}" for line in self._printer.comment(state.label.ascii)]
-            lines += [f"\t{state.id}:", *self._printer.lines(statements, depth=2)]
+            lines += [f"\t{line}" for line in self._values(state.id)]
+            lines += self._printer.lines(statements, depth=1)
         return lines
 
     def _judge(self) -> list[str]:
@@ -264,6 +290,17 @@ def _signed(value: float) -> str:
     return f"-{number(-value)}" if repr(value)[0] == "-" else number(float(value))
 
 
+def _ends(of: Signal | Param) -> tuple[str, str]:
+    """The range of a signal or a param."""
+    return "-INF" if of.low is None else _signed(of.low), "INF" if of.high is None else _signed(of.high)
+
+
+def _within(value: str, of: Signal | Param) -> str:
+    """A test whether a value is finite and in the range."""
+    low, high = _ends(of)
+    return f"{value} {'>' if of.low is None else '>='} {low} and {value} {'<' if of.high is None else '<='} {high}"
+
+
 def _start(signal: Signal) -> str:
     return "false" if signal.type == "bool" else "INF"
 
@@ -283,4 +320,4 @@ def _block(lines: Iterable[str], depth: int = 1) -> str:
 def _list(items: Sequence[str]) -> str:
     """The items between brackets: on one line where they are short, else on lines of their own."""
     line = ", ".join(items)
-    return f"[{line}]" if len(line) <= 80 else "[\n" + "".join(f"\t{item},\n" for item in items) + "]"
+    return f"[{line}]" if len(line) <= 60 else "[\n" + "".join(f"\t{item},\n" for item in items) + "]"

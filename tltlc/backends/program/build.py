@@ -9,16 +9,19 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends.code.names import Names
 from tltlc.backends.program import judge, states
 from tltlc.backends.program.arithmetic import Arithmetic
-from tltlc.backends.program.tree import Statement
+from tltlc.backends.program.bounds import Range, proven, within
+from tltlc.backends.program.tree import FAILING, Function, Statement
+from tltlc.backends.program.uses import called, read
 from tltlc.monitor.tables import tables
 from tltlc.record import record
+from tltlc.resolve.spec import Signal
 
 TEMPORARY = "t"
 """What variables begin with that stand for parts of a predicate: ``t_1``, or ``t2_1`` where a name begins so."""
 
 _OWN = (
     *(states.TARGET, states.ROBUSTNESS, states.PROGRESS, states.LIMITING, states.NEAREST, states.OTHER),
-    *(judge.STEPS, judge.STEPS_REAL, judge.BEST, judge.REWARD, judge.DONE, judge.ENDS),
+    *(judge.STEPS, judge.STEPS_REAL, judge.BEST, judge.BEFORE, judge.REWARD, judge.DONE, judge.ENDS),
     *(judge.VIOLATED, judge.SATISFIED, "state"),
 )
 
@@ -27,8 +30,12 @@ _OWN = (
 class Program:
     """The variables of signals, params and values of atoms, in the order of the automaton, and statements.
 
-    ``values`` give each atom its value, which is declared and may be outside [-1, 1]; ``states`` assign what
-    :mod:`tltlc.backends.program.states` names, ``judged`` what :mod:`tltlc.backends.program.judge` does.
+    ``values`` give each atom its value, which is declared, and may be outside [-1, 1] or no number unless the atom is
+    ``sure``.  ``only_in`` is the one state in which an atom need be computed, -1 where no state does, and None where
+    it is computed at each step.  ``remarks`` say what each atom is, and of a predicate only once what it means.
+    ``exclusive`` are the groups of atoms that can hold at once, with their numbers in the automaton.  ``states`` assign
+    what :mod:`tltlc.backends.program.states` names, ``judged`` what :mod:`tltlc.backends.program.judge` does.  Where a
+    state ``ends``, an episode is over on entry.
     """
 
     fspa: Fspa
@@ -36,8 +43,27 @@ class Program:
     params: tuple[str, ...]
     atoms: tuple[str, ...]
     values: tuple[tuple[Statement, ...], ...]
+    sure: tuple[bool, ...]
+    only_in: tuple[int | None, ...]
+    remarks: tuple[str, ...]
+    exclusive: tuple[tuple[int, tuple[int, ...]], ...]
     states: tuple[tuple[Statement, ...], ...]
     judged: tuple[Statement, ...]
+    ends: tuple[bool, ...]
+
+    def computed_in(self, state: int | None) -> list[int]:
+        """The numbers of the atoms that are computed in a state alone, or at each step."""
+        return [place for place, only in enumerate(self.only_in) if only == state]
+
+    @property
+    def used(self) -> frozenset[str]:
+        """The variables that the values of atoms are computed from."""
+        return read(statement for value in self.values for statement in value)
+
+    @property
+    def functions(self) -> frozenset[Function]:
+        """The functions that the values of atoms are computed by."""
+        return called(statement for value in self.values for statement in value)
 
 
 def program(fspa: Fspa, reserved: Iterable[str]) -> Program:
@@ -53,18 +79,69 @@ def _program(fspa: Fspa, names: Names) -> Program:
     params = {param.name: names.give(param.name, "param") for param in fspa.params}
     atoms = tuple(names.give(atom.name, "atom") for atom in fspa.atoms)
     arithmetic = Arithmetic(signals, params, _prefix([*signals.values(), *params.values(), *atoms]))
+    ranges = {name: _range(signal) for name, signal in zip(signals.values(), fspa.signals, strict=True)}
+    ranges |= {name: within(param.low, param.high) for name, param in zip(params.values(), fspa.params, strict=True)}
+    values = [
+        proven(name, arithmetic.assigned(name, atom.expression), ranges)
+        for name, atom in zip(atoms, fspa.atoms, strict=True)
+    ]
+    # What may have no value counts in tests, too.
+    sure = tuple(
+        range_ is not None and range_.low >= -1.0 and range_.high <= 1.0 and not called(statements) & FAILING
+        for statements, range_ in values
+    )
     looked_up = tables(fspa)
+    moves = tuple(states.of_state(looked_up, state.id, atoms) for state in fspa.states)
+    exclusive = tuple((number, group) for number, group in enumerate(fspa.exclusive) if len(group) > 1)
+    compared = {atom for _, group in exclusive for atom in group}
+    only_in = _only_in(atoms, [is_sure and place not in compared for place, is_sure in enumerate(sure)], moves)
     return Program(
         fspa=fspa,
         signals=tuple(signals.values()),
         params=tuple(params.values()),
         atoms=atoms,
-        values=tuple(
-            tuple(arithmetic.assigned(name, atom.expression)) for name, atom in zip(atoms, fspa.atoms, strict=True)
-        ),
-        states=tuple(states.of_state(looked_up, state.id, atoms) for state in fspa.states),
+        values=tuple(() if only == -1 else statements for only, (statements, _) in zip(only_in, values, strict=True)),
+        sure=sure,
+        only_in=only_in,
+        remarks=_remarks(fspa, only_in),
+        exclusive=exclusive,
+        states=moves,
         judged=judge.judged(fspa),
+        ends=tuple(
+            state.verdict in ("satisfied", "violated") or (fspa.judge == "goal" and state.accepting)
+            for state in fspa.states
+        ),
     )
+
+
+def _only_in(
+    atoms: Sequence[str], unseen: Sequence[bool], moves: Sequence[tuple[Statement, ...]]
+) -> tuple[int | None, ...]:
+    """What one state alone reads is computed there, if that is ``unseen``: if there are no errors and no notices."""
+    used = [read(statements) for statements in moves]
+    found: list[int | None] = []
+    for name, is_unseen in zip(atoms, unseen, strict=True):
+        reading = [state for state, names in enumerate(used) if name in names]
+        found.append((reading or [-1])[0] if is_unseen and len(reading) < 2 else None)
+    return tuple(found)
+
+
+def _remarks(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:
+    """The atoms' names, and behind the first of each predicate, as they are computed, what it means."""
+    remarks = [atom.name for atom in fspa.atoms]
+    explained = {""}
+    eager = [place for place, only in enumerate(only_in) if only is None]
+    lazy = [place for state in fspa.states for place, only in enumerate(only_in) if only == state.id]
+    for place in (*eager, *lazy):
+        doc = fspa.atoms[place].doc
+        if doc not in explained:
+            remarks[place] += f": {doc}"
+            explained.add(doc)
+    return tuple(remarks)
+
+
+def _range(signal: Signal) -> Range:
+    return Range(0.0, 1.0) if signal.type == "bool" else within(signal.low, signal.high)
 
 
 def _prefix(names: Sequence[str]) -> str:

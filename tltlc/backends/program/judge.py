@@ -25,6 +25,8 @@ STEPS, STEPS_REAL, BEST, REWARD, DONE, ENDS, VIOLATED, SATISFIED = (
 on entry, violates or satisfies.  They read and assign the best progress so far and whether the episode is over, and
 assign the reward.
 """
+BEFORE = "before"
+"""The best progress before this step."""
 
 
 def judged(fspa: Fspa) -> tuple[Statement, ...]:
@@ -32,16 +34,16 @@ def judged(fspa: Fspa) -> tuple[Statement, ...]:
     limit = fspa.limit_steps
     steps, zero = Variable(STEPS), Real(0.0)
     lines: list[Statement] = [] if fspa.judge == "goal" else _survived(limit)
-    lines.append(Assign(REWARD, zero))
-    gained = (Assign(REWARD, Binary("-", Variable(PROGRESS), Variable(BEST))), Assign(BEST, Variable(PROGRESS)))
-    lines.append(If(((Compare(">", Variable(PROGRESS), Variable(BEST)), gained),)))
+    lines.append(Declare(BEFORE, "real", Variable(BEST)))
+    lines.append(If(((Compare(">", Variable(PROGRESS), Variable(BEST)), (Assign(BEST, Variable(PROGRESS)),)),)))
+    gained = Binary("-", Variable(BEST), Variable(BEFORE))
     if limit is None:
-        going_on: tuple[Statement, ...] = (Assign(DONE, Variable(ENDS)),)
+        going_on: tuple[Statement, ...] = (Assign(REWARD, gained), Assign(DONE, Variable(ENDS)))
     else:
         whole = Real(float(limit))
         left = Binary("/", Binary("-", whole, Variable(STEPS_REAL)), whole)
         going_on = (
-            Assign(REWARD, Binary("-", Variable(REWARD), Real(1 / limit))),
+            Assign(REWARD, Binary("-", gained, Real(1 / limit))),
             If(((Variable(VIOLATED), (Assign(REWARD, Binary("-", Variable(REWARD), left)),)),)),
             Assign(DONE, Any((Variable(ENDS), Compare(">=", steps, Int(limit))))),
         )

@@ -63,7 +63,10 @@ class _State:
         base = Real(self._tables.base_progress[edge.target])
         if not improving:
             return (*lines, *self._progress(base), Assign(LIMITING, Int(-1)))
-        lines += self._nearest([prime for other in improving for prime in other.guard.primes])
+        # All of them are false, so that what is above 0 bounds none.
+        above = [literal for literal in _shared(edge.guard.primes) if literal[1]]
+        primes = [prime for other in improving for prime in other.guard.primes]
+        lines += self._nearest([[literal for literal in prime if literal not in above] for prime in primes])
         # A guard that is false has no robustness above 0, so there is nothing to cap.
         share = Binary("/", Binary("+", Real(1.0), Variable(NEAREST)), Real(float(self._tables.fspa.spec_size)))
         return (*lines, *self._progress(Binary("+", base, share) if base.value else share))
@@ -83,14 +86,14 @@ class _State:
 
     def _robustness(self, primes: Sequence[Implicant]) -> Expression:
         """The greatest of the primes' least literals; literals that all primes share are taken out."""
-        shared = [literal for literal in primes[0] if all(literal in prime for prime in primes)]
+        shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
         terms = [self._value(*literal) for literal in shared]
         if all(rest):
             terms.append(_fold("max", [self._least(prime) for prime in rest]))
         return _fold("min", terms)
 
-    def _nearest(self, primes: Sequence[Implicant]) -> list[Statement]:
+    def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
         """The most robust of the primes, the first of equals, and the first atom that bounds it."""
         first, *others = primes
         lines: list[Statement] = [Declare(NEAREST, "real", self._least(first), changes=bool(others))]
@@ -105,7 +108,7 @@ class _State:
         # One atom alone is the limiting one, whatever its value.
         return lines if self._at_goal or NEAREST in read(lines) else lines[1:]
 
-    def _bounding(self, prime: Implicant, value: str) -> list[Statement]:
+    def _bounding(self, prime: Sequence[tuple[int, bool]], value: str) -> list[Statement]:
         """The first atom of the prime whose literal has that value."""
         *before, (last, _) = prime
         otherwise = Assign(LIMITING, Int(last))
@@ -123,6 +126,11 @@ class _State:
     def _value(self, atom: int, polarity: bool) -> Expression:
         value = Variable(self._atoms[atom])
         return value if polarity else Negate(value)
+
+
+def _shared(primes: Sequence[Implicant]) -> list[tuple[int, bool]]:
+    """The literals that stand in all of the primes."""
+    return [literal for literal in primes[0] if all(literal in prime for prime in primes)]
 
 
 def _size(guard: Guard) -> int:

@@ -6,16 +6,17 @@ in Python (a division by 0, a root of a negative number), a language notes that 
 
 from __future__ import annotations
 
-from typing import Literal, Union
+from typing import Final, Literal, Union
 
 from tltlc.record import record
 
 Type = Literal["real", "int", "bool"]
 
 Function = Literal["divide", "power", "sqrt", "exp", "tanh", "abs", "min", "max"]
-"""``divide``, ``power``, ``sqrt`` and ``exp`` may have no value; ``min`` and ``max`` are of two, and give the first of
-equal ones: ``b < a ? b : a`` and ``b > a ? b : a``.
-"""
+"""``min`` and ``max`` are of two, and give the first of equal ones: ``b < a ? b : a`` and ``b > a ? b : a``."""
+
+FAILING: Final[frozenset[Function]] = frozenset({"divide", "power", "sqrt", "exp"})
+"""Functions that may have no value."""
 
 
 # --- expressions ----------------------------------------------------------------------------------

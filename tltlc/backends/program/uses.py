@@ -24,17 +24,17 @@ from tltlc.backends.program.tree import (
 
 def read(statements: Iterable[Statement]) -> frozenset[str]:
     """The variables that are read."""
-    return frozenset(node.name for node in _nodes(statements) if isinstance(node, Variable))
+    return frozenset(node.name for node in parts(_values(statements)) if isinstance(node, Variable))
 
 
 def called(statements: Iterable[Statement]) -> frozenset[Function]:
     """The functions that are called."""
-    return frozenset(node.function for node in _nodes(statements) if isinstance(node, Call))
+    return frozenset(node.function for node in parts(_values(statements)) if isinstance(node, Call))
 
 
-def _nodes(statements: Iterable[Statement]) -> Iterator[Expression]:
+def parts(expressions: Iterable[Expression]) -> Iterator[Expression]:
     """Every expression and part of one; a stack, since predicates may nest deeply."""
-    stack: list[Expression] = list(_values(statements))
+    stack = list(expressions)
     while stack:
         node = stack.pop()
         yield node

@@ -1,0 +1,134 @@
+"""What is told of monitors in the languages of engines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final
+
+from benchmarks import engine_speed, monitors
+from benchmarks.engines.engine import engines
+from benchmarks.markdown import met_or_missed, table
+from benchmarks.specs import PAPER_SPECS
+from benchmarks.store import Record, Store
+
+FACTOR: Final = 0.9
+
+
+def goals(store: Store) -> Iterable[Sequence[str]]:
+    """A row of the table of goals."""
+    ratios = {
+        name: record["generated_to_by_hand"][1]
+        for name, record in store.section(engine_speed.SECTION).items()
+        if "generated_to_by_hand" in record
+    }
+    if not ratios:
+        return
+    low = [f"{name} {ratio:.2f}" for name, ratio in ratios.items() if ratio < FACTOR]
+    yield (
+        f"generated monitors for engines at least {FACTOR:g} of the speed of ones written by hand in the same language",
+        f"least {min(ratios.values()):.2f}" + (f"; under {FACTOR:g}: {', '.join(low)}" if low else ""),
+        met_or_missed(not low),
+    )
+
+
+def section(store: Store) -> str:
+    """The section on monitors in the languages of engines."""
+    records = store.section(engine_speed.SECTION)
+    languages = {engine.name: engine.title for engine in engines()}
+    speeds = [(_title(name, title, records), *_speeds(name, records)) for name, title in languages.items()]
+    if all(cell == "–" for _, *cells in speeds for cell in cells):
+        return ""
+    python = store.section(monitors.SECTION)
+    speeds += [(f"Python, {who}", *_python(who, python)) for who in ("generated", "RTAMT", "Reelay")]
+    sizes = [row for name, title in languages.items() for row in _sizes(name, title, records)]
+    return f"""
+## Monitors for engines, steps per second
+
+`python -m benchmarks --only {engine_speed.SECTION}`: the monitors that `tltlc compile -t` writes for engines, beside
+ones written by hand in the same language (`benchmarks/handwritten/LANGUAGE`), as a good programmer would write them for
+the same interface: every field of a step, and a refusal of signals that are missing or not finite, or of exclusive
+atoms that hold at once. Those compute only the predicates that their state needs, and tell of no clamped values.
+One driver steps both over the recorded trace of the spec, {monitors.ROUNDS} rounds one after the other; C, C++, C# and
+Rust are compiled with optimisation, and no compiler sees the trace. Both were checked to be equal in each field of each
+step before. A cell has millions of steps per second of the generated one (CPU time), and in brackets the median of the
+ratios of both, generated over written by hand. GDScript is that of Godot 3, as Godot 4 does not run here; its monitor
+for Godot 4 differs in a few lines.
+
+{table(("language", *PAPER_SPECS), speeds)}
+
+Python's figures are those of the section above. RTAMT and Reelay know less, as is said there. They are not measured in
+C++: RTAMT's package has no library of it, and Reelay's sources build only where CMake can fetch Boost from GitHub.
+
+Sizes in KB, for {", ".join(PAPER_SPECS)}: the generated file, with the program at its end that reads a trace; the
+same without lines that hold a comment alone; and what the compiler makes of what a game uses of it, that is begin, step
+and the message of what is wrong, beside the same of the one written by hand: code and constants of an object file in C,
+C++ and Rust, a library in C#, stripped bytecode, program included, in Lua.
+
+{table(("language", "file", "without comments", "compiled by", "generated", "by hand"), sizes)}
+{_left_out(records)}
+"""
+
+
+def _title(name: str, title: str, records: Mapping[str, Record]) -> str:
+    versions = {record["version"] for record in _of(name, records) if "version" in record}
+    return " ".join([title, *sorted(versions)])
+
+
+def _speeds(name: str, records: Mapping[str, Record]) -> list[str]:
+    return [
+        f"{_millions(record['steps_per_s']['generated'])} ({record['generated_to_by_hand'][1]:.2f})"
+        if "steps_per_s" in record
+        else "–"
+        for record in _of(name, records)
+    ]
+
+
+def _python(who: str, records: Mapping[str, Record]) -> list[str]:
+    cells = []
+    for spec in PAPER_SPECS:
+        record = records.get(spec, {})
+        rate = record.get("steps_per_s", {}).get(who)
+        ratio = f" ({record['generated_to_hand_written'][1]:.2f})" if who == "generated" and rate else ""
+        cells.append("–" if rate is None else f"{_millions(rate)}{ratio}")
+    return cells
+
+
+def _sizes(name: str, title: str, records: Mapping[str, Record]) -> list[tuple[str, ...]]:
+    """A row for each kind of compiled output, or one where there is none."""
+    made = [record for record in _of(name, records) if "bytes" in record]
+    if len(made) < len(PAPER_SPECS):
+        return []
+    file = [_kilobytes(made, "bytes", kind) for kind in ("file", "without comments")]
+    kinds = made[0]["compiled"].get("generated", {})
+    if not kinds:
+        return [(title, *file, "–", "–", "–")]
+    return [
+        (title, *file, kind, *(_kilobytes(made, "compiled", who, kind) for who in ("generated", "by_hand")))
+        for kind in kinds
+    ]
+
+
+def _kilobytes(records: Iterable[Record], *path: str) -> str:
+    sizes: list[float] = []
+    for record in records:
+        found: Any = record
+        for key in path:
+            found = found[key]
+        sizes.append(found / 1000)
+    return " / ".join(f"{size:.1f}" for size in sizes)
+
+
+def _left_out(records: Mapping[str, Record]) -> str:
+    reasons = sorted({record["left_out"] for record in records.values() if "left_out" in record})
+    failed = [f"{name} ({record['failed']})" for name, record in records.items() if "failed" in record]
+    texts = [f"Left out: {'; '.join(reasons)}."] if reasons else []
+    texts += [f"Failed: {', '.join(failed)}."] if failed else []
+    return "\n" + " ".join(texts) if texts else ""
+
+
+def _of(name: str, records: Mapping[str, Record]) -> list[Record]:
+    return [records.get(f"{name} {spec}", {}) for spec in PAPER_SPECS]
+
+
+def _millions(rate: float) -> str:
+    return f"{rate / 1e6:.2f}" if rate < 1e7 else f"{rate / 1e6:.0f}"

@@ -1,0 +1,59 @@
+"""C# by Mono's compiler and runtime, optimised; what is compiled is a library."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill, make
+
+_COMPILER = ("mcs", "-langversion:6", "-optimize+", "-debug-")
+
+
+def _build(task: Task) -> tuple[str, ...]:
+    give = ", ".join(
+        f"{signal.field} = row[{place}]{' != 0.0' if signal.is_bool else ''}"
+        for place, signal in enumerate(task.signals)
+    )
+    generated = f"Tltl.{task.name}_monitor"
+    for who, pass_, types in (
+        ("generated", "Generated", (generated, f"{generated}.Result", f"{generated}.Signals")),
+        ("by_hand", "ByHandPass", ("ByHand.Monitor", "ByHand.Result", "ByHand.Signals")),
+    ):
+        monitor, result, signals = types
+        tokens = {"who": who, "monitor": monitor, "result": result, "signals": signals, "give": give}
+        fill(DRIVERS / "csharp/Pass.cs", task, **tokens, **{"pass": pass_})
+        (task.folder / "Pass.cs").replace(task.folder / f"{pass_}.cs")
+    sources = ("Generated.cs", "ByHandPass.cs", *_generated(task), *_by_hand(task))
+    make(task, *_COMPILER, "-out:driver.exe", str(DRIVERS / "csharp/Driver.cs"), *sources)
+    return ("mono", "driver.exe")
+
+
+def _compiled(task: Task) -> Mapping[str, Mapping[str, int]]:
+    found: dict[str, Mapping[str, int]] = {}
+    for who, sources in (("generated", _generated(task)), ("by_hand", _by_hand(task))):
+        make(task, *_COMPILER, "-target:library", f"-out:{who}.dll", *sources)
+        found[who] = {"mcs, library": (task.folder / f"{who}.dll").stat().st_size}
+    return found
+
+
+def _generated(task: Task) -> tuple[str, ...]:
+    return (f"{task.name}_monitor.cs",)
+
+
+def _by_hand(task: Task) -> tuple[str, ...]:
+    return tuple(str(BY_HAND / f"csharp/{file}.cs") for file in ("Common", task.name))
+
+
+ENGINES = (
+    Engine(
+        name="csharp",
+        title="C#, Mono",
+        target="csharp",
+        version=("mono", "--version"),
+        sources=("{name}_monitor.cs",),
+        comments=("//",),
+        build=_build,
+        compiled=_compiled,
+        tools=("mcs", "mono"),
+    ),
+)

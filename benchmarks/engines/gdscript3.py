@@ -1,0 +1,42 @@
+"""GDScript by Godot 3, which speaks for Godot 4, too; the scripts are compiled when they are loaded."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+
+from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill
+
+# The engine takes no locale C, and asks for a project.
+_COMMAND = 'LANG=en exec godot3-server --path . -s driver.gd "$@"'
+
+
+def _build(task: Task) -> tuple[str, ...]:
+    give = "\n".join(
+        f"\t\tsample.{signal.field} = row[{place}]{' != 0.0' if signal.is_bool else ''}"
+        for place, signal in enumerate(task.signals)
+    )
+    fill(DRIVERS / "gdscript3/driver.gd", task, spec=task.name, give=give)
+    for file in ("common", task.name):
+        shutil.copy(BY_HAND / f"gdscript3/{file}.gd", task.folder)
+    (task.folder / "project.godot").touch()
+    return ("bash", "-c", _COMMAND, "driver")
+
+
+def _compiled(_: Task) -> Mapping[str, Mapping[str, int]]:
+    return {}
+
+
+ENGINES = (
+    Engine(
+        name="gdscript3",
+        title="GDScript, Godot 3",
+        target="gdscript3",
+        version=("godot3-server", "--version"),
+        sources=("{name}_monitor.gd",),
+        comments=("#",),
+        build=_build,
+        compiled=_compiled,
+        tools=("godot3-server", "bash"),
+    ),
+)

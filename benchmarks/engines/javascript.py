@@ -1,0 +1,36 @@
+"""JavaScript by Node; nothing is compiled beforehand."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+from benchmarks.engines.engine import BY_HAND, DRIVERS, Engine, Task, fill
+
+
+def _build(task: Task) -> tuple[str, ...]:
+    give = ", ".join(
+        f"{json.dumps(signal.name)}: row[{place}]{' !== 0' if signal.is_bool else ''}"
+        for place, signal in enumerate(task.signals)
+    )
+    fill(DRIVERS / "javascript/driver.mjs", task, spec=task.name, by_hand=str(BY_HAND / "javascript"), give=give)
+    return ("node", "driver.mjs")
+
+
+def _compiled(_: Task) -> Mapping[str, Mapping[str, int]]:
+    return {}
+
+
+ENGINES = (
+    Engine(
+        name="javascript",
+        title="JavaScript, Node",
+        target="javascript",
+        version=("node", "--version"),
+        sources=("{name}_monitor.mjs",),
+        comments=("//", "/*", "*"),
+        build=_build,
+        compiled=_compiled,
+        tools=("node",),
+    ),
+)

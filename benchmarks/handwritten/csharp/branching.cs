@@ -1,0 +1,125 @@
+// Branching: three switches in order, then the exit behind an open barrier, alive throughout; 600 steps.
+
+namespace ByHand
+{
+    using System;
+
+    public struct Signals
+    {
+        public double distance_s1;
+        public double distance_s2;
+        public double distance_s3;
+        public double distance_e_right;
+        public double distance_e_left;
+        public bool open_right;
+        public bool open_left;
+        public double health;
+    }
+
+    /// <summary>States 0, 1 and 3 wait for a switch, 4 for an exit, 5 is out, 2 is dead.</summary>
+    public sealed class Monitor : Episode
+    {
+        private const int Trap = 2;
+        private const int Exits = 4;
+        private const int Goal = 5;
+        private const int Limit = 600;
+        private static readonly string[] Atoms = {"near(s1)", "near(s2)", "near(s3)"};
+
+        private static readonly string[] Labels =
+        {
+            "F(near(s1) & X F(near(s2) & X F(near(s3) & X F(open_right & near(e_right) | open_left & near(e_left))))) & G alive",
+            "F(near(s2) & X F(near(s3) & X F(open_right & near(e_right) | open_left & near(e_left)))) & G alive",
+            "false",
+            "F(near(s3) & X F(open_right & near(e_right) | open_left & near(e_left))) & G alive",
+            "F(open_right & near(e_right) | open_left & near(e_left)) & G alive",
+            "G alive",
+        };
+
+        private static readonly Verdict[] Verdicts =
+        {
+            Verdict.Pending, Verdict.Pending, Verdict.Violated, Verdict.Pending, Verdict.Pending, Verdict.Holding
+        };
+
+        private static readonly int[] Switch = {0, 1, -1, 2, -1, -1};
+        private static readonly int[] Next = {1, 3, -1, 4, -1, -1};
+
+        public Monitor(double levelSize = 20.0) : base(levelSize)
+        {
+        }
+
+        /// <summary>Take one sample; throws, and the state stays, where a signal is not finite.</summary>
+        public Result Step(Signals signals)
+        {
+            Check("distance(s1)", signals.distance_s1);
+            Check("distance(s2)", signals.distance_s2);
+            Check("distance(s3)", signals.distance_s3);
+            Check("distance(e_right)", signals.distance_e_right);
+            Check("distance(e_left)", signals.distance_e_left);
+            Check("health", signals.health);
+            double alive = Math.Min(Math.Max(signals.health, 0.0), 1.0);
+            var result = new Result();
+            double progress = 0.0;
+            if (State == Trap)
+            {
+                result.Robustness = 1.0;
+            }
+            else if (alive <= 0.0)
+            {
+                State = Trap;
+            }
+            else if (State == Goal)
+            {
+                result.Robustness = alive;
+                progress = 1.0;
+            }
+            else if (State == Exits)
+            {
+                double rightOpen = signals.open_right ? 1.0 : -1.0, rightNear = Near(signals.distance_e_right);
+                double leftOpen = signals.open_left ? 1.0 : -1.0, leftNear = Near(signals.distance_e_left);
+                double right = Math.Min(rightOpen, rightNear);
+                double left = Math.Min(leftOpen, leftNear);
+                double nearest = Math.Max(right, left);
+                if (nearest > 0.0)
+                {
+                    State = Goal;
+                    result.Robustness = Math.Min(nearest, alive);
+                    progress = 1.0;
+                }
+                else
+                {
+                    result.Robustness = Math.Min(-nearest, alive);
+                    progress = (4.0 + nearest) / 4.0;
+                    if (right >= left) result.Limiting = rightOpen <= rightNear ? "open_right" : "near(e_right)";
+                    else result.Limiting = leftOpen <= leftNear ? "open_left" : "near(e_left)";
+                }
+            }
+            else
+            {
+                int number = Switch[State];
+                double distance = number == 0 ? signals.distance_s1
+                    : number == 1 ? signals.distance_s2 : signals.distance_s3;
+                double closeness = Near(distance);
+                if (closeness > 0.0)
+                {
+                    State = Next[State];
+                    result.Robustness = Math.Min(closeness, alive);
+                    progress = (number + 1) / 4.0;
+                }
+                else
+                {
+                    result.Robustness = Math.Min(-closeness, alive);
+                    result.Limiting = Atoms[number];
+                    progress = (number + 1.0 + closeness) / 4.0;
+                }
+            }
+            result.Accepting = State == Goal;
+            result.Reward = Advance(progress, State == Trap, State == Trap || State == Goal, Limit);
+            result.State = State;
+            result.Label = Labels[State];
+            result.Verdict = Verdicts[State];
+            result.Done = Done;
+            result.Progress = Progress;
+            return result;
+        }
+    }
+}

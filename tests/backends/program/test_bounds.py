@@ -1,0 +1,180 @@
+"""What is said to be sure of numbers is true of all that a monitor can meet."""
+
+from __future__ import annotations
+
+import math
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from tests.backends.program.interpreter import NoValueError, Scope
+from tests.backends.strategies import expressions
+from tltlc import compile_file
+from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.backends.program.arithmetic import Arithmetic, defined
+from tltlc.backends.program.bounds import FINITE, Range, proven, within
+from tltlc.backends.program.build import program
+from tltlc.backends.program.tree import Statement
+from tltlc.backends.program.uses import called
+from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.logic import formula as f
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+ROOT = Path(__file__).resolve().parents[3]
+KNOWN = {"s1": within(0.0, None), "health": Range(0.0, 1.0), "size": Range(2.0, 1e4)}
+S1, HEALTH, SIZE = Signal("distance(s1)"), Signal("health"), Param("level_size")
+
+
+def of(expression: Expression) -> tuple[tuple[Statement, ...], tuple[Statement, ...], Range | None]:
+    """Statements as they come, the same with what is sure, and the range of the value."""
+    arithmetic = Arithmetic({"distance(s1)": "s1", "health": "health"}, {"level_size": "size"}, "t")
+    statements = arithmetic.assigned("value", expression)
+    written, range_ = proven("value", statements, KNOWN)
+    return defined("value", statements), defined("value", written), range_
+
+
+def quotient(x: Expression, y: Expression) -> Op:
+    return Op("/", (x, y))
+
+
+def less(x: Expression, y: Expression) -> Op:
+    return Op("-", (x, y))
+
+
+def run(statements: tuple[Statement, ...], s1: float, health: float, size: float) -> float | None:
+    scope = Scope({"s1": s1, "health": health, "size": size})
+    try:
+        scope.run(statements)
+    except NoValueError:
+        return None
+    return float(scope.values["value"])
+
+
+distances = st.floats(0.0, 20.0) | st.floats(0.0, allow_infinity=False) | st.sampled_from([0.0, 1.0, 2.0, 5e-324])
+shares = st.floats(0.0, 1.0) | st.sampled_from([0.0, 0.5, 1.0])
+sizes = st.floats(2.0, 20.0) | st.sampled_from([2.0, 1e4])
+way = When(
+    (
+        (Condition("<", (S1, Const(1.0))), less(Const(1.0), S1)),
+        (Condition("<", (S1, SIZE)), quotient(less(SIZE, S1), less(SIZE, Const(1.0)))),
+    ),
+    Const(-1.0),
+)
+
+
+@settings(max_examples=600, deadline=None)
+@given(expressions() | st.builds(quotient, expressions(), expressions()), distances, shares, sizes)
+@example(way, math.nextafter(2.0, 0.0), 0.0, 2.0)
+@example(way, 1.0, 0.0, 3.0)
+def test_values_are_the_same_and_in_their_range(expression: Expression, s1: float, health: float, size: float) -> None:
+    statements, written, range_ = of(expression)
+    # A division that is not sure would end the test.
+    value, right = run(written, s1, health, size), run(statements, s1, health, size)
+    assert value == right or (value is not None and right is not None and math.isnan(value) and math.isnan(right))
+    if range_ is not None and value is not None:
+        assert range_.low <= value <= range_.high
+
+
+@pytest.mark.parametrize(
+    ("expression", "range_"),
+    [
+        (S1, within(0.0, None)),
+        (less(Op("*", (Const(2.0), HEALTH)), Const(1.0)), Range(-1.0, 1.0)),
+        (quotient(S1, less(SIZE, Const(1.0))), Range(0.0, FINITE.high)),
+        (quotient(Const(1.0), HEALTH), None),
+        (Op("clamp", (quotient(S1, HEALTH), Const(-1.0), Const(1.0))), None),
+        (Op("clamp", (Op("*", (S1, S1)), Const(-1.0), Const(1.0))), Range(0.0, 1.0)),
+        (way, Range(-1.0, 1.0)),
+        (Op("^", (less(HEALTH, Const(1.0)), Const(2.0))), Range(0.0, 1.0)),
+        (less(Op("*", (S1, S1)), Op("*", (S1, S1))), None),
+        (Op("*", (Op("*", (S1, S1)), HEALTH)), None),
+        (Op("tanh", (S1,)), Range(-2.0, 2.0)),
+        (Op("abs", (less(HEALTH, Const(0.25)),)), Range(0.0, 0.75)),
+        (Op("exp", (HEALTH,)), None),
+    ],
+)
+def test_ranges(expression: Expression, range_: Range | None) -> None:
+    assert of(expression)[2] == range_
+
+
+def test_a_test_tells_of_what_it_compares() -> None:
+    bearing = Op("abs", (less(HEALTH, Const(0.5)),))
+    for test, sure in (
+        (Condition("<", (bearing, Const(0.25))), True),
+        (Condition("not", (Condition(">=", (bearing, Const(0.25))),)), True),
+        (Condition("and", (Condition(">", (S1, Const(3.0))), Condition("<=", (bearing, Const(0.25))))), True),
+        (Condition("or", (Condition(">", (S1, Const(3.0))), Condition("<=", (bearing, Const(0.25))))), False),
+        (Condition(">", (bearing, Const(0.25))), False),
+    ):
+        _, _, range_ = of(When(((test, Op("*", (Const(4.0), bearing))),), Const(0.0)))
+        assert range_ is not None
+        assert range_.low == 0.0
+        assert (range_.high <= 1.0) == sure
+
+
+def test_a_divisor_is_sure_only_where_the_test_holds() -> None:
+    for test in (Condition(">", (HEALTH, Const(0.0))), Condition(">=", (HEALTH, Const(1e-9)))):
+        _, written, _ = of(When(((test, quotient(S1, HEALTH)),), Const(0.0)))
+        assert "divide" not in called(written)
+        _, written, _ = of(When(((test, Const(0.0)),), quotient(S1, HEALTH)))
+        assert "divide" in called(written)
+
+
+def test_predicates_of_the_examples_are_sure() -> None:
+    for name in ("navigation", "cover_and_hide", "branching"):
+        for fspa in compile_file(ROOT / f"examples/{name}.tltl"):
+            made = program(fspa, [])
+            assert all(made.sure)
+            assert not any(called(value) & {"divide"} for value in made.values)
+
+
+@pytest.mark.parametrize("part", [Op("/", (Const(1.0), Signal("x"))), Op("exp", (Signal("x"),))])
+def test_what_has_no_value_in_a_test_is_not_sure(part: Expression) -> None:
+    """A sample is refused, whatever the branches give."""
+    value = When(((Condition(">", (part, Const(2.0))), Const(0.5)),), Const(-0.5))
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    signals = (spec.Signal("x", "number", None, None),)
+    assert program(replace(fspa, signals=signals, atoms=(spec.Atom("p", value),)), ()).sure == (False,)
+
+
+def test_where_atoms_are_computed() -> None:
+    formula = f.eventually(f.and_(f.atom("a"), f.next_(f.eventually(f.and_(f.atom("b"), f.atom("c"))))))
+    fspa = build(spec_from_formula(formula))
+    only_in = dict(zip((atom.name for atom in fspa.atoms), program(fspa, []).only_in, strict=True))
+    assert only_in == {"a": 0, "b": 1, "c": 1}
+    # An error or notice would be missed.
+    atoms = tuple(replace(atom, expression=Op("*", (Const(2.0), atom.expression))) for atom in fspa.atoms)
+    made = program(replace(fspa, atoms=atoms), [])
+    assert made.sure == (False,) * 3
+    assert made.only_in == (None,) * 3
+    # Atoms that exclude each other are compared at each step.
+    numbers = {atom.name: place for place, atom in enumerate(fspa.atoms)}
+    for group, left in (("bc", {"a": 0}), ("b", {"a": 0, "b": 1, "c": 1})):
+        made = program(replace(fspa, exclusive=(tuple(sorted(numbers[name] for name in group)),)), [])
+        assert {name: made.only_in[numbers[name]] for name in "abc"} == {**dict.fromkeys("abc"), **left}
+
+
+def test_what_no_state_reads_is_not_computed() -> None:
+    fspa = build(spec_from_formula(f.eventually(f.atom("a"))))
+    unread = replace(fspa, atoms=(*fspa.atoms, spec.Atom("more", Const(0.5))))
+    made = program(unread, [])
+    assert made.only_in == (0, -1)
+    assert made.values[1] == ()
+
+
+@pytest.mark.parametrize("depth", [30, 300])
+def test_deep_predicates_take_no_longer_than_they_are(depth: int) -> None:
+    expression: Expression = S1
+    for step in range(depth):
+        case = Condition("<", (S1, Const(float(step))))
+        expression = Op("+", (When(((case, expression),), Const(0.0)), HEALTH))
+    started = time.process_time()
+    with recursion_room():
+        _, _, range_ = of(expression)
+    assert range_ is not None
+    assert time.process_time() - started < 1.0

@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Runs monitors over the corpus in this folder, and says what they do otherwise than expected.
+
+    python check.py [--only CASE,CASE] COMMAND...
+
+COMMAND is how a monitor is started, word by word; ``{name}`` in it is the name of a case, and ``--full`` and a trace
+are added: ``python check.py node 'build/{name}_monitor.mjs'``.  It exits with 1 where anything differs.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+NUMBERS = ("progress", "reward", "robustness")
+OF_A_FILE = ("no sample", "missing signal", "bad cell")
+"""Errors that are those of the file: messages need not tell the step."""
+LONGEST_RUN_S = 60
+
+
+def main(words: Sequence[str]) -> int:
+    """Check each case of the index; 0, or 1 where something differs, 2 for wrong usage."""
+    only = words[1].split(",") if len(words) > 1 and words[0] == "--only" else None
+    command = words[2:] if only else words
+    if not command or command[0].startswith("-"):
+        print(__doc__, file=sys.stderr)
+        return 2
+    folder = Path(__file__).resolve().parent
+    index = json.loads((folder / "index.json").read_text(encoding="utf-8"))
+    traces = wrong = 0
+    for case in index["cases"]:
+        if only and case["name"] not in only:
+            continue
+        tolerance = 0.0 if case["exact"] else index["tolerance"]
+        for trace in case["traces"]:
+            traces += 1
+            found = list(of_trace(command, folder, case["name"], trace, tolerance))
+            wrong += bool(found)
+            for problem in found[:5]:
+                print(f"{trace['trace']}: {problem}")
+    print(f"{traces} traces, {wrong} of them not as expected")
+    return 1 if wrong or not traces else 0
+
+
+def of_trace(
+    command: Sequence[str], folder: Path, name: str, trace: Mapping[str, Any], tolerance: float
+) -> Iterator[str]:
+    """What a monitor does otherwise on one trace of the index."""
+    words = [word.replace("{name}", name) for word in command]
+    try:
+        done = subprocess.run([*words, "--full", folder / trace["trace"]], capture_output=True, timeout=LONGEST_RUN_S)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        yield str(error)
+        return
+    with (folder / trace["expected"]).open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    out, err = (text.decode(errors="replace") for text in (done.stdout, done.stderr))
+    yield from differences(done.returncode, out, err, rows, trace["warnings"], trace["error"], tolerance)
+
+
+def differences(
+    status: int,
+    out: str,
+    err: str,
+    rows: Sequence[Sequence[str]],
+    warnings: int,
+    error: Mapping[str, Any] | None,
+    tolerance: float,
+) -> Iterator[str]:
+    """What is otherwise than expected in an exit status, standard output and standard error.
+
+    ``rows`` begin with the header; ``error`` has a kind, a step and names, as in the index.
+    """
+    wanted = 1 if error else 0
+    if status != wanted:
+        yield f"exit status {status}, not {wanted}: {err}"
+    yield from _in_rows(out, rows, tolerance)
+    yield from _in_words(err, warnings, error)
+
+
+def _in_rows(out: str, rows: Sequence[Sequence[str]], tolerance: float) -> Iterator[str]:
+    """Cell by cell; where the first sample is refused, the header may be missing."""
+    columns, *wanted = rows
+    printed: list[Sequence[str]] = [*csv.reader(io.StringIO(out, newline=""), strict=True)]
+    header, *found = printed or [columns]
+    if list(header) != list(columns):
+        yield f"the header is {header}"
+    if (printed or wanted) and len(found) != len(wanted):
+        yield f"{len(found)} rows, not {len(wanted)}"
+    for number, (row, right) in enumerate(zip(found, wanted), start=1):  # noqa: B905 (counted above)
+        if len(row) != len(right):
+            yield f"row {number} has {len(row)} cells: {row}"
+            continue
+        for place, column in enumerate(columns):
+            cell, its = row[place], right[place]
+            if cell != its and not (column in NUMBERS and _is_near(cell, its, tolerance)):
+                yield f"row {number}: {column} is {cell!r}, not {its!r}"
+
+
+def _is_near(cell: str, wanted: str, tolerance: float) -> bool:
+    try:
+        return tolerance > 0.0 and abs(float(cell) - float(wanted)) <= tolerance
+    except ValueError:
+        return False
+
+
+def _in_words(err: str, warnings: int, error: Mapping[str, Any] | None) -> Iterator[str]:
+    """In standard error: a line for an error that names what is to blame, and one for each warning."""
+    lines = err.splitlines()
+    errors = [line for line in lines if line.startswith("error: ")]
+    if error is None:
+        count = sum(line.startswith("warning: ") for line in lines)
+        if errors or count != warnings:
+            yield f"{count} warnings, not {warnings}: {err}"
+    elif len(errors) != 1:
+        yield f"{len(errors)} errors in: {err}"
+    else:
+        if error["kind"] not in OF_A_FILE and not errors[0].startswith(f"error: step {error['step']}: "):
+            yield f"an error at step {error['step']}, not: {errors[0]}"
+        for name in error["names"]:
+            if not re.search(rf"(?<!\w){re.escape(name)}(?!\w)", errors[0]):
+                yield f"the error does not name {name}: {errors[0]}"
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
