@@ -57,3 +57,11 @@ def test_a_folder_stays_the_same_whatever_is_written_into_it(tmp_path: Path) -> 
     before = stamp(str(tmp_path))
     (tmp_path / "a").touch()
     assert before is not None and stamp(str(tmp_path)) == before
+
+
+def test_notes_within_notes(tmp_path: Path) -> None:
+    with noted() as outer:
+        with noted():
+            pass
+        exists(tmp_path)
+    assert [*outer] == [str(tmp_path)]

@@ -37,7 +37,7 @@ def noted() -> Iterator[dict[str, Stamp]]:
     try:
         yield notes
     finally:
-        _noted.remove(notes)
+        _noted.pop()
 
 
 def note(path: str | os.PathLike[str]) -> None:

@@ -8,13 +8,14 @@ import platform
 import re
 import shutil
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.backends.monitors import FAR, HEAD, Outcome, Sample, batches, expected, one_atom, trace_of
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
@@ -22,9 +23,10 @@ from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
+from tltlc.conformance.corpus import CASES
 from tltlc.expression import Condition, Const, Expression, Op, Signal, When
 from tltlc.logic import formula as f
-from tltlc.monitor import Monitor, MonitorError
+from tltlc.monitor import Monitor
 from tltlc.record import replace
 from tltlc.resolve import spec
 
@@ -33,21 +35,9 @@ STRICT = (
     *("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wfloat-conversion", "-Werror"),
     *("-fsanitize=address,undefined", "-fno-sanitize-recover=all"),
 )
-HEADER = ["step", "state", "verdict", "accepting", "done", "progress", "reward", "robustness", "limiting"]
 
 pytestmark = pytest.mark.skipif(not (shutil.which("gcc") and shutil.which("g++")), reason="there is no C compiler here")
 compilers = pytest.mark.parametrize("compiler", COMPILERS)
-batches = settings(
-    max_examples=2,
-    deadline=None,
-    derandomize=True,
-    phases=(Phase.generate,),
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture],
-)
-
-Sample = Mapping[str, float]
-Outcome = tuple[int, str, str]
-"""Exit status, standard output, standard error."""
 
 
 def header_of(fspa: Fspa) -> str:
@@ -84,34 +74,6 @@ def compiled(folder: Path, compiler: str, source: str, path: Path, *options: str
     command = [*COMPILERS[compiler], *STRICT, *options, source, "-o", str(path), "-lm"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-
-
-def trace_of(samples: Sequence[Sample], names: Sequence[str]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text)
-    writer.writerow([*names, "unused"])
-    writer.writerows([*(repr(sample[name]) for name in names), "-"] for sample in samples)
-    return text.getvalue()
-
-
-def expected(fspa: Fspa, samples: Sequence[Sample]) -> Outcome:
-    """What the program is to print."""
-    monitor, text, status, errors = Monitor(fspa), io.StringIO(), 0, ""
-    rows = csv.writer(text, lineterminator="\n")
-    for sample in samples:
-        try:
-            step = monitor.step(sample)
-        except MonitorError as error:
-            status, errors = 1, f"error: {error.diagnostics[0].title}\n"
-            break
-        if monitor.steps == 1:
-            rows.writerow(HEADER)
-        flags = ["true" if flag else "false" for flag in (step.accepting, step.done)]
-        figures = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
-        limiting = "" if step.limiting is None else step.limiting.replace("\0", "")
-        rows.writerow([monitor.steps, step.state, step.verdict, *flags, *figures, limiting])
-    warnings = "".join(f"warning: {notice.title}\n" for notice in monitor.notices)
-    return status, text.getvalue(), errors + warnings
 
 
 def check(programs: Programs, traces: Sequence[Sequence[Sample]]) -> None:
@@ -171,11 +133,6 @@ def test_the_same_values_of_atoms(compiler: str, tmp_path: Path, data: st.DataOb
         rows = data.draw(st.lists(st.tuples(numbers, numbers), min_size=3, max_size=3))
         traces.append([dict(zip(SIGNALS, row, strict=True)) for row in rows])
     check(Programs(tmp_path, compiler, fspas), traces)
-
-
-def one_atom(expression: Expression, *signals: spec.Signal) -> Fspa:
-    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
-    return replace(fspa, signals=signals, atoms=(spec.Atom("p", expression),), params=())
 
 
 @compilers
@@ -273,6 +230,33 @@ def test_hostile_names_stay_apart(compiler: str, tmp_path: Path) -> None:
     assert [row["limiting"] for row in csv.DictReader(io.StringIO(out, newline=""))] == names
 
 
+MACROS = ("M_PI", "M_E", "MAXFLOAT", "EXIT_SUCCESS", "FD_SETSIZE", "L_tmpnam", "FP_ILOGB0", "RAND_MAX", "EDOM", "PI")
+
+
+@compilers
+def test_names_of_macros(compiler: str, tmp_path: Path) -> None:
+    """Whatever the headers define that a monitor includes, on this machine, and some of engines."""
+    includes = "".join(f"{line}\n" for line in header_of(cover_and_hide()).splitlines() if line.startswith("#include"))
+    (tmp_path / "includes.h").write_text(includes)
+    found = set(MACROS)
+    for standard in ("-std=gnu17", "-std=c99") if compiler == "gcc" else ("-std=gnu++17", "-std=c++17"):
+        command = [*COMPILERS[compiler], standard, "-dM", "-E", "includes.h"]
+        text = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+        found |= set(re.findall(r"^#define ([A-Za-z]\w*) ", text, re.MULTILINE))
+    names = sorted(found)
+    fspa = replace(
+        build(spec_from_formula(f.eventually(f.atom("p")))),
+        name="all",
+        signals=tuple(spec.Signal(name, "number", -1.0, 1.0) for name in names),
+        atoms=(spec.Atom("p", Op("min", tuple(map(Signal, names)))),),
+    )
+    text = header_of(fspa)
+    assert not [name for name in names if f"double {name};" in text]
+    (tmp_path / "all_monitor.h").write_text(text)
+    for options in ((), ("-DTLTL_MAIN",), ("-DTLTL_MAIN", "-std=gnu++17" if compiler == "g++" else "-std=gnu17")):
+        compiled(tmp_path, compiler, "all_monitor.h", tmp_path / "all", "-c", *options)
+
+
 def test_names_of_headers_do_not_clash() -> None:
     """That of no spec with one ending is that of another spec with another ending."""
     found = set(re.findall(r"\bZ_(\w+)", header_of(replace(cover_and_hide(), name="Z"))))
@@ -310,6 +294,9 @@ int main(void) {
     cover_and_hide_monitor monitor;
     cover_and_hide_params params = cover_and_hide_defaults();
     params.level_size = 1.0;
+    printf("%d ", cover_and_hide_init(&monitor, &params));
+    told(&monitor);
+    params.level_size = -HUGE_VAL;
     printf("%d ", cover_and_hide_init(&monitor, &params));
     told(&monitor);
     params.level_size = 10.0;
@@ -357,7 +344,8 @@ def test_library(compiler: str, tmp_path: Path) -> None:
         "0 1",
     ]
     lines = [
-        "0 6|the param `level_size` cannot have that value: its range is [2, 10000]|the para",
+        "0 6|the param `level_size` cannot be 1: its range is [2, 10000]|the para",
+        "0 6|the param `level_size` cannot be -inf: its range is [2, 10000]|the para",
         "1 0||",
         *rows,
         *rows,
@@ -379,9 +367,43 @@ def test_products_and_sums_are_not_fused(tmp_path: Path) -> None:
         assert not re.search(r"\bvfn?m(add|sub)", text)
 
 
-# --- as a program ---------------------------------------------------------------------------------
+HOSTED = ("cover_and_hide", "exclusive_many", "by_zero", "no_root", "power_of_zero", "too_large", "names_of_code")
+HOST = r"""
+#include "@_monitor.h"
 
-FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
+double judged_@(@_monitor *monitor, const @_signals *samples, int count);
+
+double judged_@(@_monitor *monitor, const @_signals *samples, int count) {
+    double sum = 0.0;
+    for (int i = 0; i < count; i++) {
+        @_result result;
+        if (!@_step(monitor, &samples[i], &result)) continue;
+        sum += result.reward + result.robustness;
+        if (result.done) return sum + result.progress + result.state;
+    }
+    return sum;
+}
+"""
+
+
+@compilers
+@pytest.mark.parametrize("level", ["-O2", "-O3", "-Os"])
+def test_no_warnings_where_compilers_look_closest(compiler: str, level: str, tmp_path: Path) -> None:
+    """A result is used only where a step was taken, which optimizers must see, lest they warn."""
+    hosts, programs = "", "#define TLTL_MAIN\n"
+    for name in HOSTED:
+        (tmp_path / f"{name}_monitor.h").write_text(header_of(CASES[name]().fspa))
+        hosts += HOST.replace("@", name)
+        programs += f'#define main main_of_{name}\n#include "{name}_monitor.h"\n#undef main\n'
+    (tmp_path / "hosts.c").write_text(hosts)
+    (tmp_path / "programs.c").write_text(programs)
+    for source in ("hosts.c", "programs.c"):
+        command = [*COMPILERS[compiler], "-Wall", "-Wextra", "-Werror", level, "-c", source, "-o", "object.o"]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+
+# --- as a program ---------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -422,16 +444,31 @@ def test_ways_to_write_a_trace(program: Path, trace: bytes) -> None:
     assert ran(program, "--full", "-", stdin=trace) == expected(cover_and_hide(), [FAR])
 
 
-HEAD = "health,distance(s1),distance(s2),distance(exit)\n"
-
-
 @pytest.mark.parametrize(
     ("trace", "arguments", "status", "message"),
     [
         ("", ["-"], 1, "error: the trace holds no sample\n"),
         ("\n\n", ["-"], 1, "error: the trace holds no sample\n"),
         (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
-        ("health\n1\n", ["-"], 1, "error: the trace has no column for `distance(s1)`\n"),
+        (
+            "health,distance(s1)\n1\n",
+            ["-"],
+            1,
+            "error: the trace has no column for `distance(s2)` and `distance(exit)`\n",
+        ),
+        (
+            "distance(exit)\n1\n",
+            ["-"],
+            1,
+            "error: the trace has no column for `distance(s1)`, `distance(s2)` and `health`\n",
+        ),
+        ("health,distance(s1),distance(s2)\n1\n", ["-"], 1, "error: the trace has no column for `distance(exit)`\n"),
+        (
+            '{"health": 1}\n',
+            ["-"],
+            1,
+            "error: the trace is JSON, and this program reads CSV: `tltlc monitor` takes both\n",
+        ),
         (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
         (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
         (f"{HEAD}x,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `x`, no number\n"),

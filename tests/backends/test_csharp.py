@@ -16,8 +16,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.backends.monitors import FAR, HEAD, Outcome, batches, expected, trace_of
 from tests.backends.strategies import hostile_automata
-from tests.backends.test_c import FAR, HEAD, NAMES, Outcome, batches, expected, trace_of
+from tests.backends.test_c import NAMES
 from tests.conformance.runners.csharp import STRICT, assembled
 from tests.fixtures import cover_and_hide
 from tltlc.automaton.build import build, spec_from_formula
@@ -109,6 +110,8 @@ internal static class Library
         var given = Monitor.Params.Defaults;
         given.level_size = 1.0;
         try { new Monitor(given); } catch (ArgumentException problem) { Console.WriteLine(problem.Message); }
+        given.level_size = double.NegativeInfinity;
+        try { new Monitor(given); } catch (ArgumentException problem) { Console.WriteLine(problem.Message); }
         given.level_size = 10.0;
         var monitor = new Monitor(given);
         for (int round = 0; round < 2; round++)
@@ -161,6 +164,7 @@ def test_library(tmp_path: Path) -> None:
     ]
     lines = [
         "the param `level_size` cannot be 1: its range is [2, 10000]",
+        "the param `level_size` cannot be -inf: its range is [2, 10000]",
         *rows,
         *rows,
         "step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
@@ -237,7 +241,7 @@ internal sealed class Game : Tltl.cover_and_hide_monitor_behaviour
         game.FixedUpdate();
         game.signals.health = 0.0;
         game.FixedUpdate();
-        game.FixedUpdate();
+        System.Console.WriteLine(game.Step());
         System.Console.WriteLine(game.Result.Verdict);
         game.OnEnable();
         System.Console.WriteLine(game.Monitor.Steps);
@@ -252,6 +256,13 @@ internal sealed class Game : Tltl.cover_and_hide_monitor_behaviour
             game.signals.distance_exit = button == 2 ? 0.5 : 20.0;
             game.FixedUpdate();
         }
+        // What comes behind the end changes nothing more.
+        game.signals.health = 0.0;
+        System.Console.WriteLine(game.Step());
+        System.Console.WriteLine(game.Result.Verdict);
+        // What the last episode was given is forgotten.
+        game.Restart();
+        System.Console.WriteLine(game.Step());
         game.parameters.level_size = 0.0;
         game.Restart();
         System.Console.WriteLine(game.Step());
@@ -268,8 +279,9 @@ def test_the_component_for_unity(tmp_path: Path) -> None:
     lines = [
         *("False", "error: step 1: no finite number for the signal `distance(s1)`", "False"),
         "warning: step 1: the signal `health` is 2, outside [0, 1]: it counts as 1",
-        *("progress 0.33", "violated", "done", "Violated"),
-        *("4", "0", "progress 0.33", "progress 0.67", "progress 1.00", "success", "done"),
+        *("progress 0.33", "violated", "done", "False", "Violated"),
+        *("3", "0", "progress 0.33", "progress 0.67", "progress 1.00", "success", "done", "False", "Holding"),
+        *("error: step 1: no finite number for the signal `distance(s1)`", "False"),
         *("error: the param `level_size` cannot be 0: its range is [2, 10000]", "False"),
     ]
     assert ran(tmp_path, "game.exe") == (0, "".join(f"{line}\n" for line in lines), "")
@@ -323,7 +335,7 @@ def test_public_members_have_comments(tmp_path: Path) -> None:
     (tmp_path / "game.cs").write_text(f"#pragma warning disable 1591\n{UNITY}")
     sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
     compiled(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
-    assert "In [0, 1]." in (tmp_path / "game.xml").read_text()
+    assert "A ratio in [0, 1]." in (tmp_path / "game.xml").read_text()
 
 
 @pytest.mark.parametrize(
@@ -331,7 +343,25 @@ def test_public_members_have_comments(tmp_path: Path) -> None:
     [
         ("", ["-"], 1, "error: the trace holds no sample\n"),
         (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
-        ("health\n1\n", ["-"], 1, "error: the trace has no column for `distance(s1)`\n"),
+        (
+            "health,distance(s1)\n1\n",
+            ["-"],
+            1,
+            "error: the trace has no column for `distance(s2)` and `distance(exit)`\n",
+        ),
+        (
+            "distance(exit)\n1\n",
+            ["-"],
+            1,
+            "error: the trace has no column for `distance(s1)`, `distance(s2)` and `health`\n",
+        ),
+        ("health,distance(s1),distance(s2)\n1\n", ["-"], 1, "error: the trace has no column for `distance(exit)`\n"),
+        (
+            '{"health": 1}\n',
+            ["-"],
+            1,
+            "error: the trace is JSON, and this program reads CSV: `tltlc monitor` takes both\n",
+        ),
         (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
         (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
         (f"{HEAD}0x1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `0x1`, no number\n"),

@@ -130,7 +130,7 @@ def test_nothing_ends_a_comment_of_the_types(tmp_path: Path) -> None:
     fspa = cover_and_hide()
     signals = (*fspa.signals[:3], replace(fspa.signals[3], doc="*/ export const x = 1; /*"))
     text = written(replace(fspa, signals=signals), tmp_path).with_suffix(".d.mts").read_text()
-    assert "/** * / export const x = 1; /* */\n  health: number;" in text
+    assert "/** * / export const x = 1; /* A ratio in [0, 1]. */\n  health: number;" in text
 
 
 # --- numbers --------------------------------------------------------------------------------------
@@ -351,6 +351,7 @@ ERRORS = [
     ("", ["-"], 1, "error: the trace holds no sample\n"),
     (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
     ("health,distance(s1)\n1\n", ["-"], 1, "error: the trace has no column for `distance(s2)` and `distance(exit)`\n"),
+    ('{"health": 1}\n', ["-"], 1, "error: the trace is JSON, and this program reads CSV: `tltlc monitor` takes both\n"),
     (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
     (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
     (f"{HEAD}0x1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `0x1`, no number\n"),

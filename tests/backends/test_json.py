@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import sys
 import unicodedata
 
 import pytest
@@ -45,6 +46,13 @@ def test_hostile_texts_are_read_as_they_were_written(fspa: Fspa) -> None:
     assert not [
         character for character in text if character != "\n" and unicodedata.category(character) in ("Cc", "Cf")
     ]
+
+
+def test_whatever_does_not_show_is_escaped() -> None:
+    unseen = [chr(code) for code in range(sys.maxunicode + 1) if unicodedata.category(chr(code)) in ("Cc", "Cf", "Cs")]
+    text = emitted(replace(cover_and_hide(), doc="".join(unseen)))
+    assert not {*text} & {*unseen} - {"\n"}
+    assert all(f"\\u{ord(character):04x}" in text for character in unseen if "\x7f" < character <= "\uffff")
 
 
 @settings(max_examples=60, deadline=None)

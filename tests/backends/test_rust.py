@@ -14,8 +14,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.backends.monitors import FAR, HEAD, Outcome, batches, expected, one_atom, trace_of
 from tests.backends.strategies import hostile_automata
-from tests.backends.test_c import FAR, HEAD, NAMES, Outcome, batches, expected, one_atom, trace_of
+from tests.backends.test_c import NAMES
 from tests.conformance.runners.rust import STRICT, linked
 from tests.fixtures import cover_and_hide
 from tltlc.automaton.build import build, spec_from_formula
@@ -171,6 +172,14 @@ def test_without_the_standard_library(tmp_path: Path, edition: str) -> None:
     compiled(tmp_path, "--crate-type", "lib", "--cfg", "tltl_no_std", "bare.rs", edition=edition)
 
 
+def test_a_sample_of_which_nothing_is_read(tmp_path: Path) -> None:
+    fspa = one_atom(Const(0.5), spec.Signal("open", "bool", 0.0, 1.0))
+    fspa = replace(fspa, name="blind", atoms=(replace(fspa.atoms[0], doc="Of each sample.  The same."),))
+    written(fspa, tmp_path)
+    (tmp_path / "alone.rs").write_text("pub mod blind_monitor;\n")
+    compiled(tmp_path, "--crate-type", "lib", "--emit", "metadata", "alone.rs")
+
+
 @pytest.mark.skipif(not shutil.which("rustdoc"), reason="there is no rustdoc here")
 @pytest.mark.parametrize("text", ["~~~ " + "x " * 60, "``` " + "x " * 60, "```", "~~~", "<script>alert(1)</script>"])
 def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
@@ -247,7 +256,25 @@ def test_ways_to_write_a_trace(program: Path, trace: bytes) -> None:
         ("", ["-"], 1, "error: the trace holds no sample\n"),
         ("\n\n", ["-"], 1, "error: the trace holds no sample\n"),
         (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
-        ("health\n1\n", ["-"], 1, "error: the trace has no column for `distance(s1)`\n"),
+        (
+            "health,distance(s1)\n1\n",
+            ["-"],
+            1,
+            "error: the trace has no column for `distance(s2)` and `distance(exit)`\n",
+        ),
+        (
+            "distance(exit)\n1\n",
+            ["-"],
+            1,
+            "error: the trace has no column for `distance(s1)`, `distance(s2)` and `health`\n",
+        ),
+        ("health,distance(s1),distance(s2)\n1\n", ["-"], 1, "error: the trace has no column for `distance(exit)`\n"),
+        (
+            '{"health": 1}\n',
+            ["-"],
+            1,
+            "error: the trace is JSON, and this program reads CSV: `tltlc monitor` takes both\n",
+        ),
         (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
         (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
         (f"{HEAD}x,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `x`, no number\n"),

@@ -117,10 +117,42 @@ def test_a_change_to_one_spec_changes_its_files_alone(tltlc, inside: Path) -> No
     assert done.err.splitlines()[-1] == f"{len(before) - len(changed)} files have not changed"
 
 
+def test_several_files(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    (inside / "seek.tltl").write_text("signal seen: bool\nspec seek = F seen\n")
+    done = tltlc("compile", "hide.tltl", "seek.tltl", "-o", "out", "-t", "json")
+    assert (done.status, done.err) == (0, "wrote out/hide.fspa.json\nwrote out/seek.fspa.json\n")
+    (inside / "seek.tltl").write_text("spec seek = F sen\n")
+    (inside / "hide.tltl").write_text("spec hide = G sen\n")
+    done = tltlc("compile", "hide.tltl", "seek.tltl", "-o", "other")
+    assert done.status == 1 and done.err.count("error[TLT0201]") == 2
+    assert not (inside / "other").exists()
+
+
+def test_several_files_with_one_spec_of_the_same_name(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    (inside / "again.tltl").write_text("signal seen: bool\nspec hide = F seen\n")
+    done = tltlc("compile", "hide.tltl", "again.tltl", "-t", "json")
+    assert done.status == 2
+    assert "`again.tltl` and a file before it both make `hide.fspa.json`: compile them apart, with -o" in done.err
+    assert sorted(path.name for path in inside.iterdir()) == ["again.tltl", "hide.tltl"]
+
+
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [("C#", "csharp"), ("cpp", "c"), ("js", "javascript"), ("godot", "gdscript"), ("pyton", "python")],
+)
+def test_targets_by_other_names(said: str, meant: str, tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    done = tltlc("compile", "hide.tltl", "-t", said)
+    assert (done.status, done.err) == (
+        2,
+        f"error[TLT0710]: there is no target `{said}`\n  help: did you mean `{meant}`?\n",
+    )
+
+
 def test_two_targets_that_write_the_same_file(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     done = tltlc("compile", "hide.tltl", "-t", "gdscript,gdscript3")
     assert done.status == 2
-    assert "`gdscript` and `gdscript3` both write `hide_monitor.gd`: give each its own -o" in done.err
+    said = "`gdscript` and `gdscript3` both write `hide_monitor.gd`: ask for one, with -t, and for the other with"
+    assert f"{said} an -o of its own" in done.err
     assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
 
 

@@ -107,11 +107,27 @@ def test_errors_are_shown_and_waited_out(watching: Watching, inside: Path) -> No
     assert watching.end() == 130
 
 
+def test_two_specs_that_come_to_have_one_name_are_waited_out(inside: Path) -> None:
+    for name in "ab":
+        (inside / f"{name}.tltl").write_text(f"signal seen: bool\nspec {name} = F seen\n")
+    running = Watching("a.tltl", "b.tltl", "-o", "out", "-t", "json")
+    try:
+        running.said()
+        _replace(inside / "b.tltl", "signal seen: bool\nspec a = F seen\n")
+        assert "error[TLT0700]: `b.tltl` and a file before it both make `a.fspa.json`" in running.said()
+        _replace(inside / "b.tltl", "signal seen: bool\nspec b = G seen\n")
+        assert "wrote out/b.fspa.json\n" in running.said()
+    finally:
+        running.end()
+
+
 def test_what_cannot_be_mended_by_a_change_ends_it(process, inside: Path) -> None:  # type: ignore[no-untyped-def]
     done = process("compile", "hide.tltl", "--watch", "-t", "pythn")
     assert (done.status, done.err.splitlines()[0]) == (2, "error[TLT0710]: there is no target `pythn`")
     done = process("compile", "-", "--watch")
     assert (done.status, done.err.splitlines()[0]) == (
         2,
-        "error[TLT0700]: --watch takes a file: standard input does not change",
+        "error[TLT0700]: --watch takes files: standard input does not change",
     )
+    done = process("compile", ".", "--watch")
+    assert (done.status, done.err.splitlines()[0]) == (3, "error[TLT0001]: cannot read `.`: it is a folder")

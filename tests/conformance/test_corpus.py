@@ -11,6 +11,8 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import get_args
 
+import pytest
+
 from tests.cli.conftest import ROOT
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
@@ -93,6 +95,23 @@ def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     assert done.stdout.endswith(f"{count} traces, 1 of them not as expected\n")
     assert done.stdout.startswith("ranges/ranges.1.csv: ")
     assert subprocess.run(command[:2], cwd=tmp_path, capture_output=True).returncode == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["no-such-program", "{name}"], "cannot start `no-such-program {name}`: "),
+        ([sys.executable, "monitor.py"], "the command holds no {name}"),
+        (["--only", "cells,rang", sys.executable, "{name}"], "no case is called `rang`; there are ranges"),
+    ],
+)
+def test_what_the_check_refuses(words: list[str], message: str, tmp_path: Path) -> None:
+    write_files(tmp_path, {name: text for name, text in files().items() if name in ("check.py", "index.json")})
+    command = [sys.executable, "check.py", *words]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"error: {message}")
+    assert done.stderr.count("\n") == 1
 
 
 def test_cases_without_functions_of_the_library_are_exact() -> None:

@@ -29,6 +29,10 @@ def found(out: str, err: str, status: int, expected: Expected, folder: Path, tol
     ("out", "err", "status", "tolerance", "right"),
     [
         (f"{HEADER}\n{ROW}\n", "", 0, 0.0, True),
+        (f"{HEADER}\r\n{ROW}\r\n", "", 0, 0.0, True),
+        (f"Engine v3\n\n{HEADER}\n{ROW}\n", "", 0, 0.0, True),
+        (f"Engine v3\n\n{HEADER}\n{HEADER}\n{ROW}\n", "", 0, 0.0, False),
+        (f"Engine v3\n\n{ROW}\n", "", 0, 0.0, False),
         (f"{HEADER}\n{ROW}\n".replace("0001,", "0002,"), "", 0, 0.0, False),
         (f"{HEADER}\n{ROW}\n".replace("0001,", "0002,"), "", 0, 1e-12, True),
         (f"{HEADER}\n{ROW}\n".replace("0.5", "0.50001"), "", 0, 1e-12, False),
@@ -65,7 +69,7 @@ def test_errors(out: str, err: str, status: int, right: bool, tmp_path: Path) ->
 
 
 def test_the_header_may_be_missing_before_a_refused_first_sample(tmp_path: Path) -> None:
-    for out in ("", f"{HEADER}\n"):
+    for out in ("", f"{HEADER}\n", "Engine v3\n\n"):
         assert not found(out, "error: no sample", 1, Expected((), Refusal("no sample", 1), 0), tmp_path)
 
 

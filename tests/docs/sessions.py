@@ -12,7 +12,7 @@ from tests.docs.blocks import ROOT
 
 ANYTHING = "…"
 _PART = re.compile(
-    r"^```(?:toml|tltl|hoa|cpp|cs|js|lua|rs)\n(?P<text>(?:#|//|/\*|--) (?P<new>\w+\.\w+)(?: \*/)?\n.*?)^```$"
+    r"^```(?:toml|tltl|hoa|cpp|cs|gdscript|js|lua|rs)\n(?P<text>(?:#|//|/\*|--) (?P<new>\w+\.\w+)(?: \*/)?\n.*?)^```$"
     r"|^```console\n(?P<session>.*?)^```$"
     r"|^<!-- in (?P<file>\S+): (?P<edit>.*?) -->$",
     re.DOTALL | re.MULTILINE,

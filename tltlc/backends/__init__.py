@@ -26,11 +26,15 @@ DEFAULT_TARGETS = ("json", "dot", "python")
 
 @record
 class Target:
-    """What a target is: its name (that of its module), a title for listings, how its files' names end."""
+    """What a target is: its name (that of its module), a title for listings, how its files' names end.
+
+    ``known_as`` are other words that people look for it by, in lower case.
+    """
 
     name: str
     title: str
     endings: tuple[str, ...]
+    known_as: tuple[str, ...] = ()
 
 
 def _ignore(_: Diagnostic) -> None:
@@ -95,6 +99,7 @@ def _unknown(name: str) -> Diagnostic:
     from difflib import get_close_matches
 
     known = targets()
-    near = get_close_matches(name, known, n=1)
+    near = [each for each in known if name.lower() in (each, *target(each).known_as)]
+    near = near or get_close_matches(name, known, n=1)
     way_out = f"did you mean `{near[0]}`?" if near else f"there are: {', '.join(known)}"
     return Diagnostic("TLT0710", f"there is no target `{name}`", help=way_out)

@@ -8,7 +8,7 @@ message may name either, since C leaves open which operand comes first.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import reduce
 from textwrap import wrap
 
@@ -16,21 +16,21 @@ from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.code.names import visible
-from tltlc.backends.program import judge, states
+from tltlc.backends.program import judge, pieces, states
 from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
-from tltlc.backends.program.printer import Printer, remark
+from tltlc.backends.program.printer import Printer
 from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import Assign, Int
+from tltlc.backends.program.tree import FAILING, Assign, Int
 from tltlc.backends.program.uses import called, read
 from tltlc.monitor.samples import range_text
 from tltlc.resolve.spec import Atom, Param, Signal
 
-TARGET = Target("c", "a stand-alone monitor in C and C++", ("_monitor.h",))
+TARGET = Target(
+    "c", "a stand-alone monitor in C and C++, also for Unreal", ("_monitor.h",), ("c++", "cpp", "h", "unreal")
+)
 
 _INDENT = Printer.INDENT
-_FAILING = {"divide", "sqrt", "power", "exp"}
-"""Functions that may have no value."""
 
 _WORDS = """
     auto bool break case char const constexpr continue default do double else enum extern false float for goto if
@@ -58,6 +58,38 @@ _LIBRARY = """
     index rindex size_t ptrdiff_t offsetof tolower toupper isspace errno assert complex imaginary I main
 """.split()
 
+# What the same headers define as macros, on Linux, Windows and macOS; the last ones are codes of errors.
+_CONSTANTS = """
+    BIG_ENDIAN LITTLE_ENDIAN PDP_ENDIAN BYTE_ORDER EXIT_FAILURE EXIT_SUCCESS FD_SETSIZE NFDBITS FILENAME_MAX
+    FOPEN_MAX TMP_MAX RAND_MAX MB_CUR_MAX MAXFLOAT FP_ILOGB0 FP_ILOGBNAN FP_LLOGB0 FP_LLOGBNAN FP_INT_DOWNWARD
+    FP_INT_TONEAREST FP_INT_TONEARESTFROMZERO FP_INT_TOWARDZERO FP_INT_UPWARD FP_FAST_FMA FP_FAST_FMAF
+    FP_FAST_FMAL FP_QNAN FP_SNAN FP_SUPERNORMAL L_ctermid L_cuserid L_tmpnam P_tmpdir MATH_ERREXCEPT MATH_ERRNO
+    math_errhandling RENAME_EXCHANGE RENAME_NOREPLACE RENAME_WHITEOUT RENAME_SECLUDE RENAME_SWAP RENAME_EXCL
+    SEEK_DATA SEEK_HOLE TLTL_MAIN WCONTINUED WEXITED WNOHANG WNOWAIT WSTOPPED WUNTRACED WCOREFLAG
+    E2BIG EACCES EADDRINUSE EADDRNOTAVAIL EADV EAFNOSUPPORT EAGAIN EALREADY EAUTH EBADARCH EBADE EBADEXEC EBADF
+    EBADFD EBADMACHO EBADMSG EBADR EBADRPC EBADRQC EBADSLT EBFONT EBUSY ECANCELED ECHILD ECHRNG ECOMM ECONNABORTED
+    ECONNREFUSED ECONNRESET EDEADLK EDEADLOCK EDESTADDRREQ EDEVERR EDOM EDOTDOT EDQUOT EEXIST EFAULT EFBIG EFTYPE
+    EHOSTDOWN EHOSTUNREACH EHWPOISON EIDRM EILSEQ EINPROGRESS EINTR EINVAL EIO EISCONN EISDIR EISNAM EKEYEXPIRED
+    EKEYREJECTED EKEYREVOKED EL2HLT EL2NSYNC EL3HLT EL3RST ELAST ELIBACC ELIBBAD ELIBEXEC ELIBMAX ELIBSCN ELNRNG
+    ELOOP EMEDIUMTYPE EMFILE EMLINK EMSGSIZE EMULTIHOP ENAMETOOLONG ENAVAIL ENEEDAUTH ENETDOWN ENETRESET
+    ENETUNREACH ENFILE ENOANO ENOATTR ENOBUFS ENOCSI ENODATA ENODEV ENOENT ENOEXEC ENOKEY ENOLCK ENOLINK ENOMEDIUM
+    ENOMEM ENOMSG ENONET ENOPKG ENOPOLICY ENOPROTOOPT ENOSPC ENOSR ENOSTR ENOSYS ENOTBLK ENOTCONN ENOTDIR
+    ENOTEMPTY ENOTNAM ENOTRECOVERABLE ENOTSOCK ENOTSUP ENOTTY ENOTUNIQ ENXIO EOPNOTSUPP EOTHER EOVERFLOW
+    EOWNERDEAD EPERM EPFNOSUPPORT EPIPE EPROCLIM EPROCUNAVAIL EPROGMISMATCH EPROGUNAVAIL EPROTO EPROTONOSUPPORT
+    EPROTOTYPE EPWROFF EQFULL ERANGE EREMCHG EREMOTE EREMOTEIO ERESTART ERFKILL EROFS ERPCMISMATCH ESHLIBVERS
+    ESHUTDOWN ESOCKTNOSUPPORT ESPIPE ESRCH ESRMNT ESTALE ESTRPIPE ETIME ETIMEDOUT ETOOMANYREFS ETXTBSY EUCLEAN
+    EUNATCH EUSERS EWOULDBLOCK EXDEV EXFULL
+""".split()
+
+# Those that systems have once for each type of numbers.
+_NUMBERS = """
+    HUGE_VAL SNAN M_E M_LOG2E M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2
+""".split()
+_ENDINGS = (
+    *("", "f", "l", "F", "L"),
+    *(f"{sign}{size}" for sign in ("f", "F", "_F") for size in ("32", "64", "128", "32x", "64x", "32X", "64X")),
+)
+
 # What headers of systems and engines define beside it: windows.h, X11, Qt, macOS, Unreal, gcc's own.
 _MACROS = """
     near far NEAR FAR min max small hyper interface pascal cdecl CDECL PASCAL IN OUT OPTIONAL CONST VOID ERROR DELETE
@@ -72,6 +104,8 @@ _MACROS = """
 _RESERVED = (
     *_WORDS,
     *(f"{name}{kind}" for name in _LIBRARY for kind in ("", "f", "l")),
+    *_CONSTANTS,
+    *(f"{name}{ending}" for name in _NUMBERS for ending in _ENDINGS),
     *_MACROS,
     *("monitor", "sample", "result", "states", "none"),
 )
@@ -92,8 +126,7 @@ class _C(Printer):
 
     def comment(self, text: str) -> list[str]:
         """Remarks in ASCII, since compilers differ in how they read others, and without trigraphs."""
-        lines = remark(re.sub(r"[^\x00-\x7f]", _escaped, visible(text)).replace("??", "? ?"))
-        return [f"// {line}" for line in lines]
+        return super().comment(re.sub(r"[^\x00-\x7f]", _escaped, visible(text)).replace("??", "? ?"))
 
     def assignment(self, statement: Assign) -> str:
         """The limiting atom is given by its name."""
@@ -106,7 +139,7 @@ class _C(Printer):
         """What may have no value notes that in the monitor."""
         if function in ("abs", "tanh"):
             return super().call({"abs": "fabs"}.get(function, function), arguments)
-        noting = ["monitor"] if function in _FAILING else []
+        noting = ["monitor"] if function in FAILING else []
         return super().call(f"{self._prefix}_{function}_", [*noting, *arguments])
 
 
@@ -117,22 +150,22 @@ class _Source:
         self._fspa, self._file, self._prefix = fspa, file, fspa.name
         self._program = program(fspa, _RESERVED)
         self._printer = _C(fspa.name, fspa.atoms)
-        self._explained = {""}
 
     def text(self) -> str:
         """The whole file."""
         fspa, made = self._fspa, self._program
         signals = list(zip(fspa.signals, made.signals, strict=True))
         params = list(zip(fspa.params, made.params, strict=True))
-        failing = called(statement for value in made.values for statement in value) & _FAILING
+        failing = made.functions & FAILING
         present = [*failing, *(["note"] if failing else []), *([] if all(made.sure) else ["atom"])]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
-        present += ["exclusive"] if fspa.exclusive else []
+        present += ["exclusive"] if made.exclusive else []
+        present += ["params"] if fspa.params else []
         with recursion_room():
-            step = "\n".join(f"{_INDENT}{line}" if line else "" for line in self._step())
-        pieces = {
+            step = _C.block(self._step())
+        places = {
             "p": self._prefix,
-            "title": "\n".join(self._title()),
+            "title": pieces.title(fspa, self._printer.comment),
             "file": self._file,
             "signal_count": str(len(signals)),
             "atom_count": str(len(fspa.atoms)),
@@ -145,38 +178,30 @@ class _Source:
             "signal_names": _list([_string(signal.name) for signal in fspa.signals], '""'),
             "atom_names": _list([_string(atom.name) for atom in fspa.atoms], '""'),
             "labels": _list([_string(state.label.ascii) for state in fspa.states], '""'),
-            "signal_defaults": _block(
+            "signal_defaults": _C.block(
                 [f"sample.{name} = {'false' if signal.type == 'bool' else 'HUGE_VAL'};" for signal, name in signals]
                 or ["sample.none = false;"]
             ),
-            "param_defaults": _block(
-                [f"params.{name} = {self._number(param.value)};" for param, name in params] or ["params.none = false;"]
+            "param_defaults": _C.block(
+                [f"params.{name} = {pieces.number(param.value)};" for param, name in params] or ["params.none = false;"]
             ),
-            "param_checks": _block([line for place in range(len(params)) for line in self._param_check(place)]),
-            "param_reasons": _list([_string(_param_reason(param)) for param in fspa.params], '""'),
+            "param_checks": _C.block([line for place in range(len(params)) for line in self._param_check(place)]),
+            "param_names": _list([_string(param.name) for param in fspa.params], '""'),
+            "param_ranges": _list([_string(range_text(param.low, param.high)) for param in fspa.params], '""'),
             "members": _list(
                 [f"{{{group}, {atom}}}" for group, atoms in enumerate(fspa.exclusive) for atom in atoms], "{0, 0}"
             ),
             "states": "\n".join(self._states()),
             "step": step,
-            "give": _block(self._give()),
+            "give": _C.block(self._give()),
         }
-        return filled("monitor.h.txt", pieces, present)
-
-    def _title(self) -> list[str]:
-        """The first comment: what the spec is called, what it is for, its formula."""
-        fspa = self._fspa
-        title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
-        about = [self._printer.comment(text) for text in (title, fspa.doc)]
-        about.append([line.replace("// ", "//     ", 1) for line in self._printer.comment(fspa.formula.ascii)])
-        parts = ["\n".join(lines) for lines in about if lines]
-        return ["\n//\n".join(parts)]
+        return filled("monitor.h.txt", places, present)
 
     def _text_size(self) -> int:
         """Room for any message, of which the one of an exclusive group is longest: it names atoms twice."""
         atoms = sum(2 * len(_bytes(atom.name)) + 12 for atom in self._fspa.atoms)
         signals = max((len(_bytes(signal.name)) for signal in self._fspa.signals), default=0)
-        params = max((len(_bytes(_param_reason(param))) for param in self._fspa.params), default=0)
+        params = max((len(_bytes(param.name)) for param in self._fspa.params), default=0)
         return 200 + max(atoms, signals, params)
 
     # --- records ----------------------------------------------------------------------------------
@@ -188,32 +213,34 @@ class _Source:
         """The fields of a struct, each under its name in the spec and what is said of it; C wants one at least."""
         lines: list[str] = []
         for name, type_, of in fields:
-            texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
-            remarks = self._printer.comment(": ".join(texts))
+            remarks = self._printer.comment(pieces.described(name, of))
             field = f"{type_} {name};"
             # A short remark stands behind its field.
             if len(remarks) == 1 and len(field) + len(remarks[0]) < 100:
                 lines.append(f"{field}    {remarks[0]}")
             else:
                 lines += [*remarks, field]
-        return _block(lines or ["bool none;"])
-
-    def _number(self, value: float | None, otherwise: str = "") -> str:
-        return otherwise if value is None else repr(float(value))
+        return _C.block(lines or ["bool none;"])
 
     def _param_check(self, place: int) -> list[str]:
         param, name = self._fspa.params[place], f"params->{self._program.params[place]}"
         tests = [f"isfinite({name})"]
-        tests += [] if param.low is None else [f"{name} >= {self._number(param.low)}"]
-        tests += [] if param.high is None else [f"{name} <= {self._number(param.high)}"]
-        refusal = f"return {self._prefix}_refuse_(monitor, {self._prefix}_wrong_param, {place});"
-        return [f"if (!({' && '.join(tests)})) {refusal}"]
+        tests += [] if param.low is None else [f"{name} >= {pieces.number(param.low)}"]
+        tests += [] if param.high is None else [f"{name} <= {pieces.number(param.high)}"]
+        lines = self._refused(f"{self._prefix}_wrong_param", place)
+        # The value, for the message.
+        lines.insert(0, f"{_INDENT}monitor->wrong = {name};")
+        return [f"if (!({' && '.join(tests)})) {{", *lines, "}"]
+
+    def _refused(self, problem: str, place: int) -> list[str]:
+        """The inside of a branch; what it returns stands there, so that compilers see what callers may rely on."""
+        call = f"{self._prefix}_refuse_(monitor, {problem}, {place});"
+        return [f"{_INDENT}{line}" for line in (call, "return false;")]
 
     def _states(self) -> list[str]:
         lines: list[str] = []
-        for state in self._fspa.states:
-            ends = state.verdict in ("satisfied", "violated") or (self._fspa.judge == "goal" and state.accepting)
-            values = (f"{self._prefix}_{state.verdict}", _bool(state.accepting), _bool(ends))
+        for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
+            values = (f"{self._prefix}_{state.verdict}", pieces.boolean(state.accepting), pieces.boolean(ends))
             lines.append(f"{_INDENT * 2}{{{', '.join(values)}}},")
         return lines
 
@@ -234,12 +261,11 @@ class _Source:
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        parts = [self._read(), self._compute(), self._check(), self._move(), self._judge()]
-        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Signals in their range, and params, in variables of their own."""
-        used = read(statement for value in self._program.values for statement in value)
+        used = self._program.used
         signals = list(enumerate(zip(self._fspa.signals, self._program.signals, strict=True)))
         lines: list[str] = []
         for _, (signal, name) in signals:
@@ -262,7 +288,7 @@ class _Source:
         tests = self._usual([(signal, name) for _, signal, name in numbers])
         lines = _wrapped(f"if (!({' && '.join(tests)})) {{")
         for place, signal, name in numbers:
-            low, high = self._number(signal.low, "-HUGE_VAL"), self._number(signal.high, "HUGE_VAL")
+            low, high = pieces.number(signal.low, "-HUGE_VAL"), pieces.number(signal.high, "HUGE_VAL")
             lines.append(f"{_INDENT}{name} = {self._prefix}_read_(monitor, {place}, {low}, {high}, {name});")
             lines.append(f"{_INDENT}if (monitor->problem) return false;")
         return [*lines, "}"]
@@ -280,15 +306,15 @@ class _Source:
         for signal, name in numbers:
             low, high = signal.low, signal.high
             if low is not None and high is not None:
-                bounded += [f"{name} >= {self._number(low)}", f"{name} <= {self._number(high)}"]
+                bounded += [f"{name} >= {pieces.number(low)}", f"{name} <= {pieces.number(high)}"]
                 continue
             summed.append(name)
             if low is not None:
                 least.setdefault(low, []).append(name)
             if high is not None:
                 greatest.setdefault(high, []).append(name)
-        tests = [f"{self._fold('min', names)} >= {self._number(low)}" for low, names in least.items()]
-        tests += [f"{self._fold('max', names)} <= {self._number(high)}" for high, names in greatest.items()]
+        tests = [f"{self._fold('min', names)} >= {pieces.number(low)}" for low, names in least.items()]
+        tests += [f"{self._fold('max', names)} <= {pieces.number(high)}" for high, names in greatest.items()]
         tests += [f"isfinite({' + '.join(summed)})"] if summed else []
         return tests + bounded
 
@@ -298,7 +324,7 @@ class _Source:
     def _compute(self) -> list[str]:
         """The values of the atoms that are computed at each step."""
         made = self._program
-        places = [place for place, only in enumerate(made.only_in) if only is None]
+        places = made.computed_in(None)
         lines = [line for place in places for line in self._value(place)]
         for place in places:
             name = made.atoms[place]
@@ -309,26 +335,22 @@ class _Source:
         return lines
 
     def _value(self, place: int) -> list[str]:
-        """The value of an atom, explained where no other atom was explained so before."""
-        atom, statements = self._fspa.atoms[place], self._program.values[place]
-        lines = self._printer.comment(atom.name if atom.doc in self._explained else f"{atom.name}: {atom.doc}")
-        self._explained.add(atom.doc)
+        """The value of an atom."""
+        statements = self._program.values[place]
+        lines = self._printer.comment(self._program.remarks[place])
         lines += self._printer.lines(defined(self._program.atoms[place], statements))
-        if called(statements) & _FAILING:
-            refusal = f"return {self._prefix}_refuse_(monitor, monitor->problem, {place});"
-            lines.append(f"if (monitor->problem) {refusal}")
+        if called(statements) & FAILING:
+            lines += ["if (monitor->problem) {", *self._refused("monitor->problem", place), "}"]
         return lines
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
-        for place, group in enumerate(self._fspa.exclusive):
+        for place, group in self._program.exclusive:
             tests = {atom: f"{self._program.atoms[atom]} > 0.0" for atom in group}
-            if len(group) > 1:
-                lines.append(f"if ({' + '.join(f'({test})' for test in tests.values())} > 1) {{")
-                lines += [f"{_INDENT}monitor->holding[{atom}] = {test};" for atom, test in tests.items()]
-                lines.append(f"{_INDENT}return {self._prefix}_refuse_(monitor, {self._prefix}_together, {place});")
-                lines.append("}")
+            lines.append(f"if ({' + '.join(f'({test})' for test in tests.values())} > 1) {{")
+            lines += [f"{_INDENT}monitor->holding[{atom}] = {test};" for atom, test in tests.items()]
+            lines += [*self._refused(f"{self._prefix}_together", place), "}"]
         return lines
 
     def _move(self) -> list[str]:
@@ -341,8 +363,8 @@ class _Source:
             # A brace, since declarations may follow.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
             lines.append(f"{_INDENT}case {state.id}: {{")
-            for place, only in enumerate(self._program.only_in):
-                lines += [f"{_INDENT * 2}{line}" for line in (self._value(place) if only == state.id else ())]
+            for place in self._program.computed_in(state.id):
+                lines += [f"{_INDENT * 2}{line}" for line in self._value(place)]
             lines += self._printer.lines(statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]
@@ -377,20 +399,11 @@ def _bytes(text: str) -> bytes:
 
 def _string(text: str) -> str:
     """A string literal in ASCII; question marks are escaped, as two begin a trigraph."""
-    characters = [chr(byte) if 32 <= byte < 127 else f"\\{byte:03o}" for byte in _bytes(text.replace("\\", "\\\\"))]
-    return '"' + "".join(characters).replace('"', '\\"').replace("?", "\\?") + '"'
+    return pieces.quoted(text, _octal, pieces.in_ascii).replace("?", "\\?")
 
 
-def _param_reason(param: Param) -> str:
-    return f"the param `{param.name}` cannot have that value: its range is {range_text(param.low, param.high)}"
-
-
-def _bool(value: bool) -> str:
-    return "true" if value else "false"
-
-
-def _block(lines: Iterable[str]) -> str:
-    return "\n".join(f"{_INDENT}{line}" for line in lines)
+def _octal(character: str) -> str:
+    return "".join(f"\\{byte:03o}" for byte in _bytes(character))
 
 
 def _wrapped(line: str) -> list[str]:
@@ -399,10 +412,5 @@ def _wrapped(line: str) -> list[str]:
 
 
 def _list(items: Sequence[str], otherwise: str) -> str:
-    """The items between braces: on one line where they are short, else on lines of their own."""
-    line = ", ".join(items or [otherwise])
-    if len(line) <= 60:
-        return line
-    if all(len(item) < 12 for item in items):
-        items = [wrapped.rstrip(",") for wrapped in wrap(line, 100)]
-    return "\n" + "".join(f"{_INDENT * 2}{item},\n" for item in items) + _INDENT
+    """The items between braces, which hold one at least."""
+    return _C.items(items or [otherwise], depth=1)

@@ -6,28 +6,29 @@ It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with it
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from textwrap import wrap
+from collections.abc import Sequence
 
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.program import judge, states
+from tltlc.backends.program import judge, pieces, states
 from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer, remark
 from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import Assign, Binary, Comment, If, Statement, Variable
+from tltlc.backends.program.tree import FAILING, Assign, Binary, Comment, If, Statement, Variable
 from tltlc.backends.program.uses import called, read
 from tltlc.monitor.samples import range_text
 from tltlc.resolve.spec import Param, Signal
 
-TARGET = Target("csharp", "a stand-alone monitor in C#, also for Unity", ("_monitor.cs", "_monitor_behaviour.cs"))
+TARGET = Target(
+    "csharp",
+    "a stand-alone monitor in C#, also for Unity",
+    ("_monitor.cs", "_monitor_behaviour.cs"),
+    ("c#", "cs", "unity"),
+)
 
 _INDENT = Printer.INDENT
-_FAILING = {"divide", "sqrt", "power", "exp"}
-"""Functions that may have no value."""
-
 _FUNCTIONS = {
     "divide": "Divide",
     "sqrt": "Sqrt",
@@ -98,26 +99,22 @@ class _Source:
         self._fspa, self._file = fspa, file
         self._program = program(fspa, [*_WORDS, *_TEMPLATE])
         self._printer = _CSharp()
-        # The first atom of each predicate is where that is explained.
-        first = {atom.doc: place for place, atom in reversed([*enumerate(fspa.atoms)]) if atom.doc}
-        self._explained = {*first.values()}
 
     def text(self) -> str:
         """The whole file."""
         fspa, made = self._fspa, self._program
         signals = list(zip(fspa.signals, made.signals, strict=True))
         params = list(zip(fspa.params, made.params, strict=True))
-        computed = called(statement for value in made.values for statement in value)
-        present: list[str] = [*computed, *called(statement for state in made.states for statement in state)]
-        present += ["note"] if computed & _FAILING else []
-        present += ["exclusive"] if fspa.exclusive else []
+        present: list[str] = [*made.functions, *called(statement for state in made.states for statement in state)]
+        present += ["note"] if made.functions & FAILING else []
+        present += ["exclusive"] if made.exclusive else []
         present += [] if all(made.sure) else ["keep"]
         present += ["inlined"] if {"divide", "min", "max"} & {*present} else []
         with recursion_room():
-            step = _block(self._step(), 3)
-        pieces = {
+            step = _CSharp.block(self._step(), 3)
+        places = {
             "p": fspa.name,
-            "title": "\n".join(self._title()),
+            "title": pieces.title(fspa, self._printer.comment),
             "file": self._file,
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "double", param) for param, name in params]),
@@ -125,31 +122,23 @@ class _Source:
             "atom_names": _list([_string(atom.name) for atom in fspa.atoms]),
             "largest_group": str(max(map(len, fspa.exclusive), default=0)),
             "groups": _list([f"new[] {{{', '.join(map(str, group))}}}" for group in fspa.exclusive]),
-            "signal_defaults": _block(
+            "signal_defaults": _CSharp.block(
                 [f"none.{name} = double.NaN;" for signal, name in signals if signal.type != "bool"], 5
             ),
-            "param_defaults": _block([f"own.{name} = {_number(param.value)};" for param, name in params], 5),
-            "param_checks": _block([line for param, name in params for line in _param_check(param, name)], 3),
-            "states": _block(self._states(), 3),
+            "param_defaults": _CSharp.block(
+                [f"own.{name} = {pieces.number(param.value)};" for param, name in params], 5
+            ),
+            "param_checks": _CSharp.block([line for param, name in params for line in _param_check(param, name)], 3),
+            "states": _CSharp.block(self._states(), 3),
             "step": step,
-            "give": _block(self._give(), 3),
+            "give": _CSharp.block(self._give(), 3),
         }
-        return filled("monitor.cs.txt", pieces, present)
-
-    def _title(self) -> list[str]:
-        """The first comment: what the spec is called, what it is for, its formula."""
-        fspa = self._fspa
-        title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
-        about = [self._printer.comment(text) for text in (title, fspa.doc)]
-        about.append([line.replace("// ", "//     ", 1) for line in self._printer.comment(fspa.formula.ascii)])
-        parts = ["\n".join(lines) for lines in about if lines]
-        return ["\n//\n".join(parts)]
+        return filled("monitor.cs.txt", places, present)
 
     def _states(self) -> list[str]:
         lines: list[str] = []
-        for state in self._fspa.states:
-            ends = state.verdict in ("satisfied", "violated") or (self._fspa.judge == "goal" and state.accepting)
-            values = (f"Verdict.{state.verdict.capitalize()}", _bool(state.accepting), _bool(ends))
+        for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
+            values = (f"Verdict.{state.verdict.capitalize()}", pieces.boolean(state.accepting), pieces.boolean(ends))
             lines.append(f"new Place({_string(state.label.ascii)}, {', '.join(values)}),")
         return lines
 
@@ -171,18 +160,20 @@ class _Source:
     # --- a step -----------------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        parts = [self._read(), self._compute(), self._check(), self._move(), self._judge()]
-        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Signals in their range, and params, in variables of their own."""
-        used = read(statement for value in self._program.values for statement in value)
+        used = self._program.used
         lines: list[str] = []
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 lines += [f"double {name} = sample.{name} ? 1.0 : 0.0;"] if name in used else []
                 continue
-            low, high = _number(signal.low, "double.NegativeInfinity"), _number(signal.high, "double.PositiveInfinity")
+            low, high = (
+                pieces.number(signal.low, "double.NegativeInfinity"),
+                pieces.number(signal.high, "double.PositiveInfinity"),
+            )
             # Of two infinities, neither is inside.
             above, below = ">" if signal.low is None else ">=", "<" if signal.high is None else "<="
             lines.append(f"double {name} = sample.{name};")
@@ -195,35 +186,29 @@ class _Source:
         """The atoms' values."""
         lines: list[str] = []
         kept: list[str] = []
-        for place, name in enumerate(self._program.atoms):
-            if self._program.only_in[place] is not None:
-                continue
+        for place in self._program.computed_in(None):
+            name = self._program.atoms[place]
             lines += self._printer.lines(self._value(place))
             if self._program.sure[place]:
                 continue
-            if called(self._program.values[place]) & _FAILING:
+            if called(self._program.values[place]) & FAILING:
                 lines.append(f"if (_problem != Problem.None) return Refuse(_problem, {place}, out result);")
             kept += _checked(f"{name} >= -1.0 && {name} <= 1.0", f"{name} = Keep({place}, {name});")
         return [*lines, *kept]
 
     def _value(self, place: int) -> tuple[Statement, ...]:
         """What gives an atom its value."""
-        atom, made = self._fspa.atoms[place], self._program
-        text = f"{atom.name}: {atom.doc}" if place in self._explained else atom.name
-        return (Comment(text), *defined(made.atoms[place], made.values[place]))
+        made = self._program
+        return (Comment(made.remarks[place]), *defined(made.atoms[place], made.values[place]))
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
-        for place, group in enumerate(self._fspa.exclusive):
-            holding = " + ".join(f"({self._program.atoms[atom]} > 0.0 ? 1 : 0)" for atom in group)
-            if len(group) > 1:
-                lines += [f"if ({holding} > 1)", "{"]
-                lines += [
-                    f"{_INDENT}_holding[{number}] = {self._program.atoms[atom]} > 0.0;"
-                    for number, atom in enumerate(group)
-                ]
-                lines += [f"{_INDENT}return Refuse(Problem.Together, {place}, out result);", "}"]
+        for place, group in self._program.exclusive:
+            names = [self._program.atoms[atom] for atom in group]
+            lines += [f"if ({' + '.join(f'({name} > 0.0 ? 1 : 0)' for name in names)} > 1)", "{"]
+            lines += [f"{_INDENT}_holding[{number}] = {name} > 0.0;" for number, name in enumerate(names)]
+            lines += [f"{_INDENT}return Refuse(Problem.Together, {place}, out result);", "}"]
         return lines
 
     def _move(self) -> list[str]:
@@ -242,8 +227,7 @@ class _Source:
 
     def _alone(self, state: int) -> list[Statement]:
         """The values of the atoms that nothing but this state needs."""
-        only_in = self._program.only_in
-        return [statement for place, only in enumerate(only_in) if only == state for statement in self._value(place)]
+        return [statement for place in self._program.computed_in(state) for statement in self._value(place)]
 
     def _judge(self) -> list[str]:
         """Progress, reward and the end of the episode."""
@@ -283,20 +267,14 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """The fields of a record, each under its name in the spec and what is said of it."""
     lines: list[str] = []
     for name, type_, of in fields:
-        texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
-        remarks = [_in_xml(line) for line in remark(": ".join(texts) or _kind(of))]
+        remarks = [_in_xml(line) for line in remark(pieces.described(name, of))]
         if len(remarks) == 1:
             lines.append(f"/// <summary>{remarks[0]}</summary>")
         else:
             lines += ["/// <summary>", *(f"/// {line}" for line in remarks), "/// </summary>"]
         lines += [f"public {type_} {name};", ""]
     # The line after the last field stays empty, too.
-    return _block(lines, 3)
-
-
-def _kind(of: Signal | Param) -> str:
-    """What is said of a signal or param of which the spec says nothing."""
-    return "True or false." if of.type == "bool" else f"In {range_text(of.low, of.high)}."
+    return _CSharp.block(lines, 3)
 
 
 def _in_xml(text: str) -> str:
@@ -305,40 +283,23 @@ def _in_xml(text: str) -> str:
 
 def _param_check(param: Param, name: str) -> list[str]:
     tests = [f"IsFinite(given.{name})"]
-    tests += [] if param.low is None else [f"given.{name} >= {_number(param.low)}"]
-    tests += [] if param.high is None else [f"given.{name} <= {_number(param.high)}"]
+    tests += [] if param.low is None else [f"given.{name} >= {pieces.number(param.low)}"]
+    tests += [] if param.high is None else [f"given.{name} <= {pieces.number(param.high)}"]
     parts = [f"the param `{param.name}` cannot be ", f": its range is {range_text(param.low, param.high)}"]
     message = f" + Shown(given.{name}) + ".join(map(_string, parts))
     return [f"if (!({' && '.join(tests)}))", "{", f"{_INDENT}throw new ArgumentException({message});", "}"]
 
 
-def _number(value: float | None, otherwise: str = "") -> str:
-    return otherwise if value is None else repr(float(value))
-
-
 def _string(text: str) -> str:
     """A string literal in ASCII."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(char if " " <= char < "\x7f" else _escape(ord(char)) for char in escaped) + '"'
+    return pieces.quoted(text, _escape, pieces.in_ascii)
 
 
-def _escape(code: int) -> str:
+def _escape(character: str) -> str:
+    code = ord(character)
     return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
 
 
-def _bool(value: bool) -> str:
-    return "true" if value else "false"
-
-
-def _block(lines: Iterable[str], depth: int) -> str:
-    return "\n".join(f"{_INDENT * depth}{line}" if line else "" for line in lines)
-
-
 def _list(items: Sequence[str]) -> str:
-    """The items between braces: on one line where they are short, else on lines of their own."""
-    line = ", ".join(items)
-    if len(line) <= 60:
-        return line
-    if all(len(item) < 12 for item in items):
-        items = [wrapped.rstrip(",") for wrapped in wrap(line, 100)]
-    return "\n" + "".join(f"{_INDENT * 3}{item},\n" for item in items) + _INDENT * 2
+    """The items between braces."""
+    return _CSharp.items(items, depth=2)

@@ -6,7 +6,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.godot.source import ENDINGS, Dialect, files
 
-TARGET = Target("gdscript", "a stand-alone monitor in GDScript, for Godot 4", ENDINGS)
+TARGET = Target("gdscript", "a stand-alone monitor in GDScript, for Godot 4", ENDINGS, ("gd", "godot", "godot4"))
 
 DIALECT = Dialect(
     version="godot4",

@@ -6,7 +6,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.godot.source import ENDINGS, Dialect, files
 
-TARGET = Target("gdscript3", "a stand-alone monitor in GDScript, for Godot 3", ENDINGS)
+TARGET = Target("gdscript3", "a stand-alone monitor in GDScript, for Godot 3", ENDINGS, ("godot3",))
 
 DIALECT = Dialect(
     version="godot3",

@@ -7,27 +7,28 @@ no ``exp``, ``tanh`` or power, else within 1e-12, since engines have functions o
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from itertools import combinations
 
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.code.names import visible
-from tltlc.backends.program import judge, states
+from tltlc.backends.program import judge, pieces, states
 from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer, remark
 from tltlc.backends.program.shallow import shallow
 from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import Assign, Compare, Declare, Expression, Int
+from tltlc.backends.program.tree import FAILING, Assign, Compare, Declare, Expression, Int
 from tltlc.backends.program.uses import called, read
-from tltlc.record import replace
+from tltlc.resolve.spec import Param, Signal
 
-TARGET = Target("javascript", "a stand-alone monitor in JavaScript", ("_monitor.mjs", "_monitor.d.mts"))
-
-_FAILING = {"divide", "sqrt", "power", "exp"}
-"""Functions that may have no value."""
+TARGET = Target(
+    "javascript",
+    "a stand-alone monitor in JavaScript, with types",
+    ("_monitor.mjs", "_monitor.d.mts"),
+    ("js", "mjs", "node", "ts", "typescript", "web"),
+)
 
 _LONGEST = 110
 
@@ -88,7 +89,7 @@ class _JavaScript(Printer):
         """A call of a function of numbers."""
         if function in self._built_in:
             function = f"Math.{function}"
-        return super().call(f"this.#{function}" if function in _FAILING else function, arguments)
+        return super().call(f"this.#{function}" if function in FAILING else function, arguments)
 
     def _written(self, node: Expression) -> tuple[str, int]:
         """Numbers are compared without conversions."""
@@ -114,28 +115,25 @@ class _Source:
         """The whole module."""
         fspa = self._fspa
         made = self._program
-        functions = called(statement for part in made.values for statement in part)
         with recursion_room():
-            step = _block(self._step(), depth=2)
-        present = [*functions, *(["failing"] if functions & _FAILING else []), *(["signal"] if fspa.signals else [])]
+            step = _JavaScript.block(self._step(), depth=2)
+        present: list[str] = [*made.functions, *(["failing"] if made.functions & FAILING else [])]
+        present += ["signal"] if fspa.signals else []
         present += [] if all(made.sure) else ["range"]
-        present += ["exclusive"] if "this.#together(" in step else []
+        present += ["exclusive"] if made.exclusive else []
         present += ["atom"] if {"failing", "range", "exclusive"} & {*present} else []
         present += ["some"] if fspa.signals or "atom" in present else []
         present += ["clamp"] if fspa.signals or "range" in present else []
-        present += ["params"] if "this.#params[" in step else []
-        pieces = {
-            "title": _title(fspa),
+        present += ["params"] if made.used & {*made.params} else []
+        places = {
+            "title": pieces.title(fspa, self._printer.comment),
             "file": self._module,
             "declarations": self._declarations,
-            "example": self._example(),
-            "signals": _list([_signal(signal.name, signal.type, signal.low, signal.high) for signal in fspa.signals]),
-            "params": _list(
-                [
-                    f"{{ name: {_string(param.name)}, value: {_number(param.value)}, {_range(param.low, param.high)} }}"
-                    for param in fspa.params
-                ]
+            "example": pieces.example(fspa.signals, _key, ": "),
+            "signals": _list(
+                [_row(signal, f"isBool: {pieces.boolean(signal.type == 'bool')}") for signal in fspa.signals]
             ),
+            "params": _list([_row(param, f"value: {_number(param.value)}") for param in fspa.params]),
             "atoms": _list([_string(atom.name) for atom in fspa.atoms]),
             # Where no atom reads a param, names are checked all the same.
             "params_kept": "this.#params = " if "params" in present else "",
@@ -143,46 +141,40 @@ class _Source:
             "states": _list(self._states()),
             "step": step,
         }
-        return filled("monitor.mjs.txt", pieces, present)
+        return filled("monitor.mjs.txt", places, present)
 
     def declarations(self) -> str:
         """The whole file of types."""
         fspa = self._fspa
         signals = [
-            (signal.name, "boolean | 0 | 1" if signal.type == "bool" else "number", signal.doc)
+            (
+                signal.name,
+                "boolean | 0 | 1" if signal.type == "bool" else "number",
+                pieces.described(signal.name, signal),
+            )
             for signal in fspa.signals
         ]
-        params = [(param.name, "number", param.doc) for param in fspa.params]
+        params = [(param.name, "number", pieces.described(param.name, param)) for param in fspa.params]
         title = f"// Types of {self._module}, written by tltlc."
-        pieces = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
+        places = {"title": title, "signal_fields": _fields(signals), "param_fields": _fields(params)}
         present = ["signals" if signals else "no_signals", "params" if params else "no_params"]
-        return filled("monitor.d.mts.txt", pieces, present)
-
-    def _example(self) -> str:
-        """A sample, as a call gives it."""
-        signals = self._fspa.signals
-        shown = [f"{_key(signal.name)}: {'true' if signal.type == 'bool' else '…'}" for signal in signals[:2]]
-        text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"
-        # It stands in a comment.
-        return visible(text) if len(text) <= 60 else "signals"
+        return filled("monitor.d.mts.txt", places, present)
 
     def _states(self) -> list[str]:
         rows: list[str] = []
-        for state in self._fspa.states:
-            ends = state.verdict in ("satisfied", "violated") or (self._fspa.judge == "goal" and state.accepting)
-            values = f'verdict: "{state.verdict}", accepting: {_bool(state.accepting)}, ends: {_bool(ends)}'
+        for state, ends in zip(self._fspa.states, map(pieces.boolean, self._program.ends), strict=True):
+            values = f'verdict: "{state.verdict}", accepting: {pieces.boolean(state.accepting)}, ends: {ends}'
             rows.append(f"{{ label: {_string(state.label.ascii)}, {values} }}")
         return rows
 
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        parts = [self._read(), self._compute(), self._check(), self._move(), self._judge()]
-        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Signals in their range, and params, in variables of their own."""
-        used = read(statement for value in self._program.values for statement in value)
+        used = self._program.used
         lines: list[str] = []
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             checked = f"this.#signal({place}, signals)"
@@ -210,35 +202,29 @@ class _Source:
 
     def _values(self, state: int | None) -> list[str]:
         """The values of the atoms that are computed in a state alone, or at each step."""
-        places = [place for place, only_in in enumerate(self._program.only_in) if only_in == state]
-        return [line for place in places for line in self._value(place)]
+        return [line for place in self._program.computed_in(state) for line in self._value(place)]
 
     def _value(self, place: int) -> list[str]:
-        """The value of one atom, explained where no atom before it says the same."""
-        atom, name, statements = self._fspa.atoms[place], self._program.atoms[place], self._program.values[place]
-        is_new = atom.doc and all(other.doc != atom.doc for other in self._fspa.atoms[:place])
-        lines = self._printer.comment(f"{atom.name}: {atom.doc}" if is_new else atom.name)
-        if called(statements) & _FAILING:
+        """The value of one atom."""
+        made, statements = self._program, self._program.values[place]
+        lines = self._printer.comment(made.remarks[place])
+        if called(statements) & FAILING:
             lines.append(f"this.#atom = {place};")
-        *before, last = defined(name, statements)
-        if self._program.sure[place] and isinstance(last, Declare):
-            last = replace(last, changes=False)
-        return [*lines, *self._printer.lines([*before, last])]
+        return [*lines, *self._printer.lines(defined(made.atoms[place], statements, changes=not made.sure[place]))]
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
-        for place, group in enumerate(self._fspa.exclusive):
-            if len(group) > 1:
-                names = [self._program.atoms[atom] for atom in group]
-                refusal = f"throw this.#together({place}, [{', '.join(names)}]);"
-                if len(names) <= _FEW:
-                    pairs = [f"{one} > 0 && {other} > 0" for one, other in combinations(names, 2)]
-                    tests = pairs if len(pairs) == 1 else [f"({pair})" for pair in pairs]
-                    lines += _branch(tests, refusal, "||")
-                else:
-                    *before, last = [f"({name} > 0 ? 1 : 0)" for name in names]
-                    lines += _branch([*before, f"{last} > 1"], refusal, "+")
+        for place, group in self._program.exclusive:
+            names = [self._program.atoms[atom] for atom in group]
+            refusal = f"throw this.#together({place}, [{', '.join(names)}]);"
+            if len(names) <= _FEW:
+                pairs = [f"{one} > 0 && {other} > 0" for one, other in combinations(names, 2)]
+                tests = pairs if len(pairs) == 1 else [f"({pair})" for pair in pairs]
+                lines += _branch(tests, refusal, "||")
+            else:
+                *before, last = [f"({name} > 0 ? 1 : 0)" for name in names]
+                lines += _branch([*before, f"{last} > 1"], refusal, "+")
         return lines
 
     def _move(self) -> list[str]:
@@ -273,14 +259,6 @@ class _Source:
 # --- pieces ---------------------------------------------------------------------------------------
 
 
-def _title(fspa: Fspa) -> str:
-    """The first comment: what the spec is called, what it is for, its formula."""
-    title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
-    about = [[f"// {line}" for line in remark(text)] for text in (title, fspa.doc)]
-    about.append([f"//     {line}" for line in remark(fspa.formula.ascii)])
-    return "\n//\n".join("\n".join(lines) for lines in about if lines)
-
-
 def _fields(fields: Sequence[tuple[str, str, str]]) -> str:
     """The fields of an interface, each behind what is said of it."""
     lines: list[str] = []
@@ -291,16 +269,13 @@ def _fields(fields: Sequence[tuple[str, str, str]]) -> str:
         elif said:
             lines += ["/**", *(f" * {line}" for line in said), " */"]
         lines.append(f"{_key(name)}: {type_};")
-    return _block(lines)
+    return _JavaScript.block(lines)
 
 
-def _signal(name: str, type_: str, low: float | None, high: float | None) -> str:
-    return f"{{ name: {_string(name)}, isBool: {_bool(type_ == 'bool')}, {_range(low, high)} }}"
-
-
-def _range(low: float | None, high: float | None) -> str:
-    least, greatest = ("-Infinity" if low is None else _number(low)), ("Infinity" if high is None else _number(high))
-    return f"low: {least}, high: {greatest}"
+def _row(of: Signal | Param, more: str) -> str:
+    least = "-Infinity" if of.low is None else _number(of.low)
+    greatest = "Infinity" if of.high is None else _number(of.high)
+    return f"{{ name: {_string(of.name)}, {more}, low: {least}, high: {greatest} }}"
 
 
 def _number(value: float) -> str:
@@ -308,9 +283,7 @@ def _number(value: float) -> str:
 
 
 def _string(text: str) -> str:
-    """A string literal; what does not print is escaped."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(character if character.isprintable() else _escape(character) for character in escaped) + '"'
+    return pieces.quoted(text, _escape)
 
 
 def _escape(character: str) -> str:
@@ -355,14 +328,6 @@ def _key(name: str) -> str:
 
 def _member(of: str, name: str) -> str:
     return f"{of}.{name}" if _is_plain(name) else f"{of}[{_string(name)}]"
-
-
-def _bool(value: bool) -> str:
-    return "true" if value else "false"
-
-
-def _block(lines: Iterable[str], depth: int = 1) -> str:
-    return "\n".join(f"{_JavaScript.INDENT * depth}{line}" if line else "" for line in lines)
 
 
 def _list(items: Sequence[str]) -> str:

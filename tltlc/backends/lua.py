@@ -15,20 +15,22 @@ from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.code.names import visible
-from tltlc.backends.program import judge, states
+from tltlc.backends.program import judge, pieces, states
 from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
-from tltlc.backends.program.printer import Printer, remark
+from tltlc.backends.program.printer import Printer
 from tltlc.backends.program.shallow import shallow
 from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import Assign, Compare, Declare, Expression, If, Int, Statement
+from tltlc.backends.program.tree import FAILING, Assign, Compare, Declare, Expression, If, Int, Statement
 from tltlc.backends.program.uses import called, read
 from tltlc.resolve.spec import Param, Signal
 
-TARGET = Target("lua", "a stand-alone monitor in Lua", ("_monitor.lua",))
-
-_FAILING = {"divide", "sqrt", "power", "exp"}
-"""Functions that may have no value."""
+TARGET = Target(
+    "lua",
+    "a stand-alone monitor in Lua, also for LÖVE, Roblox and Defold",
+    ("_monitor.lua",),
+    ("defold", "love", "luajit", "luau", "roblox"),
+)
 
 _MOST_LOCALS: Final = 150
 """How many local variables and arguments fit beside those of the step itself."""
@@ -65,6 +67,8 @@ class _Lua(Printer):
     """
 
     INDENT = "  "
+    COMMENT = "--"
+    """The blank behind it keeps brackets from beginning a long one."""
     WORDS: ClassVar = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     END = ""
 
@@ -121,10 +125,6 @@ class _Lua(Printer):
         """What ends a branch."""
         return ["end"]
 
-    def comment(self, text: str) -> list[str]:
-        """A remark; the blank keeps brackets from beginning a long one."""
-        return [f"-- {line}" for line in remark(text)]
-
     def _written(self, node: Expression) -> tuple[str, int]:
         text, binding = super()._written(node)
         if isinstance(node, Compare) and node.op == "!=":
@@ -153,9 +153,6 @@ class _Source:
             **{name: f"part.{name}" for name in parts},
         }
         self._few_states = len(fspa.states) <= _FEW_STATES
-        # The first atom of each predicate is where that is explained.
-        first = {atom.doc: place for place, atom in reversed([*enumerate(fspa.atoms)]) if atom.doc}
-        self._explained = {*first.values()}
         self._printer = _Lua(fields if self._many else {}, self._names)
 
     def text(self) -> str:
@@ -164,65 +161,47 @@ class _Source:
         functions = called(statement for part in (*made.values, *made.states) for statement in part)
         with recursion_room():
             moves = "\n".join(self._moves())
-            step = _block(self._step())
-        present = [*functions, *(["failing"] if functions & _FAILING else []), *(["many"] if self._many else [])]
+            step = _Lua.block(self._step())
+        present = [*functions, *(["failing"] if functions & FAILING else []), *(["many"] if self._many else [])]
         present += [] if all(made.sure) else ["kept"]
         present += [] if self._few_states else ["moves"]
-        present += ["exclusive"] if fspa.exclusive else []
-        pieces = {
+        present += ["exclusive"] if made.exclusive else []
+        places = {
             "p": fspa.name,
-            "title": self._title(),
+            "title": pieces.title(fspa, self._printer.comment),
             "file": self._file,
             "module": self._file.removesuffix(".lua"),
-            "example": self._example(),
+            "example": pieces.example(fspa.signals, _key, " = "),
             "signal_fields": "\n".join(
-                _field(signal.name, "boolean | 0 | 1" if signal.type == "bool" else "number", signal.doc)
+                _field(
+                    signal.name,
+                    "boolean | 0 | 1" if signal.type == "bool" else "number",
+                    pieces.described(signal.name, signal),
+                )
                 for signal in fspa.signals
             ),
-            "param_fields": "\n".join(_field(param.name, "number?", param.doc) for param in fspa.params),
+            "param_fields": "\n".join(
+                _field(param.name, "number?", pieces.described(param.name, param)) for param in fspa.params
+            ),
             "signals": _list(
-                [
-                    f"{{ name = {_string(signal.name)}, is_bool = {_bool(signal.type == 'bool')}, {_range(signal)} }}"
-                    for signal in fspa.signals
-                ]
+                [_row(signal, f"is_bool = {pieces.boolean(signal.type == 'bool')}") for signal in fspa.signals]
             ),
-            "params": _list(
-                [
-                    f"{{ name = {_string(param.name)}, value = {float(param.value)!r}, {_range(param)} }}"
-                    for param in fspa.params
-                ]
-            ),
+            "params": _list([_row(param, f"value = {pieces.number(param.value)}") for param in fspa.params]),
             "exclusive": _list(
                 [f"{{ {', '.join(_string(self._names[atom]) for atom in group)} }}" for group in fspa.exclusive]
             ),
-            "states": _block(self._states()),
+            "states": _Lua.block(self._states()),
             "returns": ", the progress of the step" if self._at_goal else "",
             "moves": moves,
             "parts": "\n".join(self._printer.parts).rstrip(),
             "step": step,
         }
-        return filled("monitor.lua.txt", pieces, present)
-
-    def _title(self) -> str:
-        """The first comment: what the spec is called, what it is for, its formula."""
-        fspa = self._fspa
-        title = f"Monitor of the specification `{fspa.name}`, written by tltlc."
-        about = [[f"-- {line}" for line in remark(text)] for text in (title, fspa.doc)]
-        about.append([f"--     {line}" for line in remark(fspa.formula.ascii)])
-        return "\n--\n".join("\n".join(lines) for lines in about if lines)
-
-    def _example(self) -> str:
-        """A sample, as a call gives it."""
-        signals = self._fspa.signals
-        shown = [f"{_key(signal.name)} = {'true' if signal.type == 'bool' else '…'}" for signal in signals[:2]]
-        text = f"{{ {', '.join([*shown, *(['…'] if len(signals) > 2 else [])])} }}" if signals else "{}"
-        return visible(text) if len(text) <= 60 else "signals"
+        return filled("monitor.lua.txt", places, present)
 
     def _states(self) -> list[str]:
         rows: list[str] = []
-        for state in self._fspa.states:
-            ends = state.verdict in ("satisfied", "violated") or (self._at_goal and state.accepting)
-            values = f'verdict = "{state.verdict}", accepting = {_bool(state.accepting)}, ends = {_bool(ends)}'
+        for state, ends in zip(self._fspa.states, map(pieces.boolean, self._program.ends), strict=True):
+            values = f'verdict = "{state.verdict}", accepting = {pieces.boolean(state.accepting)}, ends = {ends}'
             rows.append(f"[{state.id}] = {{ label = {_string(state.label.ascii)}, {values} }},")
         return rows
 
@@ -255,9 +234,9 @@ class _Source:
     def _branch(self, state: int) -> list[str]:
         """What is done in a state: the values of the atoms that nothing else needs, and the transition."""
         lines: list[str] = []
-        for place, only in enumerate(self._program.only_in):
+        for place in self._program.computed_in(state):
             # A line between the comments.
-            lines += ["", *(f"  {line}" for line in self._value(place))] if only == state else []
+            lines += ["", *(f"  {line}" for line in self._value(place))]
         statements = shallow(self._program.states[state], self._program.atoms)
         return [*lines, *self._printer.lines(statements, depth=1)]
 
@@ -265,7 +244,7 @@ class _Source:
 
     def _step(self) -> list[str]:
         parts = [self._tables(), self._read(), self._compute(), self._check(), self._move(), self._judge()]
-        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+        return pieces.paragraphs(*parts)
 
     def _tables(self) -> list[str]:
         """What is wrong with the sample, and the tables that variables are fields of."""
@@ -289,7 +268,7 @@ class _Source:
                 "  if problem then return nil, problem end",
                 "end",
             ]
-        used = read(statement for value in self._program.values for statement in value)
+        used = self._program.used
         params = zip(self._fspa.params, self._program.params, strict=True)
         if not self._many:
             lines += [f"local {name} = self.params{_index(param.name)}" for param, name in params if name in used]
@@ -300,13 +279,12 @@ class _Source:
         lines: list[str] = []
         kept: list[str] = []
         failing = False
-        for place, (atom, name) in enumerate(zip(self._fspa.atoms, self._program.atoms, strict=True)):
-            if self._program.only_in[place] is not None:
-                continue
+        for place in self._program.computed_in(None):
+            atom, name = self._fspa.atoms[place], self._program.atoms[place]
             lines += self._value(place)
             if self._program.sure[place]:
                 continue
-            if called(self._program.values[place]) & _FAILING:
+            if called(self._program.values[place]) & FAILING:
                 failing = True
                 text = _string(f"the atom `{atom.name}` ")
                 lines.append(f"if failure then return nil, at_step(self, {text} .. failure) end")
@@ -321,19 +299,18 @@ class _Source:
 
     def _value(self, place: int) -> list[str]:
         """What gives an atom its value."""
-        atom, made = self._fspa.atoms[place], self._program
-        lines = self._printer.comment(f"{atom.name}: {atom.doc}" if place in self._explained else atom.name)
+        made = self._program
+        lines = self._printer.comment(made.remarks[place])
         return [*lines, *self._printer.lines(defined(made.atoms[place], made.values[place]))]
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
-        for place, group in enumerate(self._fspa.exclusive, start=1):
-            if len(group) > 1:
-                atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
-                holding = " + ".join(f"({atom} > 0.0 and 1 or 0)" for atom in atoms)
-                values = ", ".join(atoms)
-                lines += [f"if {holding} > 1 then", f"  return nil, together(self, {place}, {{ {values} }})", "end"]
+        for place, group in self._program.exclusive:
+            atoms = [self._printer.name(self._program.atoms[atom]) for atom in group]
+            holding = " + ".join(f"({atom} > 0.0 and 1 or 0)" for atom in atoms)
+            refusal = f"return nil, together(self, {place + 1}, {{ {', '.join(atoms)} }})"
+            lines += [f"if {holding} > 1 then", f"  {refusal}", "end"]
         return lines
 
     def _move(self) -> list[str]:
@@ -410,16 +387,14 @@ def _taken(signal: Signal, variable: str) -> list[str]:
     return [f'if type({variable}) == "number" and {low} and {high} then', f"  {variable} = {variable} + 0.0"]
 
 
-def _range(of: Signal | Param) -> str:
-    least = "-huge" if of.low is None else repr(float(of.low))
-    greatest = "huge" if of.high is None else repr(float(of.high))
-    return f"low = {least}, high = {greatest}"
+def _row(of: Signal | Param, more: str) -> str:
+    low, high = pieces.number(of.low, "-huge"), pieces.number(of.high, "huge")
+    return f"{{ name = {_string(of.name)}, {more}, low = {low}, high = {high} }}"
 
 
 def _string(text: str) -> str:
     """A string literal; what does not print is escaped, byte by byte."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(character if character.isprintable() else _escape(character) for character in escaped) + '"'
+    return pieces.quoted(text, _escape)
 
 
 def _escape(character: str) -> str:
@@ -436,14 +411,6 @@ def _index(name: str) -> str:
     """A key, behind a table."""
     key = _key(name)
     return key if key[0] == "[" else f".{key}"
-
-
-def _bool(value: bool) -> str:
-    return "true" if value else "false"
-
-
-def _block(lines: Iterable[str]) -> str:
-    return "\n".join(f"{_Lua.INDENT}{line}" if line else "" for line in lines)
 
 
 def _list(items: Sequence[str]) -> str:

@@ -19,7 +19,7 @@ from tltlc.backends.code.states import INDENT, StateWriter
 from tltlc.expression_python import Writer
 from tltlc.resolve.spec import Signal
 
-TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",))
+TARGET = Target("python", "a stand-alone monitor in Python", ("_monitor.py",), ("py",))
 
 # What the step function itself calls its variables, and what it reads from the module.
 _RESERVED = (

@@ -7,28 +7,25 @@ It computes to the last bit what :class:`tltlc.monitor.Monitor` computes with it
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from textwrap import wrap
 from typing import ClassVar
 
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.program import judge, states
+from tltlc.backends.program import judge, pieces, states
+from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer, remark
 from tltlc.backends.program.template import filled
-from tltlc.backends.program.tree import Assign, Binary, Comment, Declare, If, Statement, Type, Variable
-from tltlc.backends.program.uses import called, read
-from tltlc.monitor.samples import range_text
+from tltlc.backends.program.tree import FAILING, Assign, Binary, Comment, Declare, Type, Variable
+from tltlc.backends.program.uses import read
 from tltlc.resolve.spec import Param, Signal
 
-TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",))
+TARGET = Target("rust", "a stand-alone monitor in Rust", ("_monitor.rs",), ("bevy", "rs"))
 
 _INDENT = Printer.INDENT
-_FAILING = {"divide", "sqrt", "power", "exp"}
-"""Functions that may have no value."""
-
 _MATH = {"sqrt", "power", "exp", "tanh"}
 """Functions that ``core`` does not have."""
 
@@ -84,7 +81,7 @@ class _Rust(Printer):
 
     def call(self, function: str, arguments: Sequence[str]) -> str:
         """A call; what may have no value ends the step."""
-        if function in _FAILING:
+        if function in FAILING:
             return super().call(f"self.{function}", [str(self.atom), *arguments]) + "?"
         return super().call(f"math::{function}" if function in _MATH else function, arguments)
 
@@ -96,49 +93,47 @@ class _Source:
         self._fspa, self._file = fspa, file
         self._program = program(fspa, _RESERVED)
         self._printer = _Rust()
-        # The first atom of each predicate is where that is explained.
-        first = {atom.doc: place for place, atom in reversed([*enumerate(fspa.atoms)]) if atom.doc}
-        self._explained = {*first.values()}
 
     def text(self) -> str:
         """The whole file."""
         fspa, made = self._fspa, self._program
         signals = list(zip(fspa.signals, made.signals, strict=True))
         params = list(zip(fspa.params, made.params, strict=True))
-        computed = called(statement for value in made.values for statement in value)
-        present = [*computed, "exclusive" if fspa.exclusive else "single", *([] if all(made.sure) else ["keep"])]
-        present += ["math"] if computed & _MATH else []
+        present = [*made.functions, "exclusive" if made.exclusive else "single"]
+        present += [] if all(made.sure) else ["keep"]
+        present += ["math"] if made.functions & _MATH else []
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
-            step = _block(self._step(), 2)
+            step = _Rust.block(self._step(), 2)
+            reads_sample = any("sample." in line for line in self._read())
         give = self._give()
-        pieces = {
+        places = {
             "p": fspa.name,
             "title": "\n".join(self._title()),
             "file": self._file,
-            "needs": "\n".join(self._needs(computed & _MATH)),
+            "needs": "\n".join(self._needs(made.functions & _MATH)),
             "signal_fields": _fields([(name, _type(signal), signal) for signal, name in signals]),
             "param_fields": _fields([(name, "f64", param) for param, name in params]),
             "signal_count": str(len(signals)),
             "atom_count": str(len(fspa.atoms)),
             "group_count": str(len(fspa.exclusive)),
             "state_count": str(len(fspa.states)),
-            "signal_names": _list([_string(signal.name) for signal in fspa.signals]),
-            "atom_names": _list([_string(atom.name) for atom in fspa.atoms]),
+            "signal_names": _Rust.items([_string(signal.name) for signal in fspa.signals]),
+            "atom_names": _Rust.items([_string(atom.name) for atom in fspa.atoms]),
             "largest_group": str(max(map(len, fspa.exclusive), default=0)),
-            "groups": _list([f"&[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
-            "signal_defaults": _block(
+            "groups": _Rust.items([f"&[{', '.join(map(str, group))}]" for group in fspa.exclusive]),
+            "signal_defaults": _Rust.block(
                 [f"{name}: {'false' if signal.type == 'bool' else 'f64::NAN'}," for signal, name in signals], 3
             ),
-            "param_defaults": _block([f"{name}: {_number(param.value)}," for param, name in params], 3),
-            "param_checks": _block([line for param, name in params for line in _param_check(param, name)], 2),
-            "states": _block(self._states(), 1),
-            "sample": "sample" if "sample." in step else "_",
+            "param_defaults": _Rust.block([f"{name}: {pieces.number(param.value)}," for param, name in params], 3),
+            "param_checks": _Rust.block([line for param, name in params for line in _param_check(param, name)], 2),
+            "states": _Rust.block(self._states(), 1),
+            "sample": "sample" if reads_sample else "_",
             "step": step,
             "given": "sample" if give else "_",
-            "give": _block(give or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
+            "give": _Rust.block(give or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
         }
-        return filled("monitor.rs.txt", pieces, present)
+        return filled("monitor.rs.txt", places, present)
 
     def _title(self) -> list[str]:
         """The first comment: what the spec is called, what it is for, its formula."""
@@ -160,9 +155,8 @@ class _Source:
 
     def _states(self) -> list[str]:
         lines: list[str] = []
-        for state in self._fspa.states:
-            ends = state.verdict in ("satisfied", "violated") or (self._fspa.judge == "goal" and state.accepting)
-            values = (f"Verdict::{state.verdict.capitalize()}", _bool(state.accepting), _bool(ends))
+        for state, ends in zip(self._fspa.states, self._program.ends, strict=True):
+            values = (f"Verdict::{state.verdict.capitalize()}", pieces.boolean(state.accepting), pieces.boolean(ends))
             lines.append(f"place({_string(state.label.ascii)}, {', '.join(values)}),")
         return lines
 
@@ -181,56 +175,52 @@ class _Source:
     # --- a step -----------------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        parts = [self._read(), self._compute(), self._check(), self._move(), self._judge()]
-        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Signals in their range, and params, in variables of their own."""
-        used = read(statement for value in self._program.values for statement in value)
+        used = self._program.used
         lines: list[str] = []
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
                 lines += [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};"] if name in used else []
                 continue
-            low, high = _number(signal.low, "f64::NEG_INFINITY"), _number(signal.high, "f64::INFINITY")
+            low, high = pieces.number(signal.low, "f64::NEG_INFINITY"), pieces.number(signal.high, "f64::INFINITY")
             head = f"let {name} = " if name in used else ""
             lines.append(f"{head}self.read({place}, sample.{name}, {low}, {high})?;")
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
 
     def _compute(self) -> list[str]:
         """The atoms' values."""
-        lines: list[str] = []
-        used = read([statement for state in self._program.states for statement in state])
-        used |= {self._program.atoms[atom] for group in self._fspa.exclusive if len(group) > 1 for atom in group}
-        kept: list[str] = []
-        for place, name in enumerate(self._program.atoms):
-            if self._program.only_in[place] is not None:
-                continue
-            lines += self._value(place)
+        made = self._program
+        used = read(statement for state in made.states for statement in state)
+        used |= {made.atoms[atom] for _, group in made.exclusive for atom in group}
+        places = made.computed_in(None)
+        lines = [line for place in places for line in self._value(place)]
+        for place in places:
+            name = made.atoms[place]
             head = f"let {name} = " if name in used else ""
-            kept += [] if self._program.sure[place] else [f"{head}self.keep({place}, {name})?;"]
-        return [*lines, *kept]
+            lines += [] if made.sure[place] else [f"{head}self.keep({place}, {name})?;"]
+        return lines
 
     def _value(self, place: int, depth: int = 0) -> list[str]:
         """What gives an atom its value."""
-        atom, made = self._fspa.atoms[place], self._program
+        made = self._program
         self._printer.atom = place
-        text = f"{atom.name}: {atom.doc}" if place in self._explained else atom.name
-        return self._printer.lines((Comment(text), *_defined(made.atoms[place], made.values[place])), depth)
+        statements = defined(made.atoms[place], made.values[place], changes=False)
+        return self._printer.lines((Comment(made.remarks[place]), *statements), depth)
 
     def _alone(self, state: int) -> list[str]:
         """The values of the atoms that nothing but this state needs."""
-        only_in = self._program.only_in
-        return [line for place, only in enumerate(only_in) if only == state for line in self._value(place, depth=2)]
+        return [line for place in self._program.computed_in(state) for line in self._value(place, depth=2)]
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
-        for place, group in enumerate(self._fspa.exclusive):
+        for place, group in self._program.exclusive:
             tests = [f"{self._program.atoms[atom]} > 0.0" for atom in group]
-            if len(group) > 1:
-                lines.append(f"if {' + '.join(f'u32::from({test})' for test in tests)} > 1 {{")
-                lines += [f"{_INDENT}return Err(self.together({place}, &[{', '.join(tests)}]));", "}"]
+            lines.append(f"if {' + '.join(f'u32::from({test})' for test in tests)} > 1 {{")
+            lines += [f"{_INDENT}return Err(self.together({place}, &[{', '.join(tests)}]));", "}"]
         return lines
 
     def _move(self) -> list[str]:
@@ -266,15 +256,6 @@ class _Source:
 # --- pieces ---------------------------------------------------------------------------------------
 
 
-def _defined(name: str, statements: Sequence[Statement]) -> tuple[Statement, ...]:
-    """The statements that give an atom its value, and the declaration of the variable."""
-    *before, last = statements
-    if isinstance(last, Assign) and last.name == name:
-        return (*before, Declare(name, "real", last.value))
-    assert isinstance(last, If), "a value is assigned, or by branches"
-    return (*before, Declare(name, "real"), last)
-
-
 def _type(signal: Signal) -> str:
     return "bool" if signal.type == "bool" else "f64"
 
@@ -283,15 +264,9 @@ def _fields(fields: Sequence[tuple[str, str, Signal | Param]]) -> str:
     """The fields of a struct, each under its name in the spec and what is said of it."""
     lines: list[str] = []
     for name, type_, of in fields:
-        texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
-        lines += [f"/// {line}" for line in _markdown(": ".join(texts) or _kind(of))]
+        lines += [f"/// {line}" for line in _markdown(pieces.described(name, of))]
         lines.append(f"pub {name}: {type_},")
-    return _block(lines, 1)
-
-
-def _kind(of: Signal | Param) -> str:
-    """What is said of a signal or param of which the spec says nothing."""
-    return "True or false." if of.type == "bool" else f"In {range_text(of.low, of.high)}."
+    return _Rust.block(lines, 1)
 
 
 def _markdown(text: str) -> list[str]:
@@ -303,42 +278,20 @@ def _markdown(text: str) -> list[str]:
 def _param_check(param: Param, name: str) -> list[str]:
     value = f"params.{name}"
     tests = [f"{value}.is_finite()"]
-    tests += [] if param.low is None else [f"{value} >= {_number(param.low)}"]
-    tests += [] if param.high is None else [f"{value} <= {_number(param.high)}"]
-    low, high = _number(param.low, "f64::NEG_INFINITY"), _number(param.high, "f64::INFINITY")
+    tests += [] if param.low is None else [f"{value} >= {pieces.number(param.low)}"]
+    tests += [] if param.high is None else [f"{value} <= {pieces.number(param.high)}"]
+    low, high = pieces.number(param.low, "f64::NEG_INFINITY"), pieces.number(param.high, "f64::INFINITY")
     test = f"!({' && '.join(tests)})" if tests[1:] else f"!{tests[0]}"
     wrong = f"WrongParam {{ name: {_string(param.name)}, value: {value}, low: {low}, high: {high} }}"
     return [f"if {test} {{", f"{_INDENT}return Err({wrong});", "}"]
 
 
-def _number(value: float | None, otherwise: str = "") -> str:
-    return otherwise if value is None else repr(float(value))
-
-
 def _string(text: str) -> str:
     """A string literal in ASCII."""
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return '"' + "".join(char if " " <= char < "\x7f" else _escape(ord(char)) for char in escaped) + '"'
+    return pieces.quoted(text, _escape, pieces.in_ascii)
 
 
-def _escape(code: int) -> str:
+def _escape(character: str) -> str:
     """Halves of pairs, which no text of Rust holds, are replaced."""
+    code = ord(character)
     return "\\u{fffd}" if 0xD800 <= code < 0xE000 else f"\\u{{{code:x}}}"
-
-
-def _bool(value: bool) -> str:
-    return "true" if value else "false"
-
-
-def _block(lines: Iterable[str], depth: int) -> str:
-    return "\n".join(f"{_INDENT * depth}{line}" if line else "" for line in lines)
-
-
-def _list(items: Sequence[str]) -> str:
-    """The items between brackets: on one line where they are short, else on lines of their own."""
-    line = ", ".join(items)
-    if len(line) <= 60:
-        return line
-    if all(len(item) < 12 for item in items):
-        items = [wrapped.rstrip(",") for wrapped in wrap(line, 100)]
-    return "\n" + "".join(f"{_INDENT}{item},\n" for item in items)

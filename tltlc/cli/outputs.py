@@ -10,6 +10,7 @@ import click
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
+    from tltlc.backends import Files
     from tltlc.cli.report import Report
     from tltlc.project import Project
 
@@ -28,7 +29,7 @@ target_option = click.option(
 
 
 def targets_of(lists: Iterable[str]) -> list[str]:
-    """The targets that are asked for; raises TltlError, TLT0700, for one that there is not."""
+    """The targets that are asked for; raises TltlError, TLT0710, for one that there is not."""
     from tltlc import backends
 
     asked = [name.strip() for names in lists for name in names.split(",")]
@@ -37,34 +38,38 @@ def targets_of(lists: Iterable[str]) -> list[str]:
     return asked
 
 
-def write_automata(
-    automata: Iterable[Fspa],
-    asked: Sequence[str],
-    folder: Path,
-    project: Project,
-    report: Report,
-    read: Collection[str] = (),
-) -> tuple[Path, ...]:
-    """Write what is asked for of each automaton, all of it or nothing, and tell of each file; their paths.
+def files_of(automata: Iterable[Fspa], asked: Sequence[str], project: Project, report: Report) -> Files:
+    """The files of what is asked for of each automaton, else of the project's targets, else of the usual ones.
 
-    Raises click.UsageError where one of the files that were ``read`` would be written over, or one target's file by
-    another's.
+    Raises click.UsageError where two targets write the same file.
     """
     from tltlc import backends
-    from tltlc.files import is_same
-    from tltlc.writing import write_files
 
     targets = dict.fromkeys(asked or project.targets or backends.DEFAULT_TARGETS)
     options = backends.Options(notation=project.notation, report=lambda diagnostic: report.add((diagnostic,)))
-    files: dict[str, str | bytes] = {}
+    files: Files = {}
     for fspa in automata:
         writers: dict[str, str] = {}
         for target in targets:
             for name, content in backends.emit(target, fspa, options).items():
                 other = writers.setdefault(name, target)
                 if other != target:
-                    raise click.UsageError(f"`{other}` and `{target}` both write `{name}`: give each its own -o")
+                    raise click.UsageError(
+                        f"`{other}` and `{target}` both write `{name}`: ask for one, with -t, and for the other with "
+                        "an -o of its own"
+                    )
                 files[name] = content
+    return files
+
+
+def write_and_tell(folder: Path, files: Files, report: Report, read: Collection[str] = ()) -> None:
+    """Write all of the files or none, and tell of each that has changed.
+
+    Raises click.UsageError where one of the files that were ``read`` would be written over.
+    """
+    from tltlc.files import is_same
+    from tltlc.writing import write_files
+
     for name in files:
         for input_ in read:
             if is_same(folder / name, input_):
@@ -72,10 +77,6 @@ def write_automata(
     written = write_files(folder, files)
     for path in written:
         report.say(f"wrote {path}")
-    if len(written) < len(files):
-        report.say(_unchanged(len(files) - len(written)))
-    return tuple(folder / name for name in files)
-
-
-def _unchanged(count: int) -> str:
-    return f"{count} files have not changed" if count > 1 else "1 file has not changed"
+    unchanged = len(files) - len(written)
+    if unchanged:
+        report.say(f"{unchanged} files have not changed" if unchanged > 1 else "1 file has not changed")

@@ -4,12 +4,14 @@
     python check.py [--only CASE,CASE] COMMAND...
 
 COMMAND is how a monitor is started, word by word; ``{name}`` in it is the name of a case, and ``--full`` and a trace
-are added: ``python check.py node 'build/{name}_monitor.mjs'``.  It exits with 1 where anything differs.
+are added: ``python check.py node 'build/{name}_monitor.mjs'``.  What an engine prints before the header is left out.
+It exits with 1 where anything differs, and with 2 where COMMAND or a CASE is none.
 """
 
 from __future__ import annotations
 
 import csv
+import difflib
 import io
 import json
 import re
@@ -34,6 +36,30 @@ def main(words: Sequence[str]) -> int:
         return 2
     folder = Path(__file__).resolve().parent
     index = json.loads((folder / "index.json").read_text(encoding="utf-8"))
+    misuse = _misuse(command, only or (), [case["name"] for case in index["cases"]])
+    if misuse:
+        print(f"error: {misuse}", file=sys.stderr)
+        return 2
+    try:
+        return _checked(command, only, folder, index)
+    except OSError as error:
+        print(f"error: cannot start `{' '.join(command)}`: {error}", file=sys.stderr)
+        return 2
+
+
+def _misuse(command: Sequence[str], only: Sequence[str], names: Sequence[str]) -> str | None:
+    """What is wrong with the words of the command line, if anything is."""
+    if not any("{name}" in word for word in command):
+        return "the command holds no {name}, so that every case would run the same monitor"
+    for case in only:
+        if case not in names:
+            near = difflib.get_close_matches(case, names) or names
+            return f"no case is called `{case}`; there are {', '.join(near)}"
+    return None
+
+
+def _checked(command: Sequence[str], only: Sequence[str] | None, folder: Path, index: Mapping[str, Any]) -> int:
+    """Each case, and at the end how many differ."""
     traces = wrong = 0
     for case in index["cases"]:
         if only and case["name"] not in only:
@@ -52,11 +78,11 @@ def main(words: Sequence[str]) -> int:
 def of_trace(
     command: Sequence[str], folder: Path, name: str, trace: Mapping[str, Any], tolerance: float
 ) -> Iterator[str]:
-    """What a monitor does otherwise on one trace of the index."""
+    """What a monitor does otherwise on one trace of the index; raises OSError where it cannot be started."""
     words = [word.replace("{name}", name) for word in command]
     try:
         done = subprocess.run([*words, "--full", folder / trace["trace"]], capture_output=True, timeout=LONGEST_RUN_S)
-    except (OSError, subprocess.TimeoutExpired) as error:
+    except subprocess.TimeoutExpired as error:
         yield str(error)
         return
     with (folder / trace["expected"]).open(encoding="utf-8", newline="") as file:
@@ -88,11 +114,14 @@ def differences(
 def _in_rows(out: str, rows: Sequence[Sequence[str]], tolerance: float) -> Iterator[str]:
     """Cell by cell; where the first sample is refused, the header may be missing."""
     columns, *wanted = rows
-    printed: list[Sequence[str]] = [*csv.reader(io.StringIO(out, newline=""), strict=True)]
-    header, *found = printed or [columns]
-    if list(header) != list(columns):
-        yield f"the header is {header}"
-    if (printed or wanted) and len(found) != len(wanted):
+    # Engines print lines of their own first.
+    header = re.search(rf"^{re.escape(','.join(columns))}\r?$", out, re.MULTILINE)
+    if header is None:
+        if wanted:
+            yield f"there is no header in: {out}"
+        return
+    found = [*csv.reader(io.StringIO(out[header.end() :].lstrip("\r\n"), newline=""), strict=True)]
+    if len(found) != len(wanted):
         yield f"{len(found)} rows, not {len(wanted)}"
     for number, (row, right) in enumerate(zip(found, wanted), start=1):  # noqa: B905 (counted above)
         if len(row) != len(right):

@@ -6,12 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import ClassVar
 
 from tltlc.backends.godot.numbers import number
-from tltlc.backends.program.printer import Printer, remark
+from tltlc.backends.program.printer import Printer
 from tltlc.backends.program.tree import Assign, Call, Declare, Expression, Negate, Real, Type, Variable
-
-FAILING = {"divide", "sqrt", "power", "exp"}
-"""Functions that may have no value."""
-
 
 _BETTER = {"min": "<", "max": ">"}
 _CHOICE = -1
@@ -27,6 +23,7 @@ class Gd(Printer):
     """
 
     INDENT: ClassVar[str] = "\t"
+    COMMENT: ClassVar[str] = "#"
     TYPES: ClassVar[dict[Type, str]] = {"real": "float", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "and", "or": "or", "not": "not ", "true": "true", "false": "false"}
     END: ClassVar[str] = ""
@@ -59,10 +56,6 @@ class Gd(Printer):
     def nothing(self, depth: int) -> list[str]:
         """A body holds something."""
         return [f"{self.INDENT * depth}pass"]
-
-    def comment(self, text: str) -> list[str]:
-        """A remark."""
-        return [f"# {line}" for line in remark(text)]
 
     def name(self, name: str) -> str:
         """What stands for a variable."""

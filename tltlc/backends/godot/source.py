@@ -14,12 +14,13 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files
 from tltlc.backends.godot.names import RESERVED, snake_case
 from tltlc.backends.godot.numbers import number
-from tltlc.backends.godot.printer import FAILING, Gd
-from tltlc.backends.program import judge, states
+from tltlc.backends.godot.printer import Gd
+from tltlc.backends.program import judge, pieces, states
 from tltlc.backends.program.arithmetic import defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.template import filled
-from tltlc.backends.program.uses import called, read
+from tltlc.backends.program.tree import FAILING
+from tltlc.backends.program.uses import called
 from tltlc.monitor.samples import range_text
 from tltlc.record import record
 from tltlc.resolve.spec import Param, Signal
@@ -73,10 +74,10 @@ class Dialect:
 def files(fspa: Fspa, dialect: Dialect) -> Files:
     """``NAME_monitor.gd`` and ``NAME_monitor_main.gd``."""
     script, main = (f"{fspa.name}{ending}" for ending in ENDINGS)
-    pieces = {"name": fspa.name, "file": script, "main": main, "title": dialect.title, **dialect.types()}
+    places = {"file": script, "main": main, "title": dialect.title, **dialect.types()}
     return {
         script: _Source(fspa, dialect).text(),
-        main: filled("monitor_main.gd.txt", pieces, [dialect.version]),
+        main: filled("monitor_main.gd.txt", places, [dialect.version]),
     }
 
 
@@ -96,19 +97,20 @@ class _Source:
     def text(self) -> str:
         """The whole file."""
         fspa, made = self._fspa, self._program
-        failing = called(statement for value in made.values for statement in value) & FAILING
-        present = [self._dialect.version, *failing, *(["note"] if failing else [])]
+        failing = made.functions & FAILING
+        present = [*failing, *(["note"] if failing else [])]
         present += [] if all(made.sure) else ["atom"]
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
-        present += ["exclusive"] if fspa.exclusive else []
+        present += ["exclusive"] if made.exclusive else []
         present += ["params"] if fspa.params else []
         with recursion_room():
-            step = _block(self._step())
+            step = Gd.block(self._step())
+            reads_sample = any("sample." in line for line in self._read())
         present += [name for name in ("min", "max") if f"_{name}(" in step]
         first = fspa.states[0]
-        pieces = {
+        places = {
             **self._dialect.types(),
-            "title": "\n".join(self._title()),
+            "title": pieces.title(fspa, self._printer.comment),
             "engine": self._dialect.title,
             "base": self._dialect.base,
             "file": f"{fspa.name}{ENDINGS[0]}",
@@ -118,37 +120,25 @@ class _Source:
             "labels": self._strings(state.label.ascii for state in fspa.states),
             "verdicts": _list([f"Verdict.{state.verdict.upper()}" for state in fspa.states]),
             "first_verdict": f"Verdict.{first.verdict.upper()}",
-            "first_accepting": _bool(first.accepting),
-            "accepting": _list([_bool(state.accepting) for state in fspa.states]),
-            "ends": _list([_bool(self._is_end(state.id)) for state in fspa.states]),
+            "first_accepting": pieces.boolean(first.accepting),
+            "accepting": _list([pieces.boolean(state.accepting) for state in fspa.states]),
+            "ends": _list(map(pieces.boolean, made.ends)),
             "exclusive": _list([str(list(group)) for group in fspa.exclusive]),
-            "reasons": self._strings(map(_param_reason, fspa.params)),
+            "params": self._strings(param.name for param in fspa.params),
+            "param_ranges": self._strings(range_text(param.low, param.high) for param in fspa.params),
             "sample_fields": self._sample_fields(),
-            "sample_start": _block(
+            "sample_start": Gd.block(
                 [f"{name} = {_start(signal)}" for signal, name in zip(fspa.signals, self._signals, strict=True)]
                 or ["pass"],
                 depth=2,
             ),
             "param_fields": self._param_fields(),
-            "param_checks": _block(line for place in range(len(fspa.params)) for line in self._param_check(place)),
-            "param_copies": _block([f"_params.{name} = given.{name}" for name in self._params]),
-            "sample": "sample" if "sample." in step else "_sample",
+            "param_checks": Gd.block(line for place in range(len(fspa.params)) for line in self._param_check(place)),
+            "param_copies": Gd.block([f"_params.{name} = given.{name}" for name in self._params]),
+            "sample": "sample" if reads_sample else "_sample",
             "step": step,
         }
-        return filled("monitor.gd.txt", pieces, present)
-
-    def _title(self) -> list[str]:
-        """The first comment: what the spec is called, what it is for, its formula."""
-        fspa = self._fspa
-        lines = self._printer.comment(f"Monitor of the specification `{fspa.name}`, written by tltlc.")
-        if fspa.doc.strip():
-            lines += ["#", *self._printer.comment(fspa.doc)]
-        return [*lines, "#", *(line.replace("# ", "#     ", 1) for line in self._printer.comment(fspa.formula.ascii))]
-
-    def _is_end(self, state: int) -> bool:
-        """Whether an episode ends on entry."""
-        found = self._fspa.states[state]
-        return found.verdict in ("satisfied", "violated") or (self._fspa.judge == "goal" and found.accepting)
+        return filled("monitor.gd.txt", places, present)
 
     # --- records ----------------------------------------------------------------------------------
 
@@ -166,9 +156,10 @@ class _Source:
         """The members of a class, each under its name in the spec and what is said of it."""
         lines: list[str] = []
         for name, type_, value, of in fields:
-            texts = [*([of.name] if of.name != name else []), *([of.doc] if of.doc else [])]
-            # Godot 4 shows what stands behind two signs; a bracket would begin a tag.
-            said = ": ".join(texts).replace("[", "[lb]")
+            # Godot 4 shows what stands behind two signs; a bracket would begin a tag, but for those around numbers.
+            said = pieces.described(name, of)
+            values = pieces.kind(of) if said.endswith(pieces.kind(of)) else ""
+            said = said.removesuffix(values).replace("[", "[lb]") + values
             remarks = [f"#{line}" for line in self._printer.comment(said)]
             field = f"var {name}: {type_} = {value}"
             # A short remark stands behind its field.
@@ -176,21 +167,21 @@ class _Source:
                 lines.append(f"{field}  {remarks[0]}")
             else:
                 lines += [*remarks, field]
-        return _block(lines)
+        return Gd.block(lines)
 
     def _param_check(self, place: int) -> list[str]:
         param, name = self._fspa.params[place], f"given.{self._params[place]}"
-        return [f"if not ({_within(name, param)}):", f"\treturn _refuse(Problem.WRONG_PARAM, {place})"]
+        refused = [f"\t_wrong = {name}", f"\treturn _refuse(Problem.WRONG_PARAM, {place})"]
+        return [f"if not ({_within(name, param)}):", *refused]
 
     # --- the step function ------------------------------------------------------------------------
 
     def _step(self) -> list[str]:
-        parts = [self._read(), self._compute(), self._check(), self._move(), self._judge()]
-        return "\n\n".join("\n".join(part) for part in parts if part).split("\n")
+        return pieces.paragraphs(self._read(), self._compute(), self._check(), self._move(), self._judge())
 
     def _read(self) -> list[str]:
         """Signals in their range, and params, in variables of their own."""
-        used = read(statement for value in self._program.values for statement in value)
+        used = self._program.used
         lines: list[str] = []
         checked = False
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
@@ -224,15 +215,13 @@ class _Source:
 
     def _values(self, state: int | None) -> list[str]:
         """The values of the atoms that are computed in a state alone, or at each step."""
-        places = [place for place, only_in in enumerate(self._program.only_in) if only_in == state]
-        return [line for place in places for line in self._value(place)]
+        return [line for place in self._program.computed_in(state) for line in self._value(place)]
 
     def _value(self, place: int) -> list[str]:
-        """The value of one atom, explained where no atom before it says the same."""
-        atom, name, statements = self._fspa.atoms[place], self._program.atoms[place], self._program.values[place]
-        is_new = atom.doc and all(other.doc != atom.doc for other in self._fspa.atoms[:place])
-        lines = self._printer.comment(f"{atom.name}: {atom.doc}" if is_new else atom.name)
-        lines += self._printer.lines(defined(name, statements))
+        """The value of one atom."""
+        made, statements = self._program, self._program.values[place]
+        lines = self._printer.comment(made.remarks[place])
+        lines += self._printer.lines(defined(made.atoms[place], statements))
         if called(statements) & FAILING:
             lines += ["if problem != Problem.NONE:", f"\treturn _refuse(problem, {place})"]
         return lines
@@ -240,12 +229,11 @@ class _Source:
     def _check(self) -> list[str]:
         """Exclusive atoms."""
         lines: list[str] = []
-        for place, group in enumerate(self._fspa.exclusive):
+        for place, group in self._program.exclusive:
             names = [self._atoms[atom] for atom in group]
             holding = " + ".join(f"int({name} > 0.0)" for name in names)
-            if len(group) > 1:
-                lines += [f"if {holding} > 1:", f"\t_clashing = [{', '.join(names)}]"]
-                lines.append(f"\treturn _refuse(Problem.TOGETHER, {place})")
+            lines += [f"if {holding} > 1:", f"\t_clashing = [{', '.join(names)}]"]
+            lines.append(f"\treturn _refuse(Problem.TOGETHER, {place})")
         return lines
 
     def _move(self) -> list[str]:
@@ -271,16 +259,12 @@ class _Source:
 
     def _string(self, text: str) -> str:
         """A string literal, with escapes for whatever does not print; strings of the engine end at U+0000."""
-        return f'"{"".join(map(self._character, text.replace(chr(0), "")))}"'
+        return pieces.quoted(text.replace("\0", ""), self._escape)
 
-    def _character(self, character: str) -> str:
+    def _escape(self, character: str) -> str:
         code = ord(character)
-        if character in '"\\':
-            return f"\\{character}"
         if 0xD800 <= code < 0xE000:
             return "?"
-        if character.isprintable():
-            return character
         if code > 0xFFFF:
             return f"\\U{code:06x}" if self._dialect.wide else character
         return {"\n": "\\n", "\r": "\\r", "\t": "\\t"}.get(character, f"\\u{code:04x}")
@@ -305,19 +289,5 @@ def _start(signal: Signal) -> str:
     return "false" if signal.type == "bool" else "INF"
 
 
-def _param_reason(param: Param) -> str:
-    return f"the param `{param.name}` cannot have that value: its range is {range_text(param.low, param.high)}"
-
-
-def _bool(value: bool) -> str:
-    return "true" if value else "false"
-
-
-def _block(lines: Iterable[str], depth: int = 1) -> str:
-    return "\n".join("\t" * depth + line if line else "" for line in lines)
-
-
-def _list(items: Sequence[str]) -> str:
-    """The items between brackets: on one line where they are short, else on lines of their own."""
-    line = ", ".join(items)
-    return f"[{line}]" if len(line) <= 60 else "[\n" + "".join(f"\t{item},\n" for item in items) + "]"
+def _list(items: Iterable[str]) -> str:
+    return f"[{Gd.items([*items])}]"

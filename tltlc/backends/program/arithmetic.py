@@ -37,15 +37,15 @@ _DEEPEST: Final = 30
 _Node = Union[source.Expression, source.Condition]
 
 
-def defined(name: str, statements: Sequence[Statement]) -> tuple[Statement, ...]:
+def defined(name: str, statements: Sequence[Statement], *, changes: bool = True) -> tuple[Statement, ...]:
     """What :meth:`Arithmetic.assigned` gives, and the declaration of the variable: with its value where it can be.
 
-    The variable changes: values of atoms are brought into their range.
+    The variable ``changes`` where the value of an atom is brought into its range afterwards.
     """
     *before, last = statements
     if isinstance(last, Assign) and last.name == name:
-        return (*before, Declare(name, "real", last.value, changes=True))
-    return (Declare(name, "real", None, changes=True), *statements)
+        return (*before, Declare(name, "real", last.value, changes))
+    return (Declare(name, "real", None, changes), *statements)
 
 
 class Arithmetic:

@@ -17,7 +17,6 @@ from tltlc.backends.program.tree import (
     Any,
     Assign,
     Binary,
-    Bool,
     Call,
     Compare,
     Declare,
@@ -46,9 +45,6 @@ class Range:
     def without_zero(self) -> bool:
         """Whether it is sure not to be 0."""
         return self.low > 0.0 or self.high < 0.0
-
-
-FINITE: Final = Range(-_MOST, _MOST)
 
 
 def within(low: float | None, high: float | None) -> Range:
@@ -216,8 +212,6 @@ class _Facts:
         match node:
             case Real(value):
                 return Range(value, value)
-            case Bool(value):
-                return Range(float(value), float(value))
             case Negate(operand):
                 range_ = self.range(operand)
                 return range_ and Range(-range_.high, -range_.low)

@@ -34,6 +34,10 @@ _OR, _AND, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(7)
 
 _BINDING = {"+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT}
 _LONGEST_COMMENT = 100
+_LONGEST_LIST = 60
+_LONGEST_ROW = 97
+_SHORT = 12
+"""Of items below that, several stand on a line."""
 
 
 class Printer:
@@ -43,6 +47,8 @@ class Printer:
     """
 
     INDENT: ClassVar[str] = "    "
+    COMMENT: ClassVar[str] = "//"
+    """What begins a remark."""
     TYPES: ClassVar[dict[Type, str]] = {"real": "double", "int": "int", "bool": "bool"}
     WORDS: ClassVar[dict[str, str]] = {"and": "&&", "or": "||", "not": "!", "true": "true", "false": "false"}
     END: ClassVar[str] = ";"
@@ -105,7 +111,29 @@ class Printer:
 
     def comment(self, text: str) -> list[str]:
         """A remark, on as many lines as it takes."""
-        return [f"// {line}" for line in remark(text)]
+        return [f"{self.COMMENT} {line}" for line in remark(text)]
+
+    # --- pieces of files --------------------------------------------------------------------------
+
+    @classmethod
+    def block(cls, lines: Iterable[str], depth: int = 1) -> str:
+        """Lines that are nested so deep."""
+        return "\n".join(f"{cls.INDENT * depth}{line}" if line else "" for line in lines)
+
+    @classmethod
+    def items(cls, items: Sequence[str], depth: int = 0) -> str:
+        """What stands between the brackets of a list: one line where it is short, else lines that nest deeper."""
+        line = ", ".join(items)
+        if len(line) <= _LONGEST_LIST:
+            return line
+        rows: list[str] = []
+        short = max(map(len, items)) < _SHORT
+        for item in items:
+            if rows and short and len(rows[-1]) + len(item) < _LONGEST_ROW:
+                rows[-1] += f" {item},"
+            else:
+                rows.append(f"{item},")
+        return f"\n{cls.block(rows, depth + 1)}\n{cls.INDENT * depth}"
 
     # --- expressions ------------------------------------------------------------------------------
 

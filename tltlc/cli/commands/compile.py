@@ -4,13 +4,20 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from tltlc.cli import exits
-from tltlc.cli.outputs import output_option, target_option, targets_of, write_automata
+from tltlc.cli.outputs import files_of, output_option, target_option, targets_of, write_and_tell
 from tltlc.cli.settings import Settings, source_options
+
+if TYPE_CHECKING:
+    from tltlc.backends import Files
+    from tltlc.cli.inputs import Input
+    from tltlc.cli.report import Report
 
 
 @click.command(
@@ -20,19 +27,19 @@ Examples:
   tltlc compile cover_and_hide.tltl -o build -t json,svg
   tltlc compile levels.tltl --spec level_1 --spec level_2
   tltlc compile build/level_1.fspa.json -t python    from an artefact
-  tltlc compile levels.tltl -o Assets/Specs -t csharp --watch
+  tltlc compile levels/*.tltl -o Assets/Specs -t csharp --watch
 """
 )
-@click.argument("spec", metavar="SPEC")
+@click.argument("specs", metavar="SPEC...", nargs=-1, required=True)
 @output_option
 @target_option
-@click.option("--spec", "names", metavar="NAME", multiple=True, help="Only this spec of the file (repeatable).")
+@click.option("--spec", "names", metavar="NAME", multiple=True, help="Only this spec of each file (repeatable).")
 @click.option(
     "--watch", is_flag=True, help="Stay, and compile again whenever a file changes that was read, until Ctrl-C."
 )
 @source_options
 def command(
-    spec: str,
+    specs: tuple[str, ...],
     folder: Path,
     target_lists: tuple[str, ...],
     names: tuple[str, ...],
@@ -40,12 +47,11 @@ def command(
     settings: Settings,
     format: str,  # noqa: A002
 ) -> int:
-    """Compile the specs of SPEC (a file, FILE:NAME, an artefact, or - for standard input).
+    """Compile the specs of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
     For each spec NAME this writes NAME.fspa.json, NAME.dot and NAME_monitor.py, or what -t asks for.
     Nothing is written unless everything could be, and files that would not change stay untouched.
     """
-    from tltlc.cli.inputs import open_input
     from tltlc.cli.report import Report
 
     def compile_once(changed: tuple[str, ...] = ()) -> int:
@@ -53,16 +59,26 @@ def command(
             if changed:
                 report.say(f"\n{time.strftime('%H:%M:%S')} changed: {', '.join(changed)}")
             asked = targets_of(target_lists)
-            opened = open_input(spec, settings, names)
-            report.add(opened.diagnostics)
-            if not write_automata(opened.automata, asked, folder, opened.project, report):
-                report.say(f"{opened.name}: there is no spec in it, so nothing was written")
+            files: Files = {}
+            for opened in _opened(specs, settings, names, report):
+                if not opened.automata:
+                    report.say(f"{opened.name}: there is no spec in it, so nothing was written")
+                _add(files, files_of(opened.automata, asked, opened.project, report), opened.name)
+            if report.status == exits.CLEAN:
+                write_and_tell(folder, files, report)
         return report.status
 
     def compile_and_tell(changed: tuple[str, ...]) -> None:
+        try:
+            status = compile_once(changed)
+        except click.UsageError as error:
+            # That two specs have one name may be a matter of what was just written.
+            if not changed:
+                raise
+            status = exits.report(error)
         # No file that changes would mend the command line.
-        if compile_once(changed) == exits.USAGE and not changed:
-            raise exits.StopQuietlyError(exits.USAGE)
+        if status in (exits.USAGE, exits.UNREADABLE) and not changed:
+            raise exits.StopQuietlyError(status)
         if format == "text":
             print("waiting for changes, until Ctrl-C", file=sys.stderr)
 
@@ -70,7 +86,30 @@ def command(
         from tltlc.cli.watching import repeat
         from tltlc.spec_file import STDIN, split
 
-        if split(spec)[0] == STDIN:
-            raise click.UsageError("--watch takes a file: standard input does not change")
+        if any(split(spec)[0] == STDIN for spec in specs):
+            raise click.UsageError("--watch takes files: standard input does not change")
         repeat(compile_and_tell)
     return compile_once()
+
+
+def _opened(specs: tuple[str, ...], settings: Settings, names: tuple[str, ...], report: Report) -> Iterator[Input]:
+    """The arguments that have no errors, compiled; what is found in each is shown."""
+    from tltlc.cli.inputs import open_input
+    from tltlc.diagnostics.diagnostic import TltlError
+
+    for spec in specs:
+        try:
+            opened = open_input(spec, settings, names)
+        except TltlError as error:
+            report.add(error.diagnostics)
+            continue
+        report.add(opened.diagnostics)
+        yield opened
+
+
+def _add(files: Files, more: Files, source: str) -> None:
+    """Add what a file makes; raises click.UsageError where another has made one of the same name."""
+    for name in more:
+        if name in files:
+            raise click.UsageError(f"`{source}` and a file before it both make `{name}`: compile them apart, with -o")
+    files |= more

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tltlc.cli.outputs import output_option, target_option, targets_of, write_automata
+from tltlc.cli.outputs import files_of, output_option, target_option, targets_of, write_and_tell
 from tltlc.cli.settings import Settings, assignments, source_options
 
 if TYPE_CHECKING:
@@ -92,5 +92,5 @@ def command(
         options = ImportOptions(atoms, name, level, limit, judge, resolve, budget)
         fspa, found = load(source, library, options)
         report.add(found)
-        write_automata([fspa], asked, folder, project, report, (file, predicates))
+        write_and_tell(folder, files_of([fspa], asked, project, report), report, (file, predicates))
     return report.status

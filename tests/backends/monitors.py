@@ -1,0 +1,66 @@
+"""What tests of monitors in other languages share: what a program is to print, and traces for it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+
+from hypothesis import HealthCheck, Phase, settings
+
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.fspa import Fspa
+from tltlc.expression import Expression
+from tltlc.logic import formula as f
+from tltlc.monitor import Monitor, MonitorError
+from tltlc.record import replace
+from tltlc.resolve import spec
+
+HEADER = ["step", "state", "verdict", "accepting", "done", "progress", "reward", "robustness", "limiting"]
+FAR = {"distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0, "health": 1.0}
+HEAD = "health,distance(s1),distance(s2),distance(exit)\n"
+
+batches = settings(
+    max_examples=2,
+    deadline=None,
+    derandomize=True,
+    phases=(Phase.generate,),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture],
+)
+
+Sample = Mapping[str, float]
+Outcome = tuple[int, str, str]
+"""Exit status, standard output, standard error."""
+
+
+def trace_of(samples: Sequence[Sample], names: Sequence[str]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow([*names, "unused"])
+    writer.writerows([*(repr(sample[name]) for name in names), "-"] for sample in samples)
+    return text.getvalue()
+
+
+def expected(fspa: Fspa, samples: Sequence[Sample]) -> Outcome:
+    """What the program is to print."""
+    monitor, text, status, errors = Monitor(fspa), io.StringIO(), 0, ""
+    rows = csv.writer(text, lineterminator="\n")
+    for sample in samples:
+        try:
+            step = monitor.step(sample)
+        except MonitorError as error:
+            status, errors = 1, f"error: {error.diagnostics[0].title}\n"
+            break
+        if monitor.steps == 1:
+            rows.writerow(HEADER)
+        flags = ["true" if flag else "false" for flag in (step.accepting, step.done)]
+        figures = [f"{value:.17g}" for value in (step.progress, step.reward, step.robustness)]
+        limiting = "" if step.limiting is None else step.limiting.replace("\0", "")
+        rows.writerow([monitor.steps, step.state, step.verdict, *flags, *figures, limiting])
+    warnings = "".join(f"warning: {notice.title}\n" for notice in monitor.notices)
+    return status, text.getvalue(), errors + warnings
+
+
+def one_atom(expression: Expression, *signals: spec.Signal) -> Fspa:
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    return replace(fspa, signals=signals, atoms=(spec.Atom("p", expression),), params=())

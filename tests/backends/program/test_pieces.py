@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+import pytest
+
+from tltlc.backends.program import pieces
+from tltlc.backends.program.printer import Printer
+from tltlc.resolve import spec
+
+SIGNALS = (spec.Signal("x", "number", None, None), spec.Signal("y", "bool", None, None))
+
+
+def test_short_items_share_lines_and_stay_whole() -> None:
+    items = [f'"F  b{number}"' for number in range(30)]
+    lines = Printer.items(items, depth=1).split("\n")
+    assert lines[0] == ""
+    assert lines[-1] == "    "
+    assert all(line.startswith(" " * 8) and line.endswith(",") and len(line) <= 108 for line in lines[1:-1])
+    assert len(lines) < 8
+    assert ", ".join(line.strip().rstrip(",") for line in lines[1:-1]) == ", ".join(items)
+
+
+@pytest.mark.parametrize("items", [[], ["1", "2"], ["x" * 60]])
+def test_few_items_stand_on_one_line(items: list[str]) -> None:
+    assert Printer.items(items) == ", ".join(items)
+
+
+def test_long_items_have_lines_of_their_own() -> None:
+    assert Printer.items(["x" * 50, "y", "z" * 50]) == f"\n    {'x' * 50},\n    y,\n    {'z' * 50},\n"
+
+
+def test_literals() -> None:
+    text = 'a "b" \\ é\n'
+    assert pieces.quoted(text, lambda character: "·") == '"a \\"b\\" \\\\ é·"'
+    assert pieces.quoted(text, lambda character: "·", pieces.in_ascii) == '"a \\"b\\" \\\\ ··"'
+
+
+@pytest.mark.parametrize(
+    ("name", "of", "text"),
+    [
+        ("v", spec.Signal("v", "speed", 0.0, 100.0), "In [0, 100] m/s."),
+        ("v", spec.Signal("v", "speed", 0.0, 100.0, "Of the player"), "Of the player. In [0, 100] m/s."),
+        ("d_key", spec.Signal("d(key)", "length", 0.0, None, "How far?"), "d(key): How far? In [0, inf] m."),
+        ("t", spec.Param("t", "time", 1.0, 0.5, 2.0, "Of a tick."), "Of a tick. In [0.5, 2] s."),
+        ("a", spec.Signal("a", "angle", -3.0, 3.0), "In [-3, 3] rad."),
+        ("r", spec.Signal("r", "ratio", 0.0, 1.0, "Health."), "Health. A ratio in [0, 1]."),
+        ("n_1", spec.Signal("n", "number", None, None), "n: In [-inf, inf]."),
+        ("b", spec.Signal("b", "bool", 0.0, 1.0), "True or false."),
+        ("b_1", spec.Signal("b", "bool", 0.0, 1.0, "Whether it is open."), "b: Whether it is open."),
+    ],
+)
+def test_fields_are_described(name: str, of: spec.Signal | spec.Param, text: str) -> None:
+    assert pieces.described(name, of) == text
+
+
+def test_examples() -> None:
+    assert pieces.example((), str, ": ") == "{}"
+    assert pieces.example(SIGNALS, str, ": ") == "{ x: …, y: true }"
+    assert pieces.example(SIGNALS * 2, str, " = ") == "{ x = …, y = true, … }"
+    assert pieces.example(SIGNALS, lambda name: name * 60, ": ") == "signals"
