@@ -298,16 +298,6 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_program(program: Path) -> None:
-    samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
-    status, out, err = expected(cover_and_hide(), samples)
-    short = "".join(line.rsplit(",", 2)[0] + "\n" for line in out.splitlines())
-    text = trace_of(samples, [*FAR])
-    (program / "trace.csv").write_text(text)
-    assert ran(program, "cover_and_hide_monitor.exe", "--full", "trace.csv") == (status, out, err)
-    assert ran(program, "cover_and_hide_monitor.exe", "-", stdin=text.encode()) == (status, short, err)
-
-
 @pytest.mark.parametrize("culture", ["de_DE.UTF-8", "tr_TR.UTF-8", "ar_SA.UTF-8"])
 def test_program_in_other_cultures(program: Path, culture: str) -> None:
     """Numbers with commas, and an i that has a dot as a capital."""
@@ -336,51 +326,6 @@ def test_public_members_have_comments(tmp_path: Path) -> None:
     sources = ("game.cs", "cover_and_hide_monitor.cs", "cover_and_hide_monitor_behaviour.cs")
     compiled(tmp_path, "-out:game.exe", "-doc:game.xml", *sources)
     assert "A ratio in [0, 1]." in (tmp_path / "game.xml").read_text()
-
-
-@pytest.mark.parametrize(
-    ("trace", "arguments", "status", "message"),
-    [
-        ("", ["-"], 1, "error: the trace holds no sample\n"),
-        (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
-        (
-            "health,distance(s1)\n1\n",
-            ["-"],
-            1,
-            "error: the trace has no column for `distance(s2)` and `distance(exit)`\n",
-        ),
-        (
-            "distance(exit)\n1\n",
-            ["-"],
-            1,
-            "error: the trace has no column for `distance(s1)`, `distance(s2)` and `health`\n",
-        ),
-        ("health,distance(s1),distance(s2)\n1\n", ["-"], 1, "error: the trace has no column for `distance(exit)`\n"),
-        (
-            '{"health": 1}\n',
-            ["-"],
-            1,
-            "error: the trace is JSON, and this program reads CSV: `tltlc monitor` takes both\n",
-        ),
-        (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
-        (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
-        (f"{HEAD}0x1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `0x1`, no number\n"),
-        (f"{HEAD}--1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `--1`, no number\n"),
-        (f"{HEAD}nan,1,1,1\n", ["-"], 1, "error: step 1: no finite number for the signal `health`\n"),
-        (f"{HEAD}1e999,1,1,1\n", ["-"], 1, "error: step 1: no finite number for the signal `health`\n"),
-        (f'{HEAD}"1"2,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
-        (f"{HEAD}1,0.5,0.5,20\n", ["-"], 1, "error: step 1: `near(s1)` and `near(s2)` hold at once, against "),
-        ("", ["missing.csv"], 3, "error: cannot read `missing.csv`: "),
-        ("", ["."], 3, "error: cannot read `.`: "),
-        ("", [], 2, "usage: "),
-        ("", ["--full"], 2, "usage: "),
-        ("", ["-", "--full"], 2, "usage: "),
-    ],
-)
-def test_program_errors(program: Path, trace: str, arguments: list[str], status: int, message: str) -> None:
-    found, out, err = ran(program, "cover_and_hide_monitor.exe", *arguments, stdin=trace.encode())
-    assert (found, out) == (status, "")
-    assert err.startswith(message)
 
 
 def test_nobody_reads_the_rows(program: Path) -> None:

@@ -23,7 +23,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.backends.monitors import FAR, HEAD, Outcome, Sample, batches, expected, one_atom, trace_of
+from tests.backends.monitors import Outcome, Sample, batches, expected, one_atom, trace_of
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
@@ -388,108 +388,3 @@ def test_library(tmp_path: Path) -> None:
     status, out, err = run(tmp_path, "library.gd")
     lines = [wrong, wrong.replace("be 1", "be nan"), "True|0|", *rows, *rows, notice]
     assert (status, out.splitlines()) == (0, lines), err
-
-
-# --- as a program ---------------------------------------------------------------------------------
-
-MAIN = "cover_and_hide_monitor_main.gd"
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    made = tmp_path_factory.mktemp("program")
-    write(made, cover_and_hide())
-    return made
-
-
-@runs
-def test_program(folder: Path) -> None:
-    samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
-    outcome = expected(cover_and_hide(), samples)
-    short = (outcome[0], "".join(line.rsplit(",", 2)[0] + "\n" for line in outcome[1].splitlines()), outcome[2])
-    text = trace_of(samples, [*FAR])
-    (folder / "trace.csv").write_text(text)
-    assert run(folder, MAIN, "--full", "trace.csv") == outcome
-    assert run(folder, MAIN, "trace.csv") == short
-    assert run(folder, MAIN, "-", stdin=text.encode()) == short
-
-
-@runs
-@pytest.mark.parametrize(
-    "trace",
-    [
-        b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
-        b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
-        b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
-        b'x,health,distance(s1),distance(s2),distance(exit)\n"a,\nb""c",True,20,20,20\n',
-        b"health,distance(s1),distance(s2),distance(exit)\r1,20,20,20\r",
-    ],
-)
-def test_ways_to_write_a_trace(folder: Path, trace: bytes) -> None:
-    (folder / "way.csv").write_bytes(trace)
-    assert run(folder, MAIN, "--full", "way.csv") == expected(cover_and_hide(), [FAR])
-
-
-@runs
-@pytest.mark.parametrize(
-    ("trace", "arguments", "status", "message"),
-    [
-        ("", ["bad.csv"], 1, "error: the trace holds no sample\n"),
-        ("\n\n", ["bad.csv"], 1, "error: the trace holds no sample\n"),
-        (HEAD, ["bad.csv"], 1, "error: the trace holds no sample\n"),
-        (
-            "health,distance(s1)\n1\n",
-            ["bad.csv"],
-            1,
-            "error: the trace has no column for `distance(s2)` and `distance(exit)`\n",
-        ),
-        (
-            "distance(exit)\n1\n",
-            ["bad.csv"],
-            1,
-            "error: the trace has no column for `distance(s1)`, `distance(s2)` and `health`\n",
-        ),
-        (
-            "health,distance(s1),distance(s2)\n1\n",
-            ["bad.csv"],
-            1,
-            "error: the trace has no column for `distance(exit)`\n",
-        ),
-        (
-            '{"health": 1}\n',
-            ["bad.csv"],
-            1,
-            "error: the trace is JSON, and this program reads CSV: `tltlc monitor` takes both\n",
-        ),
-        (f"health,{HEAD}1,1,1,1,1\n", ["bad.csv"], 1, "error: two columns are called `health`\n"),
-        (f"{HEAD}1,1\n", ["bad.csv"], 1, "error: step 1: 2 values under 4 columns\n"),
-        (f"{HEAD}x,1,1,1\n", ["bad.csv"], 1, "error: step 1: the signal `health` is `x`, no number\n"),
-        (f"{HEAD},1,1,1\n", ["bad.csv"], 1, "error: step 1: the signal `health` is ``, no number\n"),
-        (f"{HEAD}1e999,1,1,1\n", ["bad.csv"], 1, "error: step 1: no finite number for the signal `health`\n"),
-        (f'{HEAD}"1,1,1,1\n', ["bad.csv"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
-        (f'{HEAD}"1"2,1,1,1\n', ["bad.csv"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
-        (f"{HEAD}1,0.5,0.5,20\n", ["bad.csv"], 1, "error: step 1: `near(s1)` and `near(s2)` hold at once, against "),
-        ("", ["missing.csv"], 3, "error: cannot read `missing.csv`\n"),
-        ("", ["."], 3, "error: cannot read `.`\n"),
-        ("", [], 2, "usage: "),
-        ("", ["--full"], 2, "usage: "),
-        ("", ["-", "--full"], 2, "usage: "),
-        ("", ["--full", "a", "b"], 2, "usage: "),
-    ],
-)
-def test_program_errors(folder: Path, trace: str, arguments: list[str], status: int, message: str) -> None:
-    (folder / "bad.csv").write_text(trace)
-    found, out, err = run(folder, MAIN, *arguments)
-    assert (found, out) == (status, "")
-    assert err.startswith(message)
-
-
-@runs
-def test_rows_come_before_an_error(folder: Path) -> None:
-    (folder / "late.csv").write_text(f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n")
-    found, out, err = run(folder, MAIN, "late.csv")
-    assert (found, out.count("\n")) == (1, 3)
-    assert err == (
-        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
-        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
-    )

@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
+from tests.backends.monitors import FAR
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tltlc.automaton.build import build, spec_from_formula
@@ -340,66 +341,3 @@ def test_the_module_imports_nothing() -> None:
     assert isinstance(text, str)
     code = re.sub(r"^//.*|/\*.*?\*/", "", text, flags=re.MULTILINE | re.DOTALL)
     assert not re.search(r"\bimport\b|require\(|^(if )?\(?await ", code, re.MULTILINE)
-
-
-# --- as a program ---------------------------------------------------------------------------------
-
-FAR = {"health": 1.0, "distance(s1)": 20.0, "distance(s2)": 20.0, "distance(exit)": 20.0}
-HEAD = "health,distance(s1),distance(s2),distance(exit)\n"
-
-ERRORS = [
-    ("", ["-"], 1, "error: the trace holds no sample\n"),
-    (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
-    ("health,distance(s1)\n1\n", ["-"], 1, "error: the trace has no column for `distance(s2)` and `distance(exit)`\n"),
-    ('{"health": 1}\n', ["-"], 1, "error: the trace is JSON, and this program reads CSV: `tltlc monitor` takes both\n"),
-    (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
-    (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
-    (f"{HEAD}0x1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `0x1`, no number\n"),
-    (f"{HEAD},1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is ``, no number\n"),
-    (f"{HEAD}-Inf,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is -inf, not a finite number\n"),
-    (f'{HEAD}"1,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
-    (f'{HEAD}"1"2,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
-    ("", ["missing.csv"], 3, "error: cannot read `missing.csv`: "),
-    ("", ["."], 3, "error: cannot read `.`: "),
-    ("", [], 2, "usage: "),
-    ("", ["--help"], 2, "usage: "),
-    ("", ["--full"], 2, "usage: "),
-    ("", ["-", "--full"], 2, "usage: "),
-    ("", ["--full", "a", "b"], 2, "usage: "),
-]
-
-WAYS = [
-    b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
-    b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
-    b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
-    b'\xef\xbbx,health,distance(s1),distance(s2),distance(exit)\n"a,\nb""c",True,20,20,+20.\n',
-    b"health,distance(s1),distance(s2),distance(exit)\r1,20,20,20\r",
-]
-
-
-@pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return written(cover_and_hide(), tmp_path_factory.mktemp("program"))
-
-
-@pytest.mark.parametrize("trace", WAYS)
-def test_ways_to_write_a_trace(program: Path, trace: bytes) -> None:
-    status, out, err = ran(program, "--full", "-", stdin=trace)
-    assert (status, err) == (0, "")
-    assert printed(out) == rows(cover_and_hide(), [FAR])
-
-
-@pytest.mark.parametrize(("trace", "arguments", "status", "message"), ERRORS)
-def test_program_errors(program: Path, trace: str, arguments: list[str], status: int, message: str) -> None:
-    found, out, err = ran(program, *arguments, stdin=trace.encode())
-    assert (found, out) == (status, "")
-    assert err.startswith(message)
-
-
-def test_rows_come_before_an_error(program: Path) -> None:
-    found, out, err = ran(program, "-", stdin=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n".encode())
-    assert (found, out.count("\n")) == (1, 3)
-    assert err == (
-        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
-        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
-    )

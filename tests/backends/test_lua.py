@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
+from tests.backends.monitors import FAR
 from tests.backends.strategies import hostile_automata
-from tests.backends.test_javascript import ERRORS, FAR, HEAD, NAMES, WAYS, Outcome, awkward, printed, rows, trace_of
+from tests.backends.test_javascript import NAMES, Outcome, awkward, printed, rows, trace_of
 from tests.fixtures import cover_and_hide
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import build, spec_from_formula
@@ -258,39 +259,3 @@ def test_a_step_allocates_nothing(interpreter: str, tmp_path: Path) -> None:
     written(cover_and_hide(), tmp_path)
     (tmp_path / "use.lua").write_text(ALLOCATES)
     assert ran(interpreter, tmp_path / "use.lua") == (0, "true\n", "")
-
-
-# --- as a program ---------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return written(cover_and_hide(), tmp_path_factory.mktemp("program"))
-
-
-@interpreters
-@pytest.mark.parametrize("trace", WAYS)
-def test_ways_to_write_a_trace(interpreter: str, program: Path, trace: bytes) -> None:
-    status, out, err = ran(interpreter, program, "--full", "-", stdin=trace)
-    assert (status, err) == (0, "")
-    assert printed(out) == rows(cover_and_hide(), [FAR])
-
-
-@interpreters
-@pytest.mark.parametrize(("trace", "arguments", "status", "message"), ERRORS)
-def test_program_errors(
-    interpreter: str, program: Path, trace: str, arguments: list[str], status: int, message: str
-) -> None:
-    found, out, err = ran(interpreter, program, *arguments, stdin=trace.encode())
-    assert (found, out) == (status, "")
-    assert err.startswith(message)
-
-
-@interpreters
-def test_rows_come_before_an_error(interpreter: str, program: Path) -> None:
-    found, out, err = ran(interpreter, program, "-", stdin=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n".encode())
-    assert (found, out.count("\n")) == (1, 3)
-    assert err == (
-        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
-        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
-    )

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.backends.monitors import FAR, HEAD, Outcome, batches, expected, one_atom, trace_of
+from tests.backends.monitors import Outcome, batches, expected, one_atom, trace_of
 from tests.backends.strategies import hostile_automata
 from tests.backends.test_c import NAMES
 from tests.conformance.runners.rust import STRICT, linked
@@ -206,26 +206,6 @@ def test_documentation_is_no_code(tmp_path: Path, text: str) -> None:
 # --- as a program ---------------------------------------------------------------------------------
 
 
-@pytest.fixture(scope="module")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("program")
-    written(cover_and_hide(), folder)
-    # The oldest edition is what the compiler takes a file for.
-    compiled(folder, "-O", "--cfg", "tltl_main", "cover_and_hide_monitor.rs", edition="2015")
-    return folder / "cover_and_hide_monitor"
-
-
-def test_program(program: Path) -> None:
-    samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
-    status, out, err = expected(cover_and_hide(), samples)
-    short = "".join(line.rsplit(",", 2)[0] + "\n" for line in out.splitlines())
-    text = trace_of(samples, [*FAR])
-    (program.parent / "trace.csv").write_text(text)
-    assert ran(program, "--full", "trace.csv") == (status, out, err)
-    assert ran(program, "trace.csv") == (status, short, err)
-    assert ran(program, "-", stdin=text.encode()) == (status, short, err)
-
-
 def test_program_of_any_edition(tmp_path: Path) -> None:
     """With all that `core` does not have."""
     x = Signal("x")
@@ -234,79 +214,6 @@ def test_program_of_any_edition(tmp_path: Path) -> None:
     written(fspa, tmp_path)
     for edition in ("2015", "2018", "2021"):
         compiled(tmp_path, "--cfg", "tltl_main", "--emit", "metadata", f"{fspa.name}_monitor.rs", edition=edition)
-
-
-@pytest.mark.parametrize(
-    "trace",
-    [
-        b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
-        b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
-        b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
-        b'"a,\nb""c",health,distance(s1),distance(s2),distance(exit)\n\xff,True,20,20,20\n',
-        b"health,distance(s1),distance(s2),distance(exit)\r1,20,20,20\r",
-    ],
-)
-def test_ways_to_write_a_trace(program: Path, trace: bytes) -> None:
-    assert ran(program, "--full", "-", stdin=trace) == expected(cover_and_hide(), [FAR])
-
-
-@pytest.mark.parametrize(
-    ("trace", "arguments", "status", "message"),
-    [
-        ("", ["-"], 1, "error: the trace holds no sample\n"),
-        ("\n\n", ["-"], 1, "error: the trace holds no sample\n"),
-        (HEAD, ["-"], 1, "error: the trace holds no sample\n"),
-        (
-            "health,distance(s1)\n1\n",
-            ["-"],
-            1,
-            "error: the trace has no column for `distance(s2)` and `distance(exit)`\n",
-        ),
-        (
-            "distance(exit)\n1\n",
-            ["-"],
-            1,
-            "error: the trace has no column for `distance(s1)`, `distance(s2)` and `health`\n",
-        ),
-        ("health,distance(s1),distance(s2)\n1\n", ["-"], 1, "error: the trace has no column for `distance(exit)`\n"),
-        (
-            '{"health": 1}\n',
-            ["-"],
-            1,
-            "error: the trace is JSON, and this program reads CSV: `tltlc monitor` takes both\n",
-        ),
-        (f"health,{HEAD}1,1,1,1,1\n", ["-"], 1, "error: two columns are called `health`\n"),
-        (f"{HEAD}1,1\n", ["-"], 1, "error: step 1: 2 values under 4 columns\n"),
-        (f"{HEAD}x,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `x`, no number\n"),
-        (f"{HEAD}0x1,1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is `0x1`, no number\n"),
-        (f"{HEAD},1,1,1\n", ["-"], 1, "error: step 1: the signal `health` is ``, no number\n"),
-        (f"{HEAD}nan,1,1,1\n", ["-"], 1, "error: step 1: no finite number for the signal `health`\n"),
-        (f"{HEAD}1e999,1,1,1\n", ["-"], 1, "error: step 1: no finite number for the signal `health`\n"),
-        (f'{HEAD}"1,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
-        (f'{HEAD}"1"2,1,1,1\n', ["-"], 1, "error: step 1: a quote is not closed, or goes on behind its end\n"),
-        (f"{HEAD}1,0.5,0.5,20\n", ["-"], 1, "error: step 1: `near(s1)` and `near(s2)` hold at once, against "),
-        ("", ["missing.csv"], 3, "error: cannot read `missing.csv`: No such file or directory"),
-        ("", ["."], 3, "error: cannot read `.`: Is a directory"),
-        ("", [], 2, "usage: "),
-        ("", ["--help"], 2, "usage: "),
-        ("", ["--full"], 2, "usage: "),
-        ("", ["-", "--full"], 2, "usage: "),
-        ("", ["--full", "a", "b"], 2, "usage: "),
-    ],
-)
-def test_program_errors(program: Path, trace: str, arguments: list[str], status: int, message: str) -> None:
-    found, out, err = ran(program, *arguments, stdin=trace.encode())
-    assert (found, out) == (status, "")
-    assert err.startswith(message)
-
-
-def test_rows_come_before_an_error(program: Path) -> None:
-    found, out, err = ran(program, "-", stdin=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n".encode())
-    assert (found, out.count("\n")) == (1, 3)
-    assert err == (
-        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
-        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
-    )
 
 
 NUMBERS = r"""

@@ -62,7 +62,7 @@ def command(
             files: Files = {}
             for opened in _opened(specs, settings, names, report):
                 if not opened.automata:
-                    report.say(f"{opened.name}: there is no spec in it, so nothing was written")
+                    report.say(f"{opened.name}: there is no spec in it")
                 _add(files, files_of(opened.automata, asked, opened.project, report), opened.name)
             if report.status == exits.CLEAN:
                 write_and_tell(folder, files, report)

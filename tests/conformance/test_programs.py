@@ -1,0 +1,131 @@
+"""What monitors do as programs, beside printing the right rows: arguments, ways to write a trace, errors.
+
+Python's program reads JSON lines, too; its tests are in ``tests/monitor``.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable
+
+import pytest
+
+from tests.backends.monitors import FAR, HEAD, Outcome, expected, trace_of
+from tests.conformance.runner import LONGEST_RUN_S, Runner, build, runners, write
+from tltlc.conformance.case import Case
+from tltlc.conformance.corpus import CASES
+
+NAME = "cover_and_hide"
+WAYS = [
+    b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
+    b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
+    b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
+    b'x,health,distance(s1),distance(s2),distance(exit)\n"a,\nb""c",True,20,20,+20.\n',
+    b"health,distance(s1),distance(s2),distance(exit)\r1,20,20,20\r",
+]
+
+# What a message says, with `…` for what is the language's own.
+ERRORS = [
+    ("", "the trace holds no sample"),
+    ("\n\n", "the trace holds no sample"),
+    (HEAD, "the trace holds no sample"),
+    ("health,distance(s1)\n1\n", "the trace has no column for `distance(s2)` and `distance(exit)`"),
+    ("distance(exit)\n1\n", "the trace has no column for `distance(s1)`, `distance(s2)` and `health`"),
+    ("health,distance(s1),distance(s2)\n1\n", "the trace has no column for `distance(exit)`"),
+    ('{"health": 1}\n', "the trace is JSON, and this program reads CSV: `tltlc monitor` takes both"),
+    (f"health,{HEAD}1,1,1,1,1\n", "two columns are called `health`"),
+    (f"{HEAD}1,1\n", "step 1: 2 values under 4 columns"),
+    (f"{HEAD}x,1,1,1\n", "step 1: the signal `health` is `x`, no number"),
+    (f"{HEAD}0x1,1,1,1\n", "step 1: the signal `health` is `0x1`, no number"),
+    (f"{HEAD}--1,1,1,1\n", "step 1: the signal `health` is `--1`, no number"),
+    (f"{HEAD},1,1,1\n", "step 1: the signal `health` is ``, no number"),
+    (f"{HEAD}nan,1,1,1\n", "step 1: …`health`"),
+    (f"{HEAD}-Inf,1,1,1\n", "step 1: …`health`"),
+    (f"{HEAD}1e999,1,1,1\n", "step 1: …`health`"),
+    (f'{HEAD}"1,1,1,1\n', "step 1: a quote is not closed, or goes on behind its end"),
+    (f'{HEAD}"1"2,1,1,1\n', "step 1: a quote is not closed, or goes on behind its end"),
+    (f"{HEAD}1,0.5,0.5,20\n", "step 1: `near(s1)` and `near(s2)` hold at once, against …"),
+]
+USAGE = [[], ["--full"], ["-", "--full"], ["--full", "a", "b"], ["--what", "a"]]
+
+Run = Callable[..., Outcome]
+
+
+@pytest.fixture(scope="session")
+def case() -> Case:
+    return CASES[NAME]()
+
+
+# Which cannot be used here, and why, tests/conformance/test_conformance.py says.
+USABLE = [runner for runner in runners() if runner.name != "python" and runner.missing() is None]
+
+
+@pytest.fixture(scope="session", params=USABLE, ids=lambda runner: runner.name)
+def run(request: pytest.FixtureRequest, case: Case, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Runs the program of a language on a trace, a file's or that of standard input."""
+    runner: Runner = request.param
+    folder = tmp_path_factory.mktemp(runner.name)
+    write(runner, case, folder)
+    if runner.build_all is None:
+        build(runner, NAME, folder)
+    else:
+        runner.build_all(folder, (NAME,))
+
+    def run(*arguments: str, trace: str | bytes = "") -> Outcome:
+        data = trace.encode() if isinstance(trace, str) else trace
+        (folder / "trace.csv").write_bytes(data)
+        command = [word.format(name=NAME) for word in runner.run]
+        done = subprocess.run(
+            [*command, *arguments], cwd=folder, input=data, capture_output=True, timeout=LONGEST_RUN_S
+        )
+        # Engines print lines of their own first.
+        out = done.stdout.decode()
+        return done.returncode, out[out.index("step,state,") :] if "step,state," in out else "", done.stderr.decode()
+
+    return run
+
+
+def test_files_and_standard_input(run: Run, case: Case) -> None:
+    samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
+    status, out, err = expected(case.fspa, samples)
+    short = "".join(line.rsplit(",", 2)[0] + "\n" for line in out.splitlines())
+    trace = trace_of(samples, [*FAR])
+    assert run("--full", "trace.csv", trace=trace) == (status, out, err)
+    assert run("trace.csv", trace=trace) == (status, short, err)
+    assert run("-", trace=trace) == (status, short, err)
+
+
+@pytest.mark.parametrize("trace", WAYS)
+def test_ways_to_write_a_trace(run: Run, case: Case, trace: bytes) -> None:
+    assert run("--full", "trace.csv", trace=trace) == expected(case.fspa, [FAR])
+
+
+@pytest.mark.parametrize(("trace", "message"), ERRORS)
+def test_traces_that_are_refused(run: Run, trace: str, message: str) -> None:
+    status, out, err = run("trace.csv", trace=trace)
+    assert (status, out) == (1, "")
+    begins, _, holds = f"error: {message}".partition("…")
+    assert err.startswith(begins) and holds in err and err.count("\n") == 1
+
+
+def test_rows_come_before_an_error(run: Run) -> None:
+    status, out, err = run("trace.csv", trace=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n")
+    assert (status, out.count("\n")) == (1, 3)
+    assert err == (
+        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
+        "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
+    )
+
+
+@pytest.mark.parametrize("path", ["missing.csv", "."])
+def test_files_that_cannot_be_read(run: Run, path: str) -> None:
+    status, out, err = run(path)
+    assert (status, out) == (3, "")
+    assert err.startswith(f"error: cannot read `{path}`") and err.count("\n") == 1
+
+
+@pytest.mark.parametrize("arguments", USAGE, ids=" ".join)
+def test_wrong_usage(run: Run, arguments: list[str]) -> None:
+    status, out, err = run(*arguments)
+    assert (status, out) == (2, "")
+    assert err.startswith("usage: ")
