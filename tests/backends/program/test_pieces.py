@@ -2,8 +2,15 @@ from __future__ import annotations
 
 import pytest
 
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.backends import emit
 from tltlc.backends.program import pieces
 from tltlc.backends.program.printer import Printer
+from tltlc.expression import Op
+from tltlc.expression import Param as NamedParam
+from tltlc.expression import Signal as NamedSignal
+from tltlc.logic import formula as f
+from tltlc.record import replace
 from tltlc.resolve import spec
 
 SIGNALS = (spec.Signal("x", "number", None, None), spec.Signal("y", "bool", None, None))
@@ -50,6 +57,20 @@ def test_literals() -> None:
 )
 def test_fields_are_described(name: str, of: spec.Signal | spec.Param, text: str) -> None:
     assert pieces.described(name, of) == text
+
+
+@pytest.mark.parametrize("target", ["c", "csharp", "gdscript", "gdscript3", "javascript", "lua", "rust"])
+def test_a_text_stands_beside_the_range_in_every_language(target: str) -> None:
+    fspa = build(spec_from_formula(f.eventually(f.atom("p"))))
+    fspa = replace(
+        fspa,
+        signals=(spec.Signal("pace", "speed", 0.0, 100.0, "Of the player"),),
+        params=(spec.Param("far", "length", 5.0, 2.0, 10.0, "How far it is."),),
+        atoms=(spec.Atom("p", Op("-", (NamedSignal("pace"), NamedParam("far")))),),
+    )
+    text = "\n".join(str(content) for content in emit(target, fspa).values())
+    assert "Of the player. In [0, 100] m/s." in text
+    assert "How far it is. In [2, 10] m." in text
 
 
 def test_examples() -> None:
