@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: demo test lint format generate bench checkers clean
+.PHONY: demo test test-slow lint format generate docs vscode bench checkers clean
 
 # Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
 demo: $(VENV)/.installed-rl
@@ -30,13 +30,19 @@ demo: $(VENV)/.installed-rl
 	@echo "The command is $(BIN)/tltlc; after 'source $(BIN)/activate' it is tltlc."
 
 test: lint
-	$(BIN)/python -m pytest -q -rs -n 2
+	$(BIN)/python -m pytest -q -rs -n 2 -m "not slow"
+
+# Trainings that are killed and go on, the shipped suite, large formulas: some minutes more.
+test-slow: $(VENV)/.installed-dev
+	$(BIN)/python -m pytest -q -rs -n 2 -m slow
 
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/tltlc fmt --check examples stdlib_predicates
+	$(BIN)/tltlc lint examples stdlib_predicates
 
 format: $(VENV)/.installed-dev
 	$(BIN)/ruff check --fix .
@@ -47,14 +53,28 @@ generate: $(VENV)/.installed-dev
 	$(BIN)/python -m tltlc.grammar.tables
 	$(BIN)/python -m tltlc.backends.artefact.generate
 	$(BIN)/tltlc render examples/cover_and_hide.tltl -o docs/images/cover_and_hide.svg
+	rm -rf docs/images/new && $(BIN)/tltlc new docs/images/new
+	$(BIN)/tltlc render docs/images/new/first_level.tltl --notation english -o docs/images/leave_with_key.svg
+	rm -rf docs/images/new
 	$(BIN)/python docs/images/frames.py docs/images
+
+# Build the documentation as a site, with warnings as errors: site/index.html, which needs no server.
+docs: $(VENV)/.installed-dev
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet
+	@echo "Written: site/index.html"
+
+# Build the extension for VS Code: editors/vscode/tltl.vsix.
+vscode:
+	npm --prefix editors/vscode ci --no-audit --no-fund
+	npm --prefix editors/vscode run build
+	npm --prefix editors/vscode run package
 
 # Measure beside the peers and write benchmarks/RESULTS.md; a run that was stopped goes on. MONA: Debian package `mona`.
 bench: $(VENV)/.installed-bench
 	$(BIN)/python -m benchmarks
 
-# Programs that check generated code, each in a folder of its own, since gdtoolkit asks for another lark than tltlc.
-checkers: $(VENV)/gdtoolkit/bin/gdparse $(VENV)/npm/node_modules/.bin/tsc
+# What tests take from elsewhere, each in a folder of its own, since gdtoolkit asks for another lark than tltlc.
+checkers: $(VENV)/gdtoolkit/bin/gdparse $(VENV)/npm/node_modules/.bin/tsc $(VENV)/pyodide/node_modules/pyodide
 
 $(VENV)/gdtoolkit/bin/gdparse:
 	$(PYTHON) -m venv $(VENV)/gdtoolkit
@@ -63,8 +83,11 @@ $(VENV)/gdtoolkit/bin/gdparse:
 $(VENV)/npm/node_modules/.bin/tsc:
 	npm install --prefix $(VENV)/npm --silent --no-audit --no-fund --ignore-scripts typescript@5.9.3 esbuild@0.28.2
 
+$(VENV)/pyodide/node_modules/pyodide:
+	npm install --prefix $(VENV)/pyodide --silent --no-audit --no-fund --ignore-scripts pyodide@314.0.7
+
 clean:
-	rm -rf $(VENV) demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) demo site build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)

@@ -17,12 +17,14 @@ from benchmarks import (
     expert,
     game,
     infinite,
+    mine,
     monitors,
     process,
     report,
     safety,
     suite,
     table1,
+    tools,
     training,
     verdicts,
 )
@@ -44,6 +46,8 @@ SECTIONS = {
         edits,
         table1,
         infinite,
+        mine,
+        tools,
         engine_speed,
         compile_table,
     )

@@ -27,13 +27,13 @@ def measure(store: Store, _: float, say: Callable[[str], None]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         for key, arguments in _commands(Path(folder)).items():
             if "cpu_ratio" not in store.section(SECTION).get(key, {}):
-                record = _compared(arguments, _with_bytecode(Path(folder)))
+                record = _compared(arguments, with_bytecode(Path(folder)))
                 store.put(SECTION, key, record)
                 ratio = f"{record['cpu_ratio'][1]:.1f} times a bare interpreter" if "cpu_ratio" in record else "failed"
                 say(f"{key}: {ratio}")
 
 
-def _with_bytecode(folder: Path) -> dict[str, str]:
+def with_bytecode(folder: Path) -> dict[str, str]:
     """The variables of this process, but with compiled modules kept, as they are of an installed package."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     return environment | {"PYTHONPYCACHEPREFIX": str(folder / "bytecode")}

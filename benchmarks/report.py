@@ -17,12 +17,14 @@ from benchmarks import (
     game,
     game_report,
     infinite,
+    mine,
     monitors,
     process,
     safety,
     suite,
     summary,
     table1,
+    tools,
     training,
     training_report,
     verdicts,
@@ -73,6 +75,8 @@ def render(store: Store) -> str:
         edits_report.section(store.section(edits.SECTION)),
         table1.section(store.section(table1.SECTION)),
         infinite.section(store.section(infinite.SECTION)),
+        mine.section(store.section(mine.SECTION)),
+        tools.section(store.section(tools.SECTION)),
     ]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
@@ -165,6 +169,8 @@ def _goals(store: Store, rows: Sequence[summary.Family]) -> Iterable[Sequence[st
     yield from edits_report.goals(store.section(edits.SECTION))
     yield from table1.goals(store.section(table1.SECTION))
     yield from infinite.goals(store.section(infinite.SECTION))
+    yield from mine.goals(store.section(mine.SECTION))
+    yield from tools.goals(store.section(tools.SECTION))
 
 
 def _batch_goals(records: dict[str, Record]) -> Iterable[Sequence[str]]:

@@ -15,7 +15,7 @@ from tests.reference_formulas import read_formula
 from tltlc import compile_text
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
-from tltlc.comparison import Trace, are_equivalent, is_included, separating
+from tltlc.comparison import Trace, are_equivalent, is_included, less_is_left, separating
 from tltlc.logic.formula import Formula
 from tltlc.logic.oracle import all_traces, holds
 from tltlc.rabin.lasso import holds_on_lasso
@@ -43,6 +43,43 @@ def test_over_finite_traces_a_shortest_one_tells_them_apart(one: Formula, other:
     assert holds(one, found.prefix) and not holds(other, found.prefix)
     assert len(found.prefix) <= min((len(each) for each in apart), default=len(found.prefix))
     assert apart or len(found.prefix) > 3
+
+
+@settings(max_examples=100, deadline=None)
+@given(SMALL, SMALL)
+def test_what_is_impossible_is_on_no_trace(one: Formula, other: Formula) -> None:
+    a, b = finite(one), finite(other)
+    known = {atom.name for atom in (*a.atoms, *b.atoms)}
+    literals = tuple(each for each in (("b", True), ("a", False)) if each[0] in known)
+    if not literals:
+        return
+    found = separating(a, b, impossible=[literals])
+
+    def is_possible(letter: frozenset[str]) -> bool:
+        return not all((name in letter) == wanted for name, wanted in literals)
+
+    apart = [
+        each
+        for each in all_traces(("a", "b"), 3)
+        if all(map(is_possible, each)) and holds(one, each) and not holds(other, each)
+    ]
+    if found is None:
+        assert not apart
+        return
+    assert all(map(is_possible, found.prefix))
+    assert holds(one, found.prefix) and not holds(other, found.prefix)
+    assert len(found.prefix) <= min((len(each) for each in apart), default=len(found.prefix))
+
+
+def test_after_a_goal_less_is_left() -> None:
+    fspa = finite("F a & F b")
+    is_left = less_is_left(fspa)
+    after = {edge.target for edge in fspa.edges if edge.source == 0} - {0}
+    assert len(after) == 3
+    assert all(is_left(0, state) and not is_left(state, 0) for state in after)
+    assert is_left(0, 0)
+    with pytest.raises(OutOfWork):
+        less_is_left(fspa, work=1)(0, 1)
 
 
 @settings(max_examples=150, deadline=None)

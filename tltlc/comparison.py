@@ -23,6 +23,8 @@ _ALLOWED, _RULED_OUT = "allowed", "ruled out"
 
 Letter = frozenset[str]
 """The names of the atoms that hold at a sample."""
+Literals = tuple[tuple[str, bool], ...]
+"""Names of atoms, each with whether it holds."""
 Node = TypeVar("Node", bound=Hashable)
 
 
@@ -34,9 +36,9 @@ class Trace:
     cycle: tuple[Letter, ...] = ()
 
 
-def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> Trace | None:
+def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK, impossible: Iterable[Literals] = ()) -> Trace | None:
     """A trace that ``one`` accepts and ``other`` does not; None where there is none, and all that ``one`` accepts
-    ``other`` does.  Over finite traces it is a shortest one.
+    ``other`` does.  Over finite traces it is a shortest one.  No letter of it has all of the ``impossible`` literals.
 
     Raises:
         ValueError: one is over finite traces, and the other over infinite ones.
@@ -45,7 +47,7 @@ def separating(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> Trace | None
     if one.semantics != other.semantics:
         raise ValueError(f"`{one.name}` is over {one.semantics} traces, and `{other.name}` over {other.semantics} ones")
     with recursion_room():
-        product = _Product(one, other, Work(work))
+        product = _Product(one, other, Work(work), impossible)
         return product.trace() if one.semantics == "finite" else product.lasso()
 
 
@@ -59,10 +61,24 @@ def are_equivalent(one: Fspa, other: Fspa, work: int = DEFAULT_WORK) -> bool:
     return is_included(one, other, work) and is_included(other, one, work)
 
 
+def less_is_left(fspa: Fspa, work: int = DEFAULT_WORK) -> Callable[[int, int], bool]:
+    """Tells of two states, over finite traces, whether whatever mends the first mends the second, too.
+
+    Its errors are those of :func:`separating`; all questions together take no more than ``work`` steps.
+    """
+    product = _Product(fspa, fspa, Work(work))
+
+    def is_left(one: int, other: int) -> bool:
+        with recursion_room():
+            return product.trace((one, other)) is None
+
+    return is_left
+
+
 class _Product:
     """Two automata that are read in step."""
 
-    def __init__(self, one: Fspa, other: Fspa, work: Work) -> None:
+    def __init__(self, one: Fspa, other: Fspa, work: Work, impossible: Iterable[Literals] = ()) -> None:
         self._pair, self._work = (one, other), work
         self._names = tuple(dict.fromkeys(atom.name for fspa in self._pair for atom in fspa.atoms))
         self._letters: Letters[Any] = Letters(work)
@@ -70,6 +86,9 @@ class _Product:
         places = [[self._names.index(name) for name in group] for group in groups]
         # Not True and False, which the table would take for indices of edges.
         self._allowed = at_most_one(self._letters, places, _ALLOWED, _RULED_OUT)
+        for literals in impossible:
+            cube = self._cube([(self._names.index(name), holds) for name, holds in literals], _RULED_OUT, _ALLOWED)
+            self._allowed = self._letters.combined(_if_allowed_by, self._allowed, cube, {})
         self._steps: dict[tuple[int, int], int] = {}
         self._leaving = [_edges_by_source(fspa) for fspa in self._pair]
         self._known: dict[Both, list[tuple[Both, Marks, Letter]]] = {}
@@ -79,14 +98,14 @@ class _Product:
             [pair_marks(marks, first) for marks in fspa.marks()] for fspa, first in zip(self._pair, firsts, strict=True)
         ]
 
-    def trace(self) -> Trace | None:
-        """A shortest finite trace that the first one accepts and the other does not."""
+    def trace(self, start: Both = (0, 0)) -> Trace | None:
+        """A shortest finite trace that the first one accepts from its state and the other does not from its own."""
         one, other = self._pair
 
         def is_wanted(both: Both) -> bool:
             return one.states[both[0]].accepting and not other.states[both[1]].accepting
 
-        way = _way([(0, 0)], self._moves, is_wanted, at_least=1)
+        way = _way([start], self._moves, is_wanted, at_least=1)
         return None if way is None else Trace(way)
 
     def lasso(self) -> Trace | None:
@@ -168,15 +187,19 @@ class _Product:
 
     def _taken(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
         """The index of an edge on letters that meet one of its primes, whose atoms have these places."""
-        letters = self._letters
-        yes, no = letters.leaf(index), letters.leaf(_NO_EDGE)
-        guard = no
+        guard = self._letters.leaf(_NO_EDGE)
         for prime in primes:
-            cube = yes
-            for atom, holds in sorted(((place[atom], holds) for atom, holds in prime), reverse=True):
-                cube = letters.node(atom, no, cube) if holds else letters.node(atom, cube, no)
-            guard = letters.combined(max, guard, cube, {})
+            cube = self._cube([(place[atom], holds) for atom, holds in prime], index, _NO_EDGE)
+            guard = self._letters.combined(max, guard, cube, {})
         return guard
+
+    def _cube(self, literals: Iterable[tuple[int, bool]], inside: Any, outside: Any) -> int:
+        """One value where all literals are true, another one elsewhere."""
+        letters = self._letters
+        no, cube = letters.leaf(outside), letters.leaf(inside)
+        for atom, holds in sorted(literals, reverse=True):
+            cube = letters.node(atom, no, cube) if holds else letters.node(atom, cube, no)
+        return cube
 
     def _with_letters(self, step: int) -> dict[Any, list[str]]:
         """The values of a function of the letter, each with the atoms of a letter that has it, as few as may be."""
@@ -207,6 +230,10 @@ def _edges_by_source(fspa: Fspa) -> list[list[int]]:
 
 def _if_allowed(leaf: Any, allowed: str) -> Any:
     return leaf if allowed == _ALLOWED else None
+
+
+def _if_allowed_by(one: str, other: str) -> str:
+    return one if one == _RULED_OUT else other
 
 
 def _way(

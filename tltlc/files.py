@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Final, Union
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.record import EMPTY
 from tltlc.source import SourceFile, Span
 
 MAX_SOURCE_BYTES: Final = 1 << 20
@@ -24,6 +26,24 @@ Stamp = Union[tuple[int, ...], None]
 
 _noted: Final[list[dict[str, Stamp]]] = []
 """Who asks for notes of what is looked at, by the paths."""
+
+_unsaved: Final[ContextVar[Mapping[str, str]]] = ContextVar("unsaved", default=EMPTY)
+"""The texts that an editor has not saved, by absolute paths."""
+
+
+@contextmanager
+def unsaved(texts: Mapping[str, str]) -> Iterator[None]:
+    """Within, these texts are read in place of the files at their absolute paths, be there such a file or not."""
+    token = _unsaved.set(texts)
+    try:
+        yield
+    finally:
+        _unsaved.reset(token)
+
+
+def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
+    texts = _unsaved.get()
+    return texts.get(os.path.abspath(path)) if texts else None  # noqa: PTH100
 
 
 @contextmanager
@@ -69,7 +89,7 @@ def exists(path: str | os.PathLike[str]) -> bool:
 def is_file(path: str | os.PathLike[str]) -> bool:
     """Whether a file is there, as :func:`exists` has it; devices and pipes are none."""
     note(path)
-    return os.path.isfile(path)  # noqa: PTH113
+    return os.path.isfile(path) or _unsaved_text(path) is not None  # noqa: PTH113
 
 
 def is_dir(path: str | os.PathLike[str]) -> bool:
@@ -103,6 +123,9 @@ def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes
     Error (:class:`TltlError`): TLT0001 where the system cannot read it.
     """
     note(path)
+    text = _unsaved_text(path)
+    if text is not None:
+        return text.encode(errors="replace")[: max_bytes + 1]
     try:
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             return file.read(max_bytes + 1)

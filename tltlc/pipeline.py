@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from tltlc.automaton.build import DEFAULT_STATE_BUDGET, build
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, stop_at_errors
 from tltlc.files import MAX_ARTEFACT_BYTES, read_source
 from tltlc.grammar.parser import parse
-from tltlc.record import EMPTY, record
+from tltlc.record import EMPTY, record, replace
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolve
 from tltlc.source import SourceFile
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from tltlc.logic.formula import Formula
     from tltlc.resolve.spec import Program, Spec
 
+_NO_ATOM = "write a signal, a predicate or a comparison in place of `true` or `false`"
 _MOST_LABELS = 4
 """Of clauses that contradict each other, as many are pointed at."""
 
@@ -64,21 +65,21 @@ def compile_source(source: SourceFile, options: CompileOptions | None = None) ->
     """
     options = options or CompileOptions()
     module, found = parse(source)
-    _stop_at_errors(found)
+    stop_at_errors(found)
     program, resolved = resolve(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
     found += resolved
-    _stop_at_errors(found)
+    stop_at_errors(found)
     automata: list[Fspa] = []
     for spec in pick_specs(program.specs, options.specs, source.name):
-        fspa, remarks = _build(spec, options)
+        fspa, remarks = build_spec(spec, options)
         found += remarks
         if fspa is not None:
             automata.append(fspa)
-    _stop_at_errors(found)
+    stop_at_errors(found)
     return Compiled(program, tuple(automata), found)
 
 
-def _build(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diagnostic, ...]]:
+def build_spec(spec: Spec, options: CompileOptions) -> tuple[Fspa | None, tuple[Diagnostic, ...]]:
     """The automaton of a spec, or None and the errors why not; with warnings."""
     try:
         if spec.semantics == "infinite":
@@ -208,17 +209,11 @@ def with_params(fspa: Fspa, values: Mapping[str, str]) -> Fspa:
     """
     if not values:
         return fspa
-    from tltlc.record import replace
     from tltlc.resolve.overrides import overridden
 
     params, found = overridden({param.name: param for param in fspa.params}, values)
-    _stop_at_errors(tuple(found))
+    stop_at_errors(found)
     return replace(fspa, params=tuple(params.values()))
-
-
-def _stop_at_errors(diagnostics: tuple[Diagnostic, ...]) -> None:
-    if any(diagnostic.severity == "error" for diagnostic in diagnostics):
-        raise TltlError(diagnostics)
 
 
 def _verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
@@ -229,6 +224,7 @@ def _verdict_warnings(spec: Spec, fspa: Fspa) -> tuple[Diagnostic, ...]:
     if verdict == "satisfied":
         title, label = f"every trace satisfies `{spec.name}`", Label(spec.source, spec.name_span)
         way_out = "it asks nothing of the game: was an `and` meant where `or` or `implies` stands?"
+        way_out = way_out if spec.formula.atoms() else _NO_ATOM
         return (Diagnostic("TLT0411", title, (label,), way_out, severity="warning"),)
     return ()
 
@@ -240,25 +236,33 @@ def _recurs(formula: Formula) -> bool:
 
 def _unsatisfiable(spec: Spec) -> Diagnostic:
     """The warning that no trace satisfies a spec, with the parts that are to blame."""
-    from tltlc.automaton.contradiction import contradiction
+    from tltlc.automaton.contradiction import contradiction, unsatisfiable
 
     endless = spec.semantics == "infinite"
+    decision = unsatisfiable
     if endless:
-        from tltlc.rabin.contradiction import unsatisfiable
+        from tltlc.rabin import contradiction as over_infinite_traces
 
-        parts = contradiction(spec, unsatisfiable)
-    else:
-        parts = contradiction(spec)
+        decision = over_infinite_traces.unsatisfiable
+    parts = contradiction(spec, decision)
+    excluded = bool(spec.exclusive) and not decision(parts, replace(spec, exclusive=()))
     title = f"no trace satisfies `{spec.name}`"
     if len(parts) == 1:
         message, way_out = "this cannot be met", "weaken it"
-        if spec.exclusive:
+        (part,) = parts
+        if not part.formula.atoms():
+            way_out = _NO_ATOM
+        elif excluded:
             way_out = "weaken it: atoms that are `exclusive` never hold together"
-        if parts[0].formula.op == "G" and not endless:
-            way_out = "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
+        elif part.formula.op == "G" and not endless:
+            once = replace(part, formula=part.formula.args[0])
+            if not decision([once], spec):
+                way_out = "it is asked at every step, the last one too, after which nothing comes: was `reach` meant?"
     else:
         message, way_out = "together with the others", "these contradict each other: weaken one of them"
         if not endless and any(_recurs(part.formula) for part in parts):
             way_out += "; where play has no end and one comes again and again, say `semantics infinite`"
+        elif excluded:
+            way_out += "; atoms that are `exclusive` never hold together"
     labels = tuple(Label(part.source, part.span, message) for part in parts[:_MOST_LABELS])
     return Diagnostic("TLT0410", title, labels or (Label(spec.source, spec.name_span),), way_out, severity="warning")

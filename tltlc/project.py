@@ -5,16 +5,22 @@ targets = ["json", "dot", "python"]   # what `tltlc compile` writes without -t
 
 [style]
 notation = "unicode"                  # of formulas in pictures: unicode, ascii or english
+formatting = "words"                  # of what `tltlc fmt` writes: words, letters, symbols or unicode
+
+[lint]
+allow = ["TLT0419"]                   # what `tltlc lint` says nothing of; note, warning and error change a severity
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import is_dir, is_file, read_source
-from tltlc.record import record
+from tltlc.record import EMPTY, record, replace
 from tltlc.source import SourceFile, Span
 
 if TYPE_CHECKING:
@@ -22,23 +28,31 @@ if TYPE_CHECKING:
 
 FILE_NAME: Final = "tltl.toml"
 NOTATIONS: Final = ("unicode", "ascii", "english")
-_KEYS: Final = ("libraries", "targets", "style")
-_STYLE_KEYS: Final = ("notation",)
+FORMATTINGS: Final = ("words", "letters", "symbols", "unicode")
+LINT_LEVELS: Final = ("allow", "note", "warning", "error")
+_KEYS: Final = ("libraries", "targets", "style", "lint")
+_STYLE_KEYS: Final = ("notation", "formatting")
 
 
 @record
 class Project:
-    """What a project file says; ``targets`` is empty where it says nothing of them."""
+    """What a project file says; ``targets`` is empty where it says nothing of them.
+
+    ``lint`` maps codes to one of :data:`LINT_LEVELS`.
+    """
 
     libraries: tuple[Path, ...] = ()
     targets: tuple[str, ...] = ()
     notation: Notation = "unicode"
+    lint: Mapping[str, str] = EMPTY
+    formatting: str = "words"
 
 
 def project_for(path: str) -> Project:
     """The project that a source file belongs to, by the nearest project file in its folder or above.
 
-    For standard input that is the current folder.  Errors: those of :func:`read_project`.
+    For standard input that is the current folder.  Libraries inside the current folder are named from there, unless
+    the file's own path is absolute: as in messages on the file.  Errors: those of :func:`read_project`.
     """
     try:
         folder = Path(path).absolute().parent if path != "-" else Path.cwd()
@@ -47,7 +61,9 @@ def project_for(path: str) -> Project:
     for place in (folder, *folder.parents):
         candidate = place / FILE_NAME
         if is_file(candidate):
-            return read_project(candidate)
+            project = read_project(candidate)
+            libraries = project.libraries if Path(path).is_absolute() else map(_from_here, project.libraries)
+            return replace(project, libraries=tuple(libraries))
     return Project()
 
 
@@ -69,16 +85,18 @@ def read_project(path: Path) -> Project:
     for key, example in (("libraries", '["predicates"]'), ("targets", '["json", "dot"]')):
         if not _is_list_of_texts(table.get(key, [])):
             wrong.append(_wrong(source, key, f"a list of texts, e.g. `{key} = {example}`", table.pop(key)))
-    notation = style.get("notation", "unicode")
-    if notation not in NOTATIONS:
-        wrong.append(_wrong(source, "notation", 'one of "unicode", "ascii", "english"', notation))
+    notation, formatting = style.get("notation", "unicode"), style.get("formatting", "words")
+    for key, value, known in (("notation", notation, NOTATIONS), ("formatting", formatting, FORMATTINGS)):
+        if value not in known:
+            wrong.append(_wrong(source, key, "one of " + ", ".join(f'"{word}"' for word in known), value))
+    lint = _lint(table.get("lint", {}), source, wrong)
     folders = {library: path.parent / library for library in table.get("libraries", [])}
     for library, folder in folders.items():
         if not is_dir(folder):
             wrong.append(_no_folder(source, library))
     if wrong:
         raise TltlError(wrong)
-    return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation)
+    return Project(tuple(folders.values()), tuple(table.get("targets", [])), notation, lint, formatting)
 
 
 def _unknown(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -> list[Diagnostic]:
@@ -92,6 +110,34 @@ def _unknown(table: dict[str, Any], keys: tuple[str, ...], source: SourceFile) -
             way_out = f"did you mean `{close[0]}`?" if close else f"there are: {', '.join(f'`{k}`' for k in keys)}"
             found.append(Diagnostic("TLT0702", f"unknown key `{key}`", _place(source, key), way_out))
     return found
+
+
+def _lint(table: object, source: SourceFile, wrong: list[Diagnostic]) -> dict[str, str]:
+    """The level of each code that the table ``lint`` names; what is wrong with it joins the rest."""
+    if not isinstance(table, dict):
+        wrong.append(_wrong(source, "lint", "a table, e.g. `[lint]`", table))
+        return {}
+    wrong += _unknown(table, LINT_LEVELS, source)
+    found: dict[str, str] = {}
+    for level in LINT_LEVELS:
+        listed = table.get(level, [])
+        if not _is_list_of_texts(listed):
+            wrong.append(_wrong(source, level, f'a list of codes, e.g. `{level} = ["TLT0419"]`', listed))
+            continue
+        for code in listed:
+            if not _is_code(code):
+                wrong.append(_wrong(source, level, "codes that `tltlc lint` has, TLT04 and two digits", code))
+            elif code in found:
+                wrong.append(_wrong(source, level, f"each code once; `{found[code]}` has it, too", code))
+            found[code] = level
+    return found
+
+
+def _is_code(text: str) -> bool:
+    """Whether it is the code of a remark."""
+    from tltlc.diagnostics.codes import codes
+
+    return text.startswith("TLT04") and text in codes()
 
 
 def _is_list_of_texts(value: object) -> bool:
@@ -123,6 +169,10 @@ def _place(source: SourceFile, key: str) -> tuple[Label, ...]:
 
     found = re.search(rf"^\s*\[?\s*[\"']?({re.escape(key)})\b", source.text, re.MULTILINE)
     return (Label(source, Span(*found.span(1))),) if found else ()
+
+
+def _from_here(library: Path) -> Path:
+    return Path(_shown(Path(normpath(library))))
 
 
 def _shown(path: Path) -> str:

@@ -283,6 +283,18 @@ def test_labels_of_a_hundred_equal_goals() -> None:
     assert set(labels(compiled(sequence[-1]))) == {*sequence, "true"}
 
 
+@pytest.mark.parametrize(
+    ("text", "label", "accepting", "said"),
+    [
+        ("X true", "true", False, "The trace must go on for one more step."),
+        ("N false", "false", True, "The trace must end here."),
+    ],
+)
+def test_where_going_on_decides_the_english_label_says_so(text: str, label: str, accepting: bool, said: str) -> None:
+    state = next(state for state in compiled(text).states[1:] if state.accepting == accepting)
+    assert (state.label.ascii, state.label.english) == (label, said)
+
+
 def test_a_group_that_names_an_atom_twice_says_nothing_more() -> None:
     assert compiled("F a & F b", ("a", "b", "a", "b")).edges == compiled("F a & F b", ("a", "b")).edges
     assert compiled("F a", ("a", "a")).edges == compiled("F a").edges

@@ -196,3 +196,5 @@ def test_ranges_of_numbers() -> None:
     assert span("p2", "p2") == "p2"
     assert span("F[0,2] p", "p | X p") == "F[0,2] p … p | X p"
     assert span("1", "12") == "1…12"
+    assert span("have p after 1 step", "have p after 1 step") == "have p after 1 step"
+    assert span("reach p within 9 steps", "reach p within 1 step") == "reach p within 9…1 steps"

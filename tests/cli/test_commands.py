@@ -47,7 +47,16 @@ def test_explain(code: str, tltlc) -> None:  # type: ignore[no-untyped-def]
 
 
 def test_explain_suggests(tltlc) -> None:  # type: ignore[no-untyped-def]
-    assert "did you mean" in tltlc("explain", "TLT0006").err
+    assert "did you mean `TLT0003`, `TLT0004` or `TLT0005`?" in tltlc("explain", "TLT0006").err
+    assert "`TLT0201`" in tltlc("explain", "TLT2001").err
+    assert "`TLT0942`" in tltlc("explain", "TLT9999").err
+
+
+@pytest.mark.parametrize("beginning", ["TLT04", "04"])
+def test_explain_lists_a_family(beginning: str, tltlc) -> None:  # type: ignore[no-untyped-def]
+    lines = tltlc("explain", beginning).out.splitlines()
+    assert lines[0] == "TLT0401\tthe range of a predicate could not be proved"
+    assert {line[:5] for line in lines} == {"TLT04"}
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -46,11 +46,21 @@ def test_every_file_is_checked(tltlc, inside: Path) -> None:  # type: ignore[no-
     assert "hide.tltl: 1 spec" in found.err
 
 
+def test_a_file_that_cannot_be_read_is_3_whatever_is_wrong_in_others(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("broken.tltl").write_text("spec hide = G !seen")
+    for command in ("check", "lint", "test", "fmt"):
+        for names in (("broken.tltl", "missing.tltl"), ("missing.tltl", "broken.tltl")):
+            assert tltlc(command, *names).status == 3, (command, names)
+    assert tltlc("check", "--format", "json", "broken.tltl", "missing.tltl").status == 3
+    assert tltlc("check", "broken.tltl", "hide.tltl:other").status == 2
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
         (),
-        ("check",),
+        ("breaking",),
+        ("compile",),
         ("bogus",),
         ("check", "--bogus", "hide.tltl"),
         ("check", "--format", "yaml", "hide.tltl"),
@@ -81,7 +91,7 @@ def test_no_option_is_advised_that_is_not_there(tltlc, inside: Path) -> None:  #
     "arguments",
     [
         ("check", "missing.tltl"),
-        ("check", "."),
+        ("render", "."),
         ("check", "nul\0byte.tltl"),
         ("check", "n" * 300 + ".tltl"),
         ("check", "n" * 5000 + "/a.tltl"),

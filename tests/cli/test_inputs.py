@@ -86,3 +86,41 @@ def test_params_of_sources_and_of_artefacts(tltlc, inside: Path) -> None:  # typ
         assert "TLT0307" in tltlc("check", source, "--param", "far=51").err
         assert "TLT0308" in tltlc("check", source, "--param", "far=2 s").err
         assert "did you mean `far`?" in tltlc("check", source, "--param", "fra=2").err
+
+
+@pytest.mark.parametrize(
+    ("command", "meant"),
+    [
+        (("explain", "dash"), "levels/deep/dash.tltl:dash"),
+        (("render", "hide"), "hide.tltl"),
+        (("witness", "levels/deep/dash"), "levels/deep/dash.tltl"),
+        (("monitor", "dash", "trace.csv"), "levels/deep/dash.tltl:dash"),
+        (("diff", "hide.tltl", "dash"), "levels/deep/dash.tltl:dash"),
+        (("check", "secret"), None),
+        (("check", "spoken_of"), None),
+    ],
+)
+def test_a_spec_in_the_place_of_a_file_is_looked_for(  # type: ignore[no-untyped-def]
+    command: tuple[str, ...], meant: str | None, tltlc, inside: Path
+) -> None:
+    for name, text in {
+        "levels/deep/dash.tltl": "// not spec spoken_of\nsignal loud: bool\nspec dash = F loud\nspec\n",
+        "levels/.old/secret.tltl": "spec secret = true",
+        "levels/deep/odd.tltl": "\0dash",
+        "trace.csv": "loud\n1\n",
+    }.items():
+        Path(name).parent.mkdir(parents=True, exist_ok=True)
+        Path(name).write_text(text)
+    found = tltlc(*command)
+    assert found.status == 3
+    assert ("did you mean" in found.err) == (meant is not None)
+    assert meant is None or f"\n  help: did you mean `{meant}`?\n" in found.err
+
+
+def test_not_every_folder_is_searched_for_a_spec(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    for number in range(300):
+        Path(f"a{number:03}").mkdir()
+    for name in ("a001", "a299"):
+        Path(name, "file.tltl").write_text(f"spec {name}_spec = true\n")
+    assert "did you mean `a001/file.tltl:a001_spec`?" in tltlc("check", "a001_spec").err
+    assert "did you mean" not in tltlc("check", "a299_spec").err

@@ -40,7 +40,17 @@ def loaded(*arguments: str | Path, folder: Path) -> set[str]:
 
 @pytest.mark.parametrize(
     "arguments",
-    [("compile", EXAMPLE), ("check", EXAMPLE), ("--help",), ("--version",), ("list", "codes"), ("explain", "TLT0001")],
+    [
+        ("compile", EXAMPLE),
+        ("check", EXAMPLE),
+        ("lint", EXAMPLE),
+        ("--help",),
+        ("--version",),
+        ("list", "codes"),
+        ("explain", "TLT0001"),
+        ("explain", EXAMPLE),
+        ("witness", EXAMPLE),
+    ],
     ids=lambda arguments: arguments[0],
 )
 def test_nothing_heavy_is_loaded(arguments: tuple[str | Path, ...], tmp_path: Path) -> None:
@@ -56,6 +66,7 @@ def test_only_infinite_traces_load_what_is_for_them(tmp_path: Path) -> None:
 
     assert not rabin("compile", EXAMPLE, "-t", "json,python,dot")
     assert not rabin("compile", "cover_and_hide.fspa.json", "-t", "mermaid")
+    assert rabin("explain", EXAMPLE) == rabin("witness", EXAMPLE) == {"tltlc.rabin", "tltlc.rabin.work"}
     endless = tmp_path / "again.tltl"
     endless.write_text("signal a: bool\nspec again { semantics infinite  require G F a }\n", encoding="utf-8")
     assert "tltlc.rabin.construct" in rabin("compile", endless, "-t", "json")

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -22,7 +23,9 @@ def test_the_nearest_project_upwards(inside: Path) -> None:
     Path("levels/deep").mkdir(parents=True)
     Path("predicates").mkdir()
     Path("tltl.toml").write_text('libraries = ["predicates"]\r\ntargets = ["dot"]\r\n[style]\r\nnotation = "ascii"\r\n')
-    assert project_for("levels/deep/x.tltl") == Project((inside / "predicates",), ("dot",), "ascii")
+    assert project_for("levels/deep/x.tltl") == Project((Path("predicates"),), ("dot",), "ascii")
+    there = project_for(str(inside / "levels/deep/x.tltl"))
+    assert there.libraries == (inside / "predicates",)
     Path("levels/tltl.toml").write_text("")
     assert project_for("levels/deep/x.tltl") == Project()
 
@@ -41,6 +44,17 @@ def test_what_it_says_is_done(tltlc, inside: Path) -> None:  # type: ignore[no-u
     assert tltlc("compile", "level/one.tltl", "-t", "json").status == 0
     assert Path("one.fspa.json").exists()
     assert "fit" in tltlc("list", "predicates").out
+
+
+def test_a_library_has_one_name_in_messages(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("lib").mkdir()
+    Path("lib/arena.tltl").write_text("signal hp: ratio\npredicate low = hp < 20\n")
+    Path("specs").mkdir()
+    Path("specs/one.tltl").write_text("import arena\nspec one = F low\n")
+    Path("specs/two.tltl").write_text("import arena\nspec two = G low\n")
+    Path("tltl.toml").write_text('libraries = ["specs/../lib"]\n')
+    found = json.loads(tltlc("lint", ".", "--format", "json").out)["diagnostics"]
+    assert [(each["code"], each["labels"][0]["file"]) for each in found] == [("TLT0302", "lib/arena.tltl")]
 
 
 def test_all_that_is_wrong_is_found(inside: Path) -> None:

@@ -121,6 +121,16 @@ def test_two_specs_that_come_to_have_one_name_are_waited_out(inside: Path) -> No
         running.end()
 
 
+def test_a_new_file_of_a_folder_is_compiled(inside: Path) -> None:
+    running = Watching(".", "-o", "out", "-t", "json")
+    try:
+        assert running.said() == "wrote out/hide.fspa.json\n"
+        _replace(inside / "new.tltl", "signal seen: bool\nspec found = F seen\n")
+        assert "wrote out/found.fspa.json" in running.said()
+    finally:
+        running.end()
+
+
 def test_what_cannot_be_mended_by_a_change_ends_it(process, inside: Path) -> None:  # type: ignore[no-untyped-def]
     done = process("compile", "hide.tltl", "--watch", "-t", "pythn")
     assert (done.status, done.err.splitlines()[0]) == (2, "error[TLT0710]: there is no target `pythn`")
@@ -129,5 +139,8 @@ def test_what_cannot_be_mended_by_a_change_ends_it(process, inside: Path) -> Non
         2,
         "error[TLT0700]: --watch takes files: standard input does not change",
     )
-    done = process("compile", ".", "--watch")
-    assert (done.status, done.err.splitlines()[0]) == (3, "error[TLT0001]: cannot read `.`: it is a folder")
+    done = process("compile", "none.tltl", "--watch")
+    assert (done.status, done.err.splitlines()[0]) == (
+        3,
+        "error[TLT0001]: cannot read `none.tltl`: there is no such file",
+    )

@@ -8,14 +8,17 @@ from math import isclose, pi
 import pytest
 
 import tltlc
-from tests.docs.blocks import DOCS
+from tests.docs.blocks import DOCS, blocks
 from tltlc import files
 from tltlc.automaton.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.guards import PRIME_LIMIT, TOTAL_PRIME_LIMIT
 from tltlc.diagnostics.codes import codes
-from tltlc.grammar import lexer, nesting, words
+from tltlc.grammar import lalr, lexer, nesting, words
+from tltlc.grammar.builder import Builder
+from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse_formula
-from tltlc.grammar.tables import load
+from tltlc.grammar.tables import STARTS, load
+from tltlc.record import replace
 from tltlc.resolve import context, quantities, scope, units
 from tltlc.source import SourceFile
 
@@ -56,6 +59,39 @@ def test_the_reserved_words_are_those_of_the_grammar() -> None:
     capitals = set("FGXNUWRM")
     assert set(code(found[1])) == set(tables.words) - set(tables.soft) - capitals | {"F G X N U W R M"}
     assert set(code(found[2])) == set(tables.soft) | {"step 3x"}
+
+
+def test_every_form_of_the_grammar_is_there() -> None:
+    """Each reduction of the grammar is taken in an example of the page, or in what it says in code."""
+    taken: set[int] = set()
+
+    class Noting(dict[str, int]):
+        def get(self, key: str, default: int | None = None) -> int | None:  # type: ignore[override]
+            action = super().get(key, default)
+            seen.add(action)
+            return action
+
+    tables = load()
+    noting = replace(tables, actions=tuple(map(Noting, tables.actions)))
+    examples = [block.text for block in blocks(DOCS / "language.md") if block.kind == "tltl"]
+    for text, starts in [*((text, ("module",)) for text in examples), *((text, STARTS) for text in sorted(IN_CODE))]:
+        source = SourceFile("example.tltl", text)
+        lexed = tokenize(text)
+        for start in starts:
+            seen: set[int | None] = set()
+            try:
+                lalr.run(noting, start, lexed.tokens, Builder(source, lexed.docs))
+            except lalr.UnexpectedTokenError:
+                continue
+            taken |= {~action for action in seen if action is not None and action < 0}
+            break
+
+    def form(number: int) -> tuple[str, str]:
+        # What reaches as far to the right as it can has rules of its own.
+        rule = tables.rules[number]
+        return re.sub("_(open|closed)$", "", rule.origin), rule.action
+
+    assert {form(number) for number in range(len(tables.rules))} == {form(number) for number in taken}
 
 
 def test_every_type_unit_and_function_is_there() -> None:

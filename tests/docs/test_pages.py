@@ -47,6 +47,14 @@ def test_the_tests_they_name_are_there(page: Path) -> None:
             assert f"\ndef {name}(" in source, f"{file}: {name}"
 
 
+def test_decisions_are_numbered_and_say_why_what_and_what_came_of_it() -> None:
+    pages = sorted((DOCS / "adr").glob("*.md"))
+    assert [int(page.name[:4]) for page in pages] == list(range(1, len(pages) + 1))
+    for page in pages:
+        heads = re.findall(r"^## (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+        assert heads == ["Context", "Decision", "Consequences"], page.name
+
+
 @pytest.mark.parametrize(
     "said, file, remark",
     [

@@ -10,6 +10,7 @@ from shutil import which
 
 import pytest
 
+from tests.cli.test_readme import said
 from tests.docs.blocks import DOCS, blocks
 from tests.docs.sessions import Shell, run_page
 
@@ -31,6 +32,8 @@ def test_the_tutorial_runs(tmp_path: Path) -> None:
     found = blocks(PAGE)
     spec = next(block.text for block in found if block.kind == "tltl")
     assert (shell.folder / "first_level.tltl").read_text(encoding="utf-8") == spec
+    pictures = shell.folder / "first_level.svg", DOCS / "images" / "leave_with_key.svg"
+    assert len({tuple(said(picture.read_text(encoding="utf-8"))) for picture in pictures}) == 1
     program, printed = next((block, after) for block, after in pairwise(found) if block.kind == "python")
     (shell.folder / "build" / "game.py").write_text(program.text)
     assert shell.run("python build/game.py") == printed.text
@@ -55,3 +58,15 @@ def test_the_guides_to_engines_run(page: str, tool: str, commands: int, tmp_path
     if which(tool) is None:
         pytest.skip(f"{tool} is not installed")
     assert run_page((DOCS / "guides" / f"{page}.md").read_text(encoding="utf-8"), Shell(tmp_path)) == commands
+
+
+def test_the_guide_to_linting_runs(tmp_path: Path) -> None:
+    assert run_page((DOCS / "guides" / "linting.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 2
+
+
+def test_the_guide_to_explaining_runs(tmp_path: Path) -> None:
+    assert run_page((DOCS / "guides" / "explaining.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 4
+
+
+def test_the_guide_to_play_without_an_end_runs(tmp_path: Path) -> None:
+    assert run_page((DOCS / "guides" / "infinite.md").read_text(encoding="utf-8"), Shell(tmp_path)) >= 8

@@ -65,6 +65,7 @@ def test_precedence(text: str, structure: str) -> None:
         ("3 m > s", "(3m > s)"),
         ("F within & G for & X after", "(((F within) and (G for)) and (X after))"),
         ("F within 3 s within", "(F[,3s] within)"),
+        ("F within// a comment\n3 s p", "(F[,3s] p)"),
         ("step | expect | at | in | as | x | inf", "((((((step or expect) or at) or in) or as) or x) or inf)"),
         ("all in in (as): in", "(all in as: in)"),
         ("FG & XX", "(FG and XX)"),

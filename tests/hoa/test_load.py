@@ -261,6 +261,7 @@ def test_headers_that_are_wrong(text: str, message: str) -> None:
         imported(f"HOA: v1 {text} Acceptance: 0 t --BODY-- State: 0 [t] 0 --END--")
 
 
+@pytest.mark.slow
 def test_letters_of_many_atoms_are_not_counted() -> None:
     names = " ".join(f'"p{place}"' for place in range(15_000))
     library = SourceFile("p.tltl", "\n".join(f"signal p{place}: bool" for place in range(15_000)))

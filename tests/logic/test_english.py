@@ -26,17 +26,22 @@ EXAMPLES = {
     ),
     "F near(exit) & G alive & G !seen": "Reach near(exit), keep alive throughout, and avoid seen throughout.",
     "G(alive & !seen)": "Keep alive throughout, and avoid seen throughout.",
-    "G(a & b)": "Keep (a and b) throughout.",
+    "G(a | !b) & F c": "Keep a or not b throughout, and reach c.",
+    "G !(a & b)": "Avoid (a and b) throughout.",
+    "G(a -> b)": "Whenever a, have b at that step.",
+    "G(a -> X F b)": "Whenever a, at the next step, reach b at that step or later.",
+    "G(a -> X(b & X c))": "Whenever a, at the next step, (have b at that step, and have c at the next step).",
+    "G(a & b)": "Keep a and b throughout.",
     "F(s3 & X F(o & e | p & f)) & G alive": "Reach s3, then (o and e) or (p and f), and keep alive throughout.",
     "F(c1 & X F e1 | c2 & X F e2) & G p": "Reach either (c1, then e1) or (c2, then e2), and keep p throughout.",
     "F(a & F b)": "Reach a, then or at the same time b.",
     "F(a & X F(b & G c))": "Reach a, then b and from that step on keep c throughout.",
     "F a & F b & F c": "Reach a, reach b, and reach c.",
-    "G(a -> F b)": "Whenever a, reach b then or later.",
-    "G(!a | F b)": "Whenever a, reach b then or later.",
+    "G(a -> F b)": "Whenever a, reach b at that step or later.",
+    "G(!a | F b)": "Whenever a, reach b at that step or later.",
     "G(a -> X b) & b": "Whenever a, have b at the next step; and have b now.",
     "!F a": "Avoid a throughout.",
-    "G F a": "At every step, reach a then or later.",
+    "G F a": "At every step, reach a at that step or later.",
     "F G a": "From some step on keep a throughout.",
     "!G F a": "From some step on avoid a throughout.",
     "F G(a & !b) & c": "From some step on (keep a throughout, and avoid b throughout), and have c now.",
@@ -71,8 +76,8 @@ EXAMPLES = {
     "a M true": "Reach a.",
     "true M a": "Have a now.",
     "!(true U a)": "Avoid a throughout.",
-    "G(true U a)": "At every step, reach a then or later.",
-    "F(true & X F b)": "At the next step, reach b then or later.",
+    "G(true U a)": "At every step, reach a at that step or later.",
+    "F(true & X F b)": "At the next step, reach b at that step or later.",
     "F a -> false": "Avoid a throughout.",
     "a -> F b": "If a now, reach b.",
     "F a -> F b": "Either avoid a throughout or reach b.",
@@ -83,12 +88,12 @@ ENDLESS = {
     "G F a": "Reach a again and again.",
     "!F G a": "Reach not a again and again.",
     "G(F a & F !b)": "Reach a again and again, and reach not b again and again.",
-    "G F(a | b) & F G c": "Reach (a or b) again and again, and from some step on keep c throughout.",
-    "G F(a & X F b)": "Again and again, (reach a, then b).",
-    "G F G a": "Again and again, (from some step on keep a throughout).",
+    "G F(a | b) & F G c": "Reach a or b again and again, and from some step on keep c throughout.",
+    "G F(a & X F b)": "Again and again, reach a, then b.",
+    "G F G a": "Again and again, from some step on keep a throughout.",
     "F(c & G F a)": "Reach c and from that step on reach a again and again.",
     "G(a -> G F b)": "Whenever a, reach b again and again.",
-    "G(a -> F b)": "Whenever a, reach b then or later.",
+    "G(a -> F b)": "Whenever a, reach b at that step or later.",
     "G F a -> G F b": "Either (from some step on avoid a throughout) or reach b again and again.",
     "F b & (F G !c | G F d)": (
         "Reach b; and either (from some step on avoid c throughout) or reach d again and again."
@@ -108,6 +113,13 @@ ENDLESS = {
 @pytest.mark.parametrize(("formula", "sentence"), EXAMPLES.items())
 def test_known_sentences(formula: str, sentence: str) -> None:
     assert english_text(read_formula(formula)) == sentence
+
+
+def test_comparisons_are_turned_and_need_no_brackets() -> None:
+    low, high = f.not_(f.atom("fuel > 5")), f.atom("near(a) < 3")
+    assert english_text(f.always(f.or_(low, high))) == "Keep fuel <= 5 or near(a) < 3 throughout."
+    assert english_text(f.always(low)) == "Avoid fuel > 5 throughout."
+    assert english_text(f.eventually(f.and_(f.not_(high), f.atom("p")))) == "Reach near(a) >= 3 and p."
 
 
 @pytest.mark.parametrize(("formula", "sentence"), ENDLESS.items())

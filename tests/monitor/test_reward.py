@@ -167,6 +167,21 @@ def test_the_nearest_improving_edge_counts() -> None:
     assert (step.progress, step.limiting) == (0.375, "c")
 
 
+def test_an_edge_that_is_not_taken_is_no_nearer_than_its_border() -> None:
+    """In `F near(e) & G alive`: the robustness of the edge, 0.5, is capped at 0."""
+    outcome = reward_step(tables(cover_and_hide()), 3, 3, (-1.0, -1.0, 0.5, 1.0), 0.0, 10)
+    assert outcome.progress == 2 / 3 + 1 / 3
+
+
+def test_a_trap_has_no_progress() -> None:
+    """Whatever the atoms say, and whatever was reached before: that stays."""
+    fspa = cover_and_hide()
+    assert (fspa.states[2].verdict, fspa.states[2].distance) == ("violated", None)
+    for best in (0.0, 2 / 3):
+        for source in (0, 2, 3):
+            assert reward_step(tables(fspa), source, 2, (1.0, 1.0, 1.0, 1.0), best, 10).progress == best
+
+
 def test_order_of_operations() -> None:
     """Every monitor must agree to the last bit, so the order is fixed."""
     fspa = cover_and_hide()

@@ -19,9 +19,8 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.logic.formula import Formula
 from tltlc.pipeline import CompileOptions, compile_source
 from tltlc.rabin import construct
-from tltlc.rabin.build import STEPS_PER_STATE
 from tltlc.rabin.lasso import holds_on_lasso
-from tltlc.rabin.work import DEFAULT_WORK, OutOfWork
+from tltlc.rabin.work import DEFAULT_WORK, STEPS_PER_STATE, OutOfWork
 from tltlc.source import SourceFile
 
 SMALL = formulas(atoms=("a", "b"), max_leaves=5)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.resolve.helpers import codes, formula, only, value
+from tests.resolve.helpers import codes, formula, only, resolved, value
 
 NUMBERS = st.integers(-50, 50)
 
@@ -102,6 +102,25 @@ def test_a_predicate_counts_with_its_declared_range() -> None:
 )
 def test_refused(declared: str, written: str, code: str) -> None:
     assert codes(f"signal x {declared} spec s = F ({written})") == [code]
+
+
+@pytest.mark.parametrize(
+    ("written", "is_percentage"),
+    [
+        ("x > 50", True),
+        ("x >= 100", True),
+        ("x < 100", True),
+        ("x > 100", False),
+        ("x <= 100", False),
+        ("x < 1.5", False),
+        ("x > 200", False),
+    ],
+)
+def test_a_percentage_is_meant_where_it_would_say_something(written: str, is_percentage: bool) -> None:
+    text = f"signal x: ratio spec s = F ({written}"
+    _, (refused,) = resolved(text + ")")
+    assert (f"write `{written} %`" in (refused.help or "")) == is_percentage
+    assert not is_percentage or codes(text + " %)") == []
 
 
 @pytest.mark.parametrize("written", ["x > 0", "x < 1", "x >= 1", "x <= 0"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import time
 from pathlib import Path
 
 from hypothesis import given, settings
@@ -61,3 +62,14 @@ def test_mutated_programs(number: int, seed: int, edits: int) -> None:
     program, diagnostics = resolve(module)
     assert all(diagnostic.title for diagnostic in diagnostics)
     assert all(spec.parts for spec in program.specs)
+
+
+def test_many_misspelt_names_end_within_seconds() -> None:
+    declared = "".join(f"signal player_near_{number}: bool\n" for number in range(2000))
+    used = "".join(f"spec s{number} = G player_naer_{number}\n" for number in range(2000))
+    module, _ = parse(SourceFile("<many>", declared + used))
+    start = time.process_time()
+    _, diagnostics = resolve(module)
+    assert time.process_time() - start < 10
+    assert len(diagnostics) == 2000
+    assert "did you mean `player_near_" in diagnostics[0].labels[0].message

@@ -117,6 +117,13 @@ def test_odd_targets_are_not_found(tmp_path: Path) -> None:
         assert _in(tmp_path, f'import "{target}" spec s = true')[0] in ("TLT0010", "TLT0001")
 
 
+@pytest.mark.parametrize("target", ["man", '"man.tltl"'])
+def test_no_file_is_proposed_to_import_itself(tmp_path: Path, target: str) -> None:
+    write(tmp_path, main="")
+    (wrong,) = resolved(f"import {target}", str(tmp_path / "main.tltl"))[1]
+    assert (wrong.code, "did you mean" in (wrong.help or "")) == ("TLT0010", False)
+
+
 def test_tests_and_specs_of_an_import_stay_there(tmp_path: Path) -> None:
     write(tmp_path, lib='signal a: bool spec there = F a test "t" for there { step a expect satisfied }')
     program = good("import lib spec here = F a", str(tmp_path / "main.tltl"))

@@ -140,3 +140,11 @@ def test_overrides() -> None:
     assert codes(text, params={"level_size": "1 m"}) == ["TLT0307"]
     speed = "signal v: speed in [0 m/s, 9 m/s] param top: speed in [1 m/s, 9 m/s] = 2 m/s spec s = F v > top"
     assert only(speed, params={"top": "3 m/s"}).params[0].value == 3
+
+
+def test_errors_are_in_the_order_of_the_text() -> None:
+    text = "spec s = F a\nexclusive b, c\nlet l = G d\nspec t { reach e limit 3 }\npredicate p = f\nparam q = 3 m"
+    _, found = resolved(text)
+    starts = [each.labels[0].span.start for each in found]
+    assert starts == sorted(starts)
+    assert len(starts) == 7

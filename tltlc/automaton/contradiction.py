@@ -21,22 +21,22 @@ Decision = Callable[[Sequence[Part], Spec], bool]
 """Whether it is shown that no trace satisfies all of the parts."""
 
 
-def contradiction(spec: Spec, unsatisfiable: Decision | None = None) -> tuple[Part, ...]:
+def contradiction(spec: Spec, decision: Decision | None = None) -> tuple[Part, ...]:
     """Parts of an unsatisfiable spec that are unsatisfiable together, none of which could be left out.
 
-    ``unsatisfiable`` decides it, by default over finite traces.  Where the work gets too much, parts may be among them
+    ``decision`` decides it, by default over finite traces.  Where the work gets too much, parts may be among them
     that could.
     """
-    unsatisfiable = unsatisfiable or _unsatisfiable
+    decision = decision or unsatisfiable
     needed = list(spec.parts)
     for part in spec.parts if len(spec.parts) <= _MOST_PARTS else ():
         others = [other for other in needed if other is not part]
-        if others and unsatisfiable(others, spec):
+        if others and decision(others, spec):
             needed = others
     return tuple(needed)
 
 
-def _unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
+def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
     """Whether it is shown that no finite trace satisfies all of the parts."""
     whole = and_(*(part.formula for part in parts))
     names = [atom.name for atom in spec.atoms]

@@ -32,6 +32,8 @@ _STATUS_OF_CODE: Final = {
     "TLT0721": USAGE,
     "TLT0722": USAGE,
     "TLT0730": MISSING_COMPONENT,
+    "TLT0751": UNREADABLE,
+    "TLT0776": USAGE,
     "TLT0800": USAGE,
     "TLT0815": USAGE,
 }
@@ -59,11 +61,9 @@ class StopQuietlyError(Exception):
 
 
 def status_of(diagnostics: Iterable[Diagnostic]) -> int:
-    """The exit status for what was found: that of the first error, 0 where there is none."""
-    for diagnostic in diagnostics:
-        if diagnostic.severity == "error":
-            return _STATUS_OF_CODE.get(diagnostic.code, FINDINGS)
-    return CLEAN
+    """The exit status for what was found: the greatest of its errors', whatever their order; 0 where there is none."""
+    errors = (diagnostic.code for diagnostic in diagnostics if diagnostic.severity == "error")
+    return max((_STATUS_OF_CODE.get(code, FINDINGS) for code in errors), default=CLEAN)
 
 
 def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:

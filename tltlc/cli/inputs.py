@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tltlc.cli.settings import Settings, check_libraries
+from tltlc.cli.settings import Settings, check_libraries, compile_settings
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.project import Project, project_for
 from tltlc.record import record
@@ -56,22 +56,34 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
     wanted = (*specs, name) if name else tuple(specs)
     check_libraries(settings.libraries)
     project = project_for(path)
-    source, is_artefact = read(path)
+    try:
+        source, is_artefact = read(path)
+    except TltlError as error:
+        from tltlc.cli.spec_names import with_way_out
+
+        raise with_way_out(error, path) from None
     if source.text.startswith("HOA:") or path.endswith(".hoa"):
         raise TltlError([_of_another_tool(source)])
     if is_artefact:
         return _artefact(source, settings, wanted, project)
-    from tltlc.automaton.build import DEFAULT_STATE_BUDGET
-    from tltlc.pipeline import CompileOptions, compile_source
+    from tltlc.pipeline import compile_source
 
-    options = CompileOptions(
-        library_dirs=(*settings.libraries, *project.libraries),
-        params=settings.params,
-        state_budget=settings.state_budget or DEFAULT_STATE_BUDGET,
-        specs=wanted,
-    )
-    compiled = compile_source(source, options)
+    compiled = compile_source(source, compile_settings(settings, project, wanted))
     return Input(source.name, compiled.automata, compiled.program, project, compiled.diagnostics)
+
+
+def check_text(source: SourceFile) -> None:
+    """For commands that take source texts alone: error TLT0722 for an artefact, TLT0652 for an automaton of others."""
+    if source.text.startswith("HOA:"):
+        raise TltlError([_of_another_tool(source)])
+    if source.text.lstrip().startswith("{"):
+        raise TltlError([no_text(source.name)])
+
+
+def no_text(artefact: str) -> Diagnostic:
+    """The message for an artefact where only a source text will do."""
+    title = f"`{artefact}` is an artefact: it holds an automaton, and no source text"
+    return Diagnostic("TLT0722", title, help="name the .tltl file that it was compiled from")
 
 
 def _of_another_tool(source: SourceFile) -> Diagnostic:

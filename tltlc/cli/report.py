@@ -15,6 +15,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 class Report:
     """Collects what a command finds; as a context, ends the command at the first :class:`TltlError`.
 
+    What was found before is not told again: two files may import a third one, of which there is something to say.
     Text is shown at once, on standard error.  The formats for machines are one document per run,
     shown at the end: on standard output, or on standard error for commands that put results there.
     ``status`` is the exit status.
@@ -22,19 +23,19 @@ class Report:
 
     def __init__(self, format: str = "text", *, results: bool = False) -> None:  # noqa: A002
         self.format = format
-        self.found: list[Diagnostic] = []
+        self.found: dict[Diagnostic, None] = {}
         self.status = exits.CLEAN
         self._document = sys.stderr if results else sys.stdout
 
     def add(self, diagnostics: Iterable[Diagnostic]) -> None:
         """Show (or keep for the end) what was found."""
-        new = tuple(diagnostics)
+        new = tuple(each for each in dict.fromkeys(diagnostics) if each not in self.found)
         if self.format == "text":
             if self.found and new:
                 print(file=sys.stderr)
             show(new, "text", sys.stderr)
-        self.found.extend(new)
-        self.status = self.status or exits.status_of(new)
+        self.found.update(dict.fromkeys(new))
+        self.status = max(self.status, exits.status_of(new))
 
     def say(self, text: str) -> None:
         """Narration: a line on standard error, only beside diagnostics for people."""
@@ -54,6 +55,18 @@ class Report:
         if self.format != "text":
             show(self.found, self.format, self._document)
         return error is not None
+
+
+def counted(number: int, noun: str) -> str:
+    """``1 file``, ``2 files``."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def tally(diagnostics: Iterable[Diagnostic]) -> str:
+    """How many there are of each severity: ``1 error, 2 warnings``; ``nothing to report`` of none."""
+    severities = [each.severity for each in diagnostics]
+    counts = [(severities.count(severity), severity) for severity in ("error", "warning", "note")]
+    return ", ".join(counted(number, severity) for number, severity in counts if number) or "nothing to report"
 
 
 def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None:  # noqa: A002

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -12,6 +12,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.diagnostics.render import FORMATS
 from tltlc.files import is_dir
 from tltlc.record import EMPTY, record
+
+if TYPE_CHECKING:
+    from tltlc.pipeline import CompileOptions
+    from tltlc.project import Project
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -27,6 +31,11 @@ class Settings:
 
 def source_options(command: Function) -> Function:
     """Add ``--library --param --state-budget --format``; the command takes ``settings`` and ``format``."""
+    return compile_options(format_option(command))
+
+
+def compile_options(command: Function) -> Function:
+    """Add ``--library --param --state-budget``; the command takes ``settings``."""
     from functools import wraps
 
     @wraps(command)
@@ -59,7 +68,6 @@ def source_options(command: Function) -> Function:
                 type=click.IntRange(min=1),
                 help="Give up on an automaton that needs more states, or as much more work (default: 50000).",
             ),
-            format_option,
         )
     ):
         with_settings = option(with_settings)
@@ -72,6 +80,27 @@ format_option = click.option(
     default="text",
     help="How to show errors and warnings (default: text).",
 )
+
+
+def compile_settings(settings: Settings, project: Project, specs: tuple[str, ...] = ()) -> CompileOptions:
+    """How to compile a file of a project; ``specs`` picks by name."""
+    from tltlc.automaton.build import DEFAULT_STATE_BUDGET
+    from tltlc.pipeline import CompileOptions
+
+    return CompileOptions(
+        library_dirs=(*settings.libraries, *project.libraries),
+        params=settings.params,
+        state_budget=settings.state_budget or DEFAULT_STATE_BUDGET,
+        specs=specs,
+    )
+
+
+def work_of(settings: Settings) -> int:
+    """The steps that a search or a comparison may take: as many as an automaton over infinite traces."""
+    from tltlc.automaton.build import DEFAULT_STATE_BUDGET
+    from tltlc.rabin.work import STEPS_PER_STATE
+
+    return STEPS_PER_STATE * (settings.state_budget or DEFAULT_STATE_BUDGET)
 
 
 def check_libraries(libraries: tuple[Path, ...]) -> None:

@@ -4,35 +4,56 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Final, NoReturn
 
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import Stamp, noted, stamp
 
 PAUSE_S: Final = 0.2
 """Between two looks at the files.  Editors replace files in steps: a change counts once a second look finds no more."""
 
 
-def repeat(work: Callable[[tuple[str, ...]], None]) -> NoReturn:
+def repeat(work: Callable[[tuple[str, ...]], None], listed: Callable[[], Iterable[str]] = tuple) -> NoReturn:
     """Work at once, and again after each change, until something is raised, as Ctrl-C does.
 
     ``work`` is given the paths that have changed, the first time none.  The files are those that :mod:`tltlc.files`
-    looked for or read the last time, whether they are there or not.
+    looked for or read the last time, whether they are there or not, and those that ``listed`` says by now.
     """
     changed: tuple[str, ...] = ()
     while True:
+        known = frozenset(listed())
         with noted() as before:
             work(changed)
-        changed = _changes(before)
+        changed = _changes(before, known, listed)
 
 
-def _changes(before: Mapping[str, Stamp]) -> tuple[str, ...]:
+def _changes(
+    before: Mapping[str, Stamp], known: frozenset[str], listed: Callable[[], Iterable[str]]
+) -> tuple[str, ...]:
     """Wait until files are no longer as they were, and then until they stay as they are."""
     found: dict[str, Stamp] = {}
+    new: tuple[str, ...] = ()
+    due = 0.0
     while True:
         time.sleep(PAUSE_S)
+        begun = time.monotonic()
+        if begun >= due:
+            new = tuple(path for path in listed() if path not in known and path not in before)
+            # A large folder is searched less often: for a twentieth of the time at most.
+            due = begun + 20 * (time.monotonic() - begun)
         last, found = found, {path: now for path, was in before.items() if (now := stamp(path)) != was}
+        found.update({path: stamp(path) for path in new})
         if found and found == last:
             # A file may have been looked at under several paths: the first is the one that messages use.
-            files = {os.path.realpath(path): path for path in reversed(found)}
+            files = {_place(path): path for path in reversed(found)}
             return tuple(path for path in found if path in files.values())
+
+
+def _place(path: str) -> str:
+    """Where a path leads, by one name; error TLT0001 where the current folder has gone."""
+    try:
+        return os.path.realpath(path)
+    except FileNotFoundError:
+        title, way_out = "the current folder has been deleted", "start the command again in another one"
+        raise TltlError([Diagnostic("TLT0001", title, help=way_out)]) from None

@@ -47,3 +47,10 @@ class TltlError(Exception):
     def __reduce__(self) -> tuple[type[TltlError], tuple[tuple[Diagnostic, ...]]]:
         # Its text is not what it is made of; processes send it to each other.
         return type(self), (self.diagnostics,)
+
+
+def stop_at_errors(found: Iterable[Diagnostic]) -> None:
+    """Raise what was found where an error is among it."""
+    found = tuple(found)
+    if any(each.severity == "error" for each in found):
+        raise TltlError(found)

@@ -37,7 +37,7 @@ def check_clauses(source: SourceFile, declarations: Iterable[Declaration]) -> It
         match declaration:
             case tree.SpecDecl():
                 for clause in declaration.clauses:
-                    yield from _check_clause(source, clause)
+                    yield from check_clause(source, clause)
             case tree.TestDecl():
                 yield from _check_test(source, declaration)
             case _:
@@ -57,7 +57,8 @@ def _expression_errors(source: SourceFile, formula: Expr, in_reach: bool) -> Ite
 
 
 def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.Bound) -> Iterator[Diagnostic]:
-    word = source.slice(bound.span).split()[0] if bound.words else "["
+    # A comment may stand right behind the word.
+    word = next(word for word in _BOUND_OPERATORS if source.slice(bound.span).startswith(word))
     if formula.op in _BOUND_OPERATORS[word]:
         return
     operator = source.slice(formula.op_span)
@@ -76,7 +77,8 @@ def _check_spec(source: SourceFile, spec: tree.SpecDecl) -> Iterator[Diagnostic]
         yield _error(source, "TLT0112", title, spec.name_span, help_)
 
 
-def _check_clause(source: SourceFile, clause: tree.Clause) -> Iterator[Diagnostic]:
+def check_clause(source: SourceFile, clause: tree.Clause) -> Iterator[Diagnostic]:
+    """The errors in a clause of a spec."""
     if isinstance(clause.value, tuple):
         return
     if clause.kind in _FORMULA_CLAUSES:

@@ -1,145 +1,151 @@
-"""What people write out of habit, from other languages or from plain English, and how it is written here."""
+"""What people write out of habit, from other languages or a word processor, and how it is written here."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.place import Place, shown
-from tltlc.grammar.words import CLAUSES
-from tltlc.source import Span
+from tltlc.grammar.pieces import is_first_on_line
+from tltlc.grammar.place import ARITHMETIC, BEFORE_ONE, CLOSING, COMPARISONS, INFIX, OPENING, Place, shown, touch
+from tltlc.grammar.punctuation import NAME
+from tltlc.grammar.rewording import formula_start, formula_stop, reworded, span_of, written
+from tltlc.grammar.tables import load
+from tltlc.grammar.words import UNITS_ELSEWHERE
 
-SYNONYMS: Final[dict[str, dict[str, str]]] = {
-    "declaration": {
-        "include": "import",
-        "use": "import",
-        "input": "signal",
-        "var": "signal",
-        "variable": "signal",
-        "object": "entity",
-        "objects": "entity",
-        "const": "param",
-        "constant": "param",
-        "function": "predicate",
-        "def": "let",
-        "define": "let",
-        "goal": "spec",
-        "plan": "spec",
-    },
-    "clause": {
-        "goal": "reach",
-        "get": "reach",
-        "maintain": "keep",
-        "stay": "keep",
-        "never": "avoid",
-        "forbid": "avoid",
-        "must": "require",
-        "ensure": "require",
-    },
-    "test_item": {"assert": "expect"},
-}
-"""What keywords are called elsewhere, by kind of piece."""
-
-_ENGLISH: Final = {
-    "if": "if a, then b, is written `a implies b`",
-    "before": "a before b is written `a then b`",
-    "after": "b after a is written `a then b`",
-    "unless": "a unless b is written `a weak_until b`",
-    "xor": "either a or b is written `not (a iff b)`",
-}
-_UNITS: Final = {
-    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
-    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
-    **dict.fromkeys(("mins", "minute", "minutes"), "min"),
-    **dict.fromkeys(("hour", "hours"), "h"),
-    **dict.fromkeys(("degree", "degrees"), "deg"),
-    **dict.fromkeys(("frame", "frames", "tick", "ticks", "turn", "turns"), "steps"),
-    **dict.fromkeys(("percent", "pct"), "%"),
-    "hz": "Hz",
-}
-_NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
-_ARROWS: Final = {"=>": "write `a implies b` or `a -> b`", "=<": "write `<=`"}
+_VALUE: Final = {"NAME", "NUMBER", "UNIT", "TRUE", "FALSE", *ARITHMETIC} - COMPARISONS
+_SAME, _OTHER = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
+_EQUAL: Final = {"==": _SAME, "=": _SAME, "!=": _OTHER, "<>": _OTHER}
 
 
-def _arrow(place: Place) -> Diagnostic | None:
+def equality(place: Place) -> Diagnostic | None:
+    """``a == b``, ``a != true``, ``a <> 3``, and ``a = b`` where a comparison was meant."""
+    sign, at = place.found.text, place.stop.index
+    expectation = place.tokens[0].text == "expect"
+    if sign not in _EQUAL or not (place.found.type != "EQUAL" or place.wants_operator or expectation):
+        return None
+    title = f"`{sign}` does not compare here" if place.found.type != "EQUAL" else "`=` does not compare"
+    if expectation:
+        return place.error("TLT0110", title, "compare with `<`, `<=`, `>` or `>=`")
+    start, stop = side(place.tokens, at, -1), side(place.tokens, at, 1)
+    a, b = written(place, start, at), written(place, at + 1, stop)
+    unequal = _EQUAL[sign] == _OTHER
+    if b in ("true", "false"):
+        text, reason = a if (b == "true") != unequal else f"not {a}", ": a `bool` signal is an atom by itself"
+    else:
+        text, reason = _EQUAL[sign].format(a=a, b=b), ""
+        is_part = (start, stop) != (formula_start(place), formula_stop(place))
+        text = f"({text})" if is_part else text
+        if b in ("0", "1"):
+            alike = a if (b == "1") != unequal else f"not {a}"
+            reason = f", or `{alike}` where it is true or false"
+        elif NAME.fullmatch(b):
+            alike = f"({a} iff {b})" if is_part or unequal else f"{a} iff {b}"
+            reason = f", or `{'not ' * unequal}{alike}` where both are true or false"
+    general = f"write `{_EQUAL[sign].format(a='a', b='b')}`; a `bool` signal is an atom by itself"
+    found = reworded(place, start, stop, text, title, reason, "TLT0110") if a and b else None
+    return found or place.error("TLT0110", title, general)
+
+
+def chained(place: Place) -> Diagnostic | None:
+    """``a < b < c``."""
+    at = place.stop.index
+    if place.found.type not in COMPARISONS or not place.wants_operator:
+        return None
+    middle, title = side(place.tokens, at, -1), "comparisons cannot be chained"
+    start, stop = side(place.tokens, middle - 1, -1), side(place.tokens, at, 1)
+    text = f"{written(place, start, at)} and {written(place, middle, stop)}"
+    if (start, stop) != (formula_start(place), formula_stop(place)):
+        text = f"({text})"
+    found = reworded(place, start, stop, text, title, code="TLT0110")
+    return found or place.error("TLT0110", title, "write `a < b and b < c`")
+
+
+def arrow(place: Place) -> Diagnostic | None:
     """``a => b`` and ``a =< b``."""
-    after = place.tokens[place.stop.index + 1 :][:1]
-    if place.found.type != "EQUAL" or not place.wants_operator or not after or not _touch(place.found, after[0]):
+    at = place.stop.index
+    after = place.tokens[at + 1 :][:2]
+    if place.found.type != "EQUAL" or not place.wants_operator or not after or not touch(place.found, after[0]):
         return None
     sign = "=" + after[0].text
-    if sign not in _ARROWS:
+    if sign not in ("=>", "=<"):
         return None
-    span = Span(place.found.span.start, after[0].span.end)
-    return place.error("TLT0104", f"`{sign}` means nothing here", _ARROWS[sign], span=span)
+    number = len(after) > 1 and after[1].type == "NUMBER"
+    help_ = "write `<=`" if sign == "=<" else "write `>=`" if number else "write `implies` or `->`"
+    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span_of(place.tokens[at : at + 2]))
 
 
-def _long_unit(place: Place) -> Diagnostic | None:
-    """``20 seconds``."""
-    unit = _UNITS.get(place.found.text.lower())
-    if unit is None or not place.before or place.before.type != "NUMBER":
+def comment(place: Place) -> Diagnostic | None:
+    """``-- a comment``."""
+    after = place.tokens[place.stop.index + 1 :][:1]
+    if place.found.text != "-" or not after or after[0].text != "-" or not touch(place.found, after[0]):
         return None
-    title = f"there is no unit {shown(place.found)}"
-    return place.error("TLT0111", title, None, f"write `{place.before.text} {unit}`")
+    return place.error(
+        "TLT0104", "`--` means nothing here", "write `//` before a comment", span=span_of([place.found, after[0]])
+    )
 
 
-def _joined_clauses(place: Place) -> Diagnostic | None:
-    """``keep a and keep b``."""
-    if place.start != "clause" or place.found.text not in CLAUSES or not place.before or place.before.type != "AND":
+def unit(place: Place) -> Diagnostic | None:
+    """``20 seconds`` and ``3 feet``."""
+    number, found = place.before, place.found
+    if number is None or number.type != "NUMBER" or found.type != "NAME" or "UNIT" not in place.allowed:
         return None
-    title = f"clauses are not joined by {shown(place.before)}"
-    return place.error("TLT0101", title, "leave it out: all clauses count", span=place.before.span)
-
-
-def _quoted_name(place: Place) -> Diagnostic | None:
-    """``near("door")``."""
-    name = place.found.text.strip('"')
-    if place.found.type != "STRING" or "NAME" not in place.allowed or not _NAME.fullmatch(name):
+    title = f"there is no unit {shown(found)}"
+    known = UNITS_ELSEWHERE.get(found.text.lower())
+    if known:
+        return place.error("TLT0111", title, None, f"write `{number.text} {known}`", span_of([number, found]))
+    is_call = place.tokens[place.stop.index + 1].type == "LPAR"
+    if is_call or place.allowed == {"UNIT"} or is_first_on_line(place.source, place.tokens, place.stop.index):
         return None
-    return place.error("TLT0101", place.expectation(), f"names stand without quotes: `{name}`")
+    listed = ", ".join(f"`{each}`" for each in sorted(load().units))
+    help_ = f"the units are {listed}; a signal is compared, as in `{found.text} >= {number.text}`"
+    return place.error("TLT0111", title, help_)
 
 
-def _hyphen(place: Place) -> Diagnostic | None:
-    """``my-door``, where no difference can stand."""
-    before, after = place.before, place.tokens[place.stop.index + 1 :][:1]
-    if (
-        place.found.text != "-"
-        or before is None
-        or not after
-        or before.type != "NAME"
-        or not _NAME.fullmatch(after[0].text)
-    ):
+def doubled(place: Place) -> Diagnostic | None:
+    """``a and then b``, ``a then then b``."""
+    before, found = place.before, place.found
+    if before is None or before.type not in INFIX or found.type not in INFIX or not place.wants_operand:
         return None
-    if not _touch(before, place.found) or not _touch(place.found, after[0]):
+    title = f"{shown(before)} and {shown(found)} stand side by side"
+    word = found.text if (before.type, found.type) == ("AND", "THEN") else before.text
+    help_ = f"write `{word}` alone" if found.type in ("THEN", before.type) else "leave one of the two out"
+    return place.error("TLT0101", title, help_, span=span_of([before, found]))
+
+
+def prefix_between(place: Place) -> Diagnostic | None:
+    """``reach a next b`` and ``keep a not b``."""
+    found, keyword, behind = place.found, place.tokens[0].text, place.stop.index + 1
+    last = behind + 1 >= len(place.tokens) or is_first_on_line(place.source, place.tokens, behind)
+    if last and (keyword, found.type) in (("keep", "ALWAYS"), ("reach", "EVENTUALLY")):
+        help_ = f"leave it out: `{keyword}` says so already"
+        return place.error("TLT0101", f"{shown(found)} stands before a formula", help_)
+    if last or found.type not in {*BEFORE_ONE, "ALL", "ANY"} or not place.wants_operator:
         return None
-    help_ = f"names are ASCII letters, digits and `_`: write `{before.text}_{after[0].text}`"
-    span = Span(before.span.start, after[0].span.end)
-    return place.error("TLT0104", f"`{before.text}-{after[0].text}` is no name", help_, span=span)
+    goal = keyword == "reach" and found.type in ("NEXT", "EVENTUALLY")
+    help_ = "write `then`" if goal else f"write `and {found.text}`"
+    return place.error("TLT0101", f"{shown(found)} stands before one formula, not between two", help_)
 
 
-def _plain_english(place: Place) -> Diagnostic | None:
-    """``if a then b`` and ``a before b``."""
-    token = place.before if place.before and place.before.text == "if" else place.found
-    if token.type != "NAME" or token.text not in _ENGLISH or not place.wants_operator:
-        return None
-    help_ = _ENGLISH[token.text]
-    if token.text == "if" and place.tokens[0].type == "PREDICATE":
-        help_ = "cases are written `when x > 3: 1 otherwise: -1`"
-    return place.error("TLT0101", f"{shown(token)} is no operator", help_, span=token.span)
-
-
-def _touch(left: Token, right: Token) -> bool:
-    """Whether two tokens stand side by side, without a blank."""
-    return left.span.end == right.span.start
+def side(tokens: Sequence[Token], at: int, step: int) -> int:
+    """Where the value before (``step`` -1) or behind (1) the sign at ``at`` begins or ends."""
+    index, depth = at + step, 0
+    while 0 <= index < len(tokens):
+        kind = tokens[index].type
+        depth += step * ((kind in OPENING) - (kind in CLOSING))
+        if depth < 0 or (depth == 0 and kind not in _VALUE and kind not in OPENING and kind not in CLOSING):
+            break
+        index += step
+    return index + 1 if step < 0 else index
 
 
 HABITS: Final[tuple[Callable[[Place], Diagnostic | None], ...]] = (
-    _arrow,
-    _long_unit,
-    _joined_clauses,
-    _quoted_name,
-    _hyphen,
-    _plain_english,
+    arrow,
+    equality,
+    chained,
+    comment,
+    unit,
+    doubled,
+    prefix_between,
 )

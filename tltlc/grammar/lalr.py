@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tltlc.grammar.lexer import END, Token
+from tltlc.grammar.lexer import BAD, END, Token
 from tltlc.grammar.tables import Tables
 from tltlc.source import Span
 
@@ -60,6 +60,18 @@ def run(tables: Tables, start: str, tokens: Sequence[Token], builder: object) ->
             if kind == END and states[-1] == accepting:
                 return values[-1]
     raise AssertionError("the tokens do not end with $END")
+
+
+def reached(tables: Tables, start: str, tokens: Sequence[Token]) -> list[int]:
+    """The stack of the machine right behind tokens that can be read as the beginning of a ``start``.
+
+    In front of the next token it may be another one: reductions wait for what follows.
+    """
+    try:
+        run(tables, start, [*tokens, Token(BAD, "", 0, 0)], None)
+    except UnexpectedTokenError as stop:
+        return stop.states
+    raise AssertionError("no text has a token of type BAD")
 
 
 def accepted(tables: Tables, states: Sequence[int]) -> set[str]:

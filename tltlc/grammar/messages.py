@@ -8,16 +8,21 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr
-from tltlc.grammar.habits import HABITS, SYNONYMS
-from tltlc.grammar.lexer import BAD, Token
-from tltlc.grammar.place import COMPARISONS, INFIX, KEYWORDS, NOUNS, OPENING, UNTILS, Place, shown
+from tltlc.grammar.clauses import CLAUSE_RULES
+from tltlc.grammar.english import compared, filler, plain_english
+from tltlc.grammar.habits import HABITS, side
+from tltlc.grammar.lexer import Token
+from tltlc.grammar.pieces import is_first_on_line
+from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, OPERAND, UNTILS, Place, shown
+from tltlc.grammar.punctuation import PUNCTUATION, missing_comma
+from tltlc.grammar.rewording import reworded, span_of, written
+from tltlc.grammar.strange import strange
 from tltlc.grammar.tables import load
-from tltlc.grammar.words import CLAUSES, DECLARATIONS, TEST_ITEMS, closest
+from tltlc.grammar.words import CASES, CLAUSES, DECLARATIONS, closest
 from tltlc.source import SourceFile
 
-_NEXTS: Final = {"X", "N", "next", "weak_next", "○"}
-_BOUNDED: Final = {"F", "G", "eventually", "always", "<>", "[]", "◇", "□", *_NEXTS}
-_EQUAL: Final = "write `a >= b and a <= b`; a bool signal is an atom by itself"
+_NEXTS: Final = {"NEXT", "WEAK_NEXT"}
+_BOUNDED: Final = BEFORE_ONE - {"NOT"}
 
 
 def unexpected(source: SourceFile, tokens: Sequence[Token], error: lalr.UnexpectedTokenError, start: str) -> Diagnostic:
@@ -35,74 +40,6 @@ def never_closed(source: SourceFile, opening: Token) -> Diagnostic:
     closing = {"(": ")", "[": "]", "{": "}"}[opening.text]
     title = f"this `{opening.text}` is never closed"
     return Diagnostic("TLT0105", title, (Label(source, opening.span),), f"write the missing `{closing}`")
-
-
-def _strange(place: Place) -> Diagnostic | None:
-    """A sign or word that the language does not know."""
-    token = place.found
-    if token.type != BAD:
-        return None
-    text = token.text
-    if text in ("==", "!="):
-        help_ = _EQUAL if text == "==" else "write `a < b or a > b`; a bool signal is an atom by itself"
-        return place.error("TLT0110", f"`{text}` does not compare here", help_)
-    if text.startswith('"'):
-        return place.error("TLT0114", "this text in quotes never ends", 'write the missing `"` on the same line')
-    if text == "/*":
-        return place.error("TLT0104", "`/*` means nothing here", "comments begin with `//` and end with the line")
-    if text[0].isalpha():
-        return place.error("TLT0104", f"{shown(token)} is no name", "names are ASCII letters, digits and `_`")
-    helps = {
-        ";": "leave it out: nothing is needed between clauses",
-        "'": 'texts stand in double quotes: "…"',
-        "“": 'texts stand in straight double quotes: "…"',
-        "”": 'texts stand in straight double quotes: "…"',
-        "#": "comments begin with `//`",
-        "~": "for `not` write `not` or `!`",
-        ".": "a number has a digit on both sides of its point, as in `0.5`",
-        "%": "a percentage follows a number, as in `50%`",
-    }
-    sign = text if text.isprintable() else f"U+{ord(text):04X}"
-    return place.error("TLT0104", f"`{sign}` means nothing here", helps.get(text, "leave it out"))
-
-
-def _equality(place: Place) -> Diagnostic | None:
-    """A single ``=`` where a comparison was meant."""
-    expectation = place.tokens[0].text == "expect"
-    if place.found.type != "EQUAL" or not (place.wants_operator or expectation):
-        return None
-    help_ = "compare with `<`, `<=`, `>` or `>=`" if expectation else _EQUAL
-    return place.error("TLT0110", "`=` does not compare", help_)
-
-
-def _chained(place: Place) -> Diagnostic | None:
-    """``a < b < c``."""
-    if place.found.type not in COMPARISONS or not place.wants_operator:
-        return None
-    return place.error("TLT0110", "comparisons cannot be chained", "write `a < b and b < c`")
-
-
-def _unknown_keyword(place: Place) -> Diagnostic | None:
-    """A piece that begins with no keyword of its kind."""
-    keywords = KEYWORDS.get(place.start)
-    if place.stop.index or not keywords or place.at_end:
-        return None
-    token, noun = place.found, NOUNS[place.start]
-    if token.type in OPENING.values():
-        return None
-    if place.start == "declaration" and token.text in CLAUSES:
-        help_ = f"put it into one: `spec NAME {{ {token.text} … }}`"
-        return place.error("TLT0107", f"`{token.text}` stands only inside a spec", help_)
-    if place.start == "declaration" and token.text in TEST_ITEMS:
-        help_ = f"put it into one: {DECLARATIONS['test']}"
-        return place.error("TLT0107", f"`{token.text}` stands only inside a test", help_)
-    near = SYNONYMS[place.start].get(token.text.lower())
-    if near is None and token.type == "NAME":
-        near = closest(token.text, tuple(keywords))
-    message = f"did you mean `{near}`?" if near else ""
-    listed = ", ".join(f"`{word}`" for word in keywords)
-    title = f"no {noun} begins with {shown(token)}"
-    return place.error("TLT0107", title, None if near else f"one of {listed}", message)
 
 
 def _brackets(place: Place) -> Diagnostic | None:
@@ -130,9 +67,8 @@ def _bounds(place: Place) -> Diagnostic | None:
     if before and before.text in ("[", ",") and "NUMBER" in place.allowed and _is_bound(place):
         return _no_number(place)
     if place.allowed == {"UNIT"} and before:
-        return place.error(
-            "TLT0111", f"expected a unit after {shown(before)}", f"`{before.text} steps` or `{before.text} s`"
-        )
+        help_ = f"write `{before.text} steps` or, with a clock, `{before.text} s`"
+        return place.error("TLT0111", f"expected a unit after {shown(before)}", help_, span=before.span)
     if place.found.type == "RSQB" and before and "COMMA" in place.allowed and _is_bound(place):
         return _one_end(place, before.text)
     if place.found.type == "LSQB" and before and before.type in UNTILS:
@@ -143,22 +79,24 @@ def _bounds(place: Place) -> Diagnostic | None:
 
 def _no_number(place: Place) -> Diagnostic:
     """``F[-1,2] p`` and ``X[!] p``."""
-    operator = place.tokens[_opening(place) - 1].text
-    if operator in _NEXTS:
+    operator = place.tokens[_opening(place) - 1]
+    if operator.type in _NEXTS:
         return place.error(
             "TLT0111",
-            f"`{operator}` takes no bound in brackets",
+            f"`{operator.text}` takes no bound in brackets",
             "leave the brackets out; `X` is false at the last step, `N` true",
         )
-    return place.error("TLT0111", place.expectation(), f"count the steps from now on, e.g. `{operator}[0,20] p`")
+    return place.error("TLT0111", place.expectation(), f"count the steps from now on, e.g. `{operator.text}[0,20] p`")
 
 
 def _one_end(place: Place, number: str) -> Diagnostic:
     """``F[20] p`` and ``next[20] p``."""
-    operator = place.tokens[_opening(place) - 1].text
-    if operator in _NEXTS:
-        return place.error("TLT0111", f"`{operator}` takes no bound in brackets", f"`next after {number} steps p`")
-    return place.error("TLT0111", "a bound has two ends", f"write `{operator}[0,{number}] p` for the time from now on")
+    operator = place.tokens[_opening(place) - 1]
+    if operator.type in _NEXTS:
+        return place.error("TLT0111", f"`{operator.text}` takes no bound in brackets", f"`next after {number} steps p`")
+    return place.error(
+        "TLT0111", "a bound has two ends", f"write `{operator.text}[0,{number}] p` for the time from now on"
+    )
 
 
 def _opening(place: Place) -> int:
@@ -174,7 +112,7 @@ def _is_bound(place: Place) -> bool:
         index = _opening(place)
     elif place.tokens[index].text not in ("within", "for", "after"):
         return False
-    return index > 0 and place.tokens[index - 1].text in _BOUNDED
+    return index > 0 and place.tokens[index - 1].type in _BOUNDED
 
 
 def _reserved(place: Place) -> Diagnostic | None:
@@ -199,42 +137,126 @@ def _missing_type(place: Place) -> Diagnostic | None:
     return place.error("TLT0101", "expected a type after `:`", place.form(), span=before.span)
 
 
-def _quantified_over(place: Place) -> Diagnostic | None:
-    """``all x in a: p``, without brackets around the entities."""
-    if place.allowed != {"LPAR"} or place.before is None or place.before.type != "IN":
+def _quantified(place: Place) -> Diagnostic | None:
+    """``all x in a: p`` and ``all(p, q)``: the head of a quantifier."""
+    heads = [token for token in place.tokens[: place.stop.index] if token.type in ("ALL", "ANY", "COLON")]
+    if not heads or heads[-1].type == "COLON":
         return None
-    return place.error("TLT0101", place.expectation(), "the form is `all x in (a, b): p` or `any x in (a, b): p`")
+    word, joined = heads[-1].text, "and" if heads[-1].type == "ALL" else "or"
+    help_ = f"the form is `{word} x in (a, b): near(x)`; formulas are joined by `{joined}`"
+    return place.error("TLT0101", place.expectation(), help_)
 
 
 def _misspelt_operator(place: Place) -> Diagnostic | None:
     """A name where an operator should stand."""
     before, token = place.before, place.found
-    if token.type != "NAME" or not place.wants_operator or before is None:
+    if before is None or not place.wants_operator:
         return None
     if re.fullmatch("[FGXN]{2,}", before.text):
         letters = " ".join(before.text)
         return place.error("TLT0101", f"`{before.text}` is read as one name", f"write `{letters}`", span=before.span)
     words = tuple(word for word, terminal in load().words.items() if terminal in INFIX and len(word) > 1)
-    near = closest(token.text, words)
-    if near is None:
-        temporal = closest(before.text, tuple(word for word in load().words if len(word) > 3))
-        if temporal and before.type == "NAME":
-            message = f"did you mean `{temporal}`?"
-            return place.error("TLT0101", f"`{before.text}` is no operator", None, message, before.span)
+    near = closest(token.text, words) if token.type == "NAME" else None
+    if near and _is_before_operand(place):
+        return place.error("TLT0101", place.expectation(), None, f"did you mean `{near}`?")
+    meant = before.text.lower()
+    if meant not in load().words and meant != "no":
+        prefixes = (word for word, terminal in load().words.items() if terminal in {*BEFORE_ONE, "WHEN"})
+        known = tuple(word for word in prefixes if len(word) > 3) if token.type == "NAME" else ()
+        meant = closest(before.text, known) or ""
+    if not meant or before.type != "NAME":
         return None
-    return place.error("TLT0101", place.expectation(), None, f"did you mean `{near}`?")
+    message = f"did you mean `{'not' if meant == 'no' else meant}`?"
+    return place.error("TLT0101", f"`{before.text}` is no operator", None, message, before.span)
+
+
+def _is_before_operand(place: Place) -> bool:
+    """Whether something that an operator could stand before comes behind the token that was found."""
+    after = place.tokens[place.stop.index + 1]
+    return after.type in OPERAND | BEFORE_ONE
+
+
+def _is(place: Place) -> Diagnostic | None:
+    """``seen is true`` and ``coins is more than 3``."""
+    at, after = place.stop.index, [token.text for token in place.tokens[place.stop.index + 1 :]]
+    if place.found.text not in ("is", "are") or not place.wants_operator or place.before is None or not after:
+        return None
+    title = f"{shown(place.found)} is no operator"
+    start = side(place.tokens, at, -1)
+    value = written(place, start, at)
+    words = {"true": "{}", "false": "not {}", "not": "not {}"}
+    found = None
+    if after[0] in words:
+        stop = at + 2 + (after[0] == "not" and after[1:2] in (["true"], ["false"]))
+        text = words[after[0]].format(value)
+        found = reworded(place, start, stop, text, title, ": a `bool` signal is an atom by itself")
+    help_ = f"`{value}` by itself says that it is true, `not {value}` that it is not; numbers compare by `<` and `>`"
+    return found or place.error("TLT0101", title, help_)
+
+
+def _otherwise(place: Place) -> Diagnostic | None:
+    """``when a: 1 else: 0``."""
+    if place.found.text not in ("else", "default") or "OTHERWISE" not in place.allowed:
+        return None
+    return place.error("TLT0101", f"{shown(place.found)} begins no case", "write `otherwise`")
+
+
+def _cases(place: Place) -> Diagnostic | None:
+    """``when a then 1`` and ``when a: 1`` without the rest."""
+    if not any(token.type == "WHEN" for token in place.tokens[: place.stop.index]):
+        return None
+    return place.error("TLT0101", place.expectation(), CASES)
+
+
+def _side_by_side(place: Place) -> Diagnostic | None:
+    """``near s1``."""
+    before, found = place.before, place.found
+    if before is None or found.type != "NAME" or not place.wants_operator or before.type not in ("NAME", "RPAR"):
+        return None
+    if is_first_on_line(place.source, place.tokens, place.stop.index):
+        return None
+    if before.type == "RPAR" or place.tokens[place.stop.index + 1].type == "LPAR":
+        title = f"no operator between {shown(before)} and {shown(found)}"
+        return place.error("TLT0101", title, "formulas are joined by `and`, `or` or `then`")
+    if _is_before_operand(place):
+        return place.error("TLT0101", f"{shown(found)} is no operator", "formulas are joined by `and`, `or` or `then`")
+    help_ = f"write `{before.text}({found.text})` where the one is said of the other; else join them by `and` or `then`"
+    title = f"{shown(before)} and {shown(found)} are not joined"
+    return place.error("TLT0101", title, help_, span=span_of([before, found]))
+
+
+def _operator_for_name(place: Place) -> Diagnostic | None:
+    """``keep next``."""
+    if not place.wants_operand:
+        return None
+    for word, kinds, where in (
+        (place.found, INFIX, "between two formulas"),
+        (place.before, BEFORE_ONE, "before a formula"),
+    ):
+        if word and word.type in kinds and word.text.isalpha():
+            help_ = f"{shown(word)} is an operator and stands {where}; it cannot be a name"
+            return place.error("TLT0101", place.expectation(), help_)
+    return None
 
 
 _RULES: Final = (
-    _strange,
+    strange,
+    plain_english,
+    compared,
+    filler,
+    _otherwise,
     *HABITS,
-    _equality,
-    _chained,
-    _unknown_keyword,
+    *PUNCTUATION,
+    *CLAUSE_RULES,
     _brackets,
     _bounds,
     _reserved,
     _missing_type,
-    _quantified_over,
+    _quantified,
+    _is,
     _misspelt_operator,
+    missing_comma,
+    _side_by_side,
+    _operator_for_name,
+    _cases,
 )

@@ -11,7 +11,7 @@ from typing import Final
 
 from tltlc.grammar.lexer import BAD, Token
 from tltlc.grammar.tables import load
-from tltlc.grammar.words import DECLARATIONS, TEST_ITEMS, closest
+from tltlc.grammar.words import CLAUSES, DECLARATIONS, SYNONYMS, TEST_ITEMS, closest
 from tltlc.source import SourceFile
 
 _ENDS: Final = {"NAME", "NUMBER", "UNIT", "STRING", "TRUE", "FALSE", "RPAR", "RSQB", "RBRACE", "LBRACE", "LIMIT"}
@@ -29,6 +29,8 @@ _STARTS: Final = {
     "ALL",
     "ANY",
 }
+_PREFIXES: Final = (_STARTS - {"NAME", "STRING"}) | {"WHEN"}
+"""What can begin a formula, but not go on with one."""
 _OTHERS: Final = DECLARATIONS.keys() - {"spec", "test"}
 
 
@@ -86,13 +88,47 @@ def _begins(
             return False
         if token.type == "LIMIT" and before.text == "at" and not (first and tokens[index - 2].type != "JUDGE"):
             return False
+        if token.type == "LIMIT" and _is_behind_number(source, tokens, index):
+            return False
         return first or (within_lines and before.type in _ENDS)
+    if keywords is CLAUSES and first and before.type in _ENDS - {"LIMIT"} and token.type in _PREFIXES:
+        return True
+    if first and _is_list_mark(source, tokens, index, keywords):
+        return True
     # A word that is no keyword, at the start of a line and with another word behind it: a misspelt keyword.
     if not first or not within_lines or token.type not in ("NAME", BAD) or not token.text[0].isalpha():
         return False
     if index + 1 == len(tokens):
         return False
     following = tokens[index + 1]
+    if following.type == "COLON" and _is_like(token.text, keywords):
+        return True
+    if following.text in keywords and following.type != "NAME" and before.type in _ENDS:
+        return True
     if following.type not in _STARTS or following.text in load().soft or is_first_on_line(source, tokens, index + 1):
         return False
     return before.type in _ENDS or closest(token.text, tuple(keywords)) is not None
+
+
+def _is_like(word: str, keywords: dict[str, str]) -> bool:
+    """Whether a word is most likely meant as a keyword."""
+    elsewhere = {word for words in SYNONYMS.values() for word, meant in words.items() if meant in keywords}
+    return word.lower() in elsewhere or closest(word, tuple(keywords)) is not None
+
+
+def _is_behind_number(source: SourceFile, tokens: Sequence[Token], index: int) -> bool:
+    """Whether `limit` stands behind its number, as in ``400 steps limit``."""
+    number = index - 1 - (tokens[index - 1].type == "UNIT")
+    has_own = index + 1 < len(tokens) and tokens[index + 1].type == "NUMBER"
+    return tokens[number].type == "NUMBER" and is_first_on_line(source, tokens, number) and not has_own
+
+
+def _is_list_mark(source: SourceFile, tokens: Sequence[Token], index: int, keywords: dict[str, str]) -> bool:
+    """Whether a line begins as those of lists do, as in ``- reach a`` and ``1. reach a``."""
+    for place in (index, index + 1):
+        behind = place + 1
+        if tokens[place].text[0].isalpha() or behind == len(tokens) or is_first_on_line(source, tokens, behind):
+            return False
+        if tokens[behind].text in keywords:
+            return True
+    return False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Final
 
@@ -18,11 +18,13 @@ NOUNS: Final = {"declaration": "declaration", "clause": "clause", "test_item": "
 """The keywords that begin each kind of piece, and what messages call it; any other start is a formula."""
 
 OPENING: Final = {"LPAR": "RPAR", "LSQB": "RSQB", "LBRACE": "RBRACE"}
+CLOSING: Final = frozenset(OPENING.values())
 COMPARISONS: Final = {"LESS", "AT_MOST", "MORE", "AT_LEAST"}
 ARITHMETIC: Final = {"PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "POWER", *COMPARISONS}
 UNTILS: Final = {"UNTIL", "WEAK_UNTIL", "RELEASE", "STRONG_RELEASE"}
 INFIX: Final = {"AND", "OR", "IMPLIES", "IFF", "THEN", *UNTILS}
-_OPERAND: Final = {"NAME", "NUMBER", "LPAR"}
+BEFORE_ONE: Final = {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "NOT"}
+OPERAND: Final = {"NAME", "NUMBER", "LPAR"}
 _KINDS: Final = {"NAME": "a name", "NUMBER": "a number", "STRING": "a text in quotes", "UNIT": "a unit"}
 _FEW: Final = 4
 """How many things that could stand at a place a title names."""
@@ -60,12 +62,13 @@ class Place:
     @cached_property
     def allowed(self) -> set[str]:
         """The terminals that could stand here."""
-        return lalr.accepted(load(), self.stop.states)
+        tables = load()
+        return lalr.accepted(tables, lalr.reached(tables, self.start, self.tokens[: self.stop.index]))
 
     @property
     def wants_operand(self) -> bool:
         """Whether a formula or a number could begin here."""
-        return self.allowed >= _OPERAND
+        return self.allowed >= OPERAND
 
     @property
     def wants_operator(self) -> bool:
@@ -124,6 +127,21 @@ class Place:
             items.append(f"the end of the {NOUNS.get(self.start, 'formula')}")
         items = items[:_FEW] or [f"a {NOUNS.get(self.start, 'formula')}"]
         return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} or {items[-1]}"
+
+
+def outside(tokens: Sequence[Token], start: int, stop: int) -> Iterator[int]:
+    """The indices from ``start`` up to ``stop`` of the tokens outside brackets, with the brackets themselves."""
+    depth = 0
+    for index in range(start, stop):
+        depth -= tokens[index].type in CLOSING
+        if depth <= 0:
+            yield index
+        depth += tokens[index].type in OPENING
+
+
+def touch(left: Token, right: Token) -> bool:
+    """Whether two tokens stand side by side, without a blank."""
+    return left.end == right.start
 
 
 def shown(token: Token | None) -> str:

@@ -35,6 +35,68 @@ TEST_ITEMS: Final = {
     "expect": '`expect satisfied` (or holding, pending, violated), `expect progress >= 0.5` or `expect state "F a"`',
 }
 
+CASES: Final = "cases are written `when x > 3: 1 otherwise: -1`"
+"""The help where cases are written in another way."""
+
+OPERATORS: Final = {"reach": "eventually", "keep": "always", "avoid": "always not", "require": ""}
+"""What the clauses that ask for something are inside a formula."""
+
+CONDITIONS: Final = ("if", "when", "whenever", "while")
+"""English words that a condition follows."""
+
+SYNONYMS: Final[dict[str, dict[str, str]]] = {
+    "declaration": {
+        "include": "import",
+        "use": "import",
+        "input": "signal",
+        "var": "signal",
+        "variable": "signal",
+        "object": "entity",
+        "objects": "entity",
+        "const": "param",
+        "constant": "param",
+        "function": "predicate",
+        "def": "let",
+        "define": "let",
+        "goal": "spec",
+        "plan": "spec",
+        "from": "import",
+        **dict.fromkeys(("bool", "boolean", "int", "float", "number"), "signal"),
+    },
+    "clause": {
+        "goal": "reach",
+        "get": "reach",
+        "maintain": "keep",
+        "stay": "keep",
+        "never": "avoid",
+        "forbid": "avoid",
+        "must": "require",
+        "ensure": "require",
+        "should": "require",
+        "win": "reach",
+        "remain": "keep",
+        "lose": "avoid",
+        "fail": "avoid",
+        "prevent": "avoid",
+    },
+    "test_item": {"assert": "expect"},
+}
+"""What keywords are called elsewhere, by kind of piece."""
+
+UNITS_ELSEWHERE: Final = {
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
+    **dict.fromkeys(("mins", "minute", "minutes"), "min"),
+    **dict.fromkeys(("hour", "hours"), "h"),
+    **dict.fromkeys(("degree", "degrees"), "deg"),
+    **dict.fromkeys(("frame", "frames", "tick", "ticks", "turn", "turns"), "steps"),
+    **dict.fromkeys(("percent", "pct"), "%"),
+    **dict.fromkeys(("hz", "fps"), "Hz"),
+    **dict.fromkeys(("kmh", "kph"), "km/h"),
+    "mps": "m/s",
+}
+"""What units are called elsewhere."""
+
 JUDGE: Final = ("goal", "limit")
 SEMANTICS: Final = ("finite", "infinite")
 VERDICTS: Final = ("satisfied", "holding", "pending", "violated")

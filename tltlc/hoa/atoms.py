@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, stop_at_errors
 from tltlc.grammar.parser import parse
 from tltlc.hoa.tree import Hoa
 from tltlc.record import replace
@@ -26,7 +26,7 @@ def vocabulary_of(
             there is none that ``given`` names; what else keeps it from being a formula.
     """
     module, found = parse(library)
-    _stop_at_errors(found)
+    stop_at_errors(found)
     given = _by_name(hoa, given)
     # Blanks up to a name, so that places in it are those in the file.
     names = [SourceFile(hoa.source.name, " " * atom.span.start + hoa.source.slice(atom.span)) for atom in hoa.atoms]
@@ -36,7 +36,7 @@ def vocabulary_of(
     ]
     words, formula_of, more = resolve_atoms(module, written, options)
     found += tuple(_in_file(each, names, hoa.source) for each in more)
-    _stop_at_errors(found)
+    stop_at_errors(found)
     assert words is not None
     return words, formula_of, found
 
@@ -78,8 +78,3 @@ def _in_file(message: Diagnostic, names: Sequence[SourceFile], source: SourceFil
     own = message.help if message.code in ("TLT0201", "TLT0655") else None
     way_out = f"{own}; or {mapped}" if own else mapped
     return replace(message, labels=tuple(map(placed, message.labels)), help=way_out)
-
-
-def _stop_at_errors(found: Sequence[Diagnostic]) -> None:
-    if any(diagnostic.severity == "error" for diagnostic in found):
-        raise TltlError(found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final, NamedTuple
 
 from tltlc.logic import formula as build
@@ -10,11 +10,11 @@ from tltlc.logic.bounded import Bounded, bounded, with_bounds
 from tltlc.logic.formula import FALSE, TRUE, Formula
 from tltlc.logic.implication import complement
 from tltlc.logic.notation import ASCII, write
-from tltlc.logic.phrases import bracketed, imperative, is_literal, is_state, phrase
+from tltlc.logic.phrases import bracketed, imperative, is_literal, is_state, object_phrase, phrase
 from tltlc.logic.rewrite import simplify
 
-_PLAIN, _LIST, _SCOPED = 0, 1, 2
-"""How far a clause may be misread beside another: not at all; it has inner commas; it must stand apart."""
+_PLAIN, _LIST, _CLAUSE, _SCOPED = 0, 1, 2, 3
+"""How far a clause may be misread: not at all; beside others, as it has inner commas; beside any; even as the last."""
 
 _DEEPEST: Final = 5
 """Clauses nested deeper than this are given as formulas: no sentence of that depth helps a reader."""
@@ -42,7 +42,7 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
 
     ``endless``: the sentence is about traces that never end, of a formula with no constants in it.
     """
-    formula = formula if endless else _without_constants(formula)
+    formula = formula if endless else without_constants(formula)
     if formula is TRUE:
         return "Nothing remains to be done."
     if formula is FALSE:
@@ -51,7 +51,17 @@ def english_text(formula: Formula, *, endless: bool = False) -> str:
     return f"{text[0].upper()}{text[1:]}."
 
 
-def _without_constants(formula: Formula) -> Formula:
+def clause_text(formula: Formula, *, endless: bool = False) -> str:
+    """The formula, which is no constant, as a clause of such a sentence: ``keep alive throughout``."""
+    return _clause(formula, "now", _How(_DEEPEST, endless))[0]
+
+
+def goal_texts(reach: Formula, *, endless: bool = False) -> tuple[tuple[str, str], ...]:
+    """The goals of an ``F``, each with what links it to the one before: ``then``, of the first nothing."""
+    return tuple(_linked_goals(reach.args[0], _How(_DEEPEST, endless)))
+
+
+def without_constants(formula: Formula) -> Formula:
     """An equal formula with constants only in ``X true`` and ``N false``, or alone."""
     idle = any((TRUE in node.args or FALSE in node.args) and not _is_about_end(node) for node in formula.walk())
     return simplify(formula) if idle else formula
@@ -60,7 +70,7 @@ def _without_constants(formula: Formula) -> Formula:
 def _clause(node: Formula, when: str, how: _How) -> _Clause:
     """What to do so that ``node`` holds at the moment that ``when`` names."""
     if is_state(node):
-        return f"{imperative(node, 'have', 'avoid')} {when}", _PLAIN
+        return f"{imperative(node, 'have', 'avoid')} {when}", _of_state(node)
     if how.depth == 0:
         return f"satisfy {write(node, ASCII)}", _SCOPED
     if node.op in ("and", "or"):
@@ -73,9 +83,9 @@ def _clause(node: Formula, when: str, how: _How) -> _Clause:
         case "and":
             return _together([_clause(part, when, how.deeper()) for part in _parts(node)])
         case "or":
-            return "either " + " or ".join(_inner(part, how, when) for part in _parts(node)), _SCOPED
+            return "either " + " or ".join(_inner(part, how, when) for part in _parts(node)), _CLAUSE
         case "implies" if is_state(node.args[0]):
-            return f"if {phrase(node.args[0])} {when}, {_inner(node.args[1], how, when)}", _SCOPED
+            return f"if {phrase(node.args[0])} {when}, {_last(node.args[1], how, when)}", _CLAUSE
         case "implies":
             return _clause(build.or_(build.not_(node.args[0]), node.args[1]), when, how)
         case "iff":
@@ -110,7 +120,7 @@ def _together(clauses: Sequence[_Clause]) -> _Clause:
     texts = [text for text, _ in clauses]
     if len(texts) == 1:
         return clauses[0]
-    separator = "; " if any(rank == _SCOPED for _, rank in clauses) else ", "
+    separator = "; " if any(rank >= _CLAUSE for _, rank in clauses) else ", "
     return f"{separator.join(texts[:-1])}{separator}and {texts[-1]}", _SCOPED
 
 
@@ -120,23 +130,29 @@ def _reach(node: Formula, when: str, how: _How) -> _Clause:
     if _without_negation(body).op == "G":
         return f"from some step on {_inner(body, how)}", _LIST
     if is_state(body) and when != "now":
-        return f"reach {bracketed(body)} then or later", _PLAIN
+        return f"reach {object_phrase(body)} {when} or later", _of_state(body)
     return f"reach {_goals(body, how)}", _PLAIN if is_literal(body) else _LIST
 
 
 def _goals(body: Formula, how: _How) -> str:
     """What ``F body`` reaches, one goal after the other."""
-    steps: list[str] = []
+    return "".join(f", {link} {goal}" if link else goal for link, goal in _linked_goals(body, how))
+
+
+def _linked_goals(body: Formula, how: _How) -> Iterator[tuple[str, str]]:
+    """What ``F body`` reaches, one goal after the other, each with what links it to the one before."""
+    link = ""
     while True:
-        link, rest = _next_goal(body)
+        following, rest = _next_goal(body)
         if rest is None:
-            return "".join(steps) + _goal(body, how)
-        steps.append(phrase(build.and_(*(part for part in body.args if is_state(part)))) + link)
-        (body,) = rest.args
+            yield link, _goal(body, how)
+            return
+        yield link, phrase(build.and_(*(part for part in body.args if is_state(part))))
+        link, (body,) = following, rest.args
 
 
 def _next_goal(body: Formula) -> tuple[str, Formula | None]:
-    """What links ``p & X F q`` or ``p & F q`` to its next goal, and that goal's ``F``; None where none follows."""
+    """How ``p & X F q`` or ``p & F q`` goes on to its next goal, and that goal's ``F``; None where none follows."""
     if body.op != "and":
         return "", None
     temporal = [part for part in body.args if not is_state(part)]
@@ -144,8 +160,8 @@ def _next_goal(body: Formula) -> tuple[str, Formula | None]:
         return "", None
     (rest,) = temporal
     if rest.op == "X" and rest.args[0].op == "F":
-        return ", then ", rest.args[0]
-    return (", then or at the same time ", rest) if rest.op == "F" else ("", None)
+        return "then", rest.args[0]
+    return ("then or at the same time", rest) if rest.op == "F" else ("", None)
 
 
 def _goal(body: Formula, how: _How) -> str:
@@ -170,17 +186,19 @@ def _throughout(body: Formula, how: _How) -> _Clause:
     """``G``: what to keep, what to avoid, what to do whenever something holds."""
     if body.op == "and" and not all(part.op == "atom" for part in body.args):
         return _together([_throughout(part, how) for part in _kept(body)])
+    if body.op == "implies" and is_state(body):
+        return f"whenever {phrase(body.args[0])}, {_last(body.args[1], how)}", _CLAUSE
     if is_state(body):
-        return imperative(body, "keep", "avoid") + " throughout", _PLAIN
+        return imperative(body, "keep", "avoid") + " throughout", _of_state(body)
     if how.endless and _without_negation(body).op == "F":
         (goal,) = _without_negation(body).args
         if is_state(goal):
-            return f"reach {bracketed(goal)} again and again", _PLAIN
-        return f"again and again, {_inner(body, how)}", _SCOPED
+            return f"reach {object_phrase(goal)} again and again", _of_state(goal)
+        return f"again and again, {_last(body, how)}", _CLAUSE
     left, right = _implication(body)
     if left is not None and right is not None:
-        return f"whenever {phrase(left)}, {_inner(right, how)}", _SCOPED
-    return f"at every step, {_inner(body, how)}", _SCOPED
+        return f"whenever {phrase(left)}, {_last(right, how)}", _CLAUSE
+    return f"at every step, {_last(body, how)}", _CLAUSE
 
 
 def _kept(body: Formula) -> list[Formula]:
@@ -210,12 +228,12 @@ def _until(node: Formula, how: _How) -> _Clause:
         target = f"reach {bracketed(goal)}" if is_state(goal) else f"reach a {_step(goal, how)}"
         until = "until then" if node.op == "U" else "up to and including that step"
         if is_state(held):
-            return f"{target}, {imperative(held, 'keeping', 'avoiding')} {until}", _SCOPED
-        return f"{target}, and at every step {until} {_inner(held, how)}", _SCOPED
+            return f"{target}, {imperative(held, 'keeping', 'avoiding')} {until}", _CLAUSE
+        return f"{target}, and at every step {until} {_inner(held, how)}", _CLAUSE
     stop, held = (right, left) if node.op == "W" else (left, right)
     until = "until the first" if node.op == "W" else "up to and including the first"
     keep = imperative(held, "keep", "avoid") if is_state(held) else f"at every step, {_inner(held, how)},"
-    return f"{keep} {until} {_step(stop, how)}, or throughout if there is none", _SCOPED
+    return f"{keep} {until} {_step(stop, how)}, or throughout if there is none", _CLAUSE
 
 
 def _next(node: Formula, how: _How) -> _Clause:
@@ -232,8 +250,8 @@ def _next(node: Formula, how: _How) -> _Clause:
     if "X" not in ops:
         moment += ", if there is one" if count == 1 else ", if there are that many"
     if is_state(body):
-        return f"{imperative(body, 'have', 'avoid')} {moment}", _PLAIN if "X" in ops else _LIST
-    return f"{moment}, {_inner(body, how)}", _SCOPED
+        return f"{imperative(body, 'have', 'avoid')} {moment}", _of_state(body) if "X" in ops else _LIST
+    return f"{moment}, {_last(body, how)}", _CLAUSE
 
 
 def _bounded(found: Bounded, how: _How) -> _Clause:
@@ -242,11 +260,11 @@ def _bounded(found: Bounded, how: _How) -> _Clause:
     if found.op == "F":
         within = f"within {steps} step{'s' * (steps > 1)}"
         if is_state(body):
-            return f"reach {bracketed(body)} {within}", _PLAIN
-        return f"reach {within} a {_step(body, how)}", _SCOPED
+            return f"reach {object_phrase(body)} {within}", _of_state(body)
+        return f"reach {within} a {_step(body, how)}", _CLAUSE
     if is_state(body):
-        return f"{imperative(body, 'keep', 'avoid')} for {steps + 1} steps", _PLAIN
-    return f"at each of {steps + 1} steps from here on, {_inner(body, how)}", _SCOPED
+        return f"{imperative(body, 'keep', 'avoid')} for {steps + 1} steps", _of_state(body)
+    return f"at each of {steps + 1} steps from here on, {_last(body, how)}", _CLAUSE
 
 
 def _step(node: Formula, how: _How) -> str:
@@ -260,6 +278,17 @@ def _inner(node: Formula, how: _How, when: str = "at that step") -> str:
     """The clause as part of another, in brackets unless it is plain."""
     text, rank = _clause(node, when, how.deeper())
     return text if rank == _PLAIN else f"({text})"
+
+
+def _last(node: Formula, how: _How, when: str = "at that step") -> str:
+    """The clause as the last part of another, in brackets where it is several."""
+    text, rank = _clause(node, when, how.deeper())
+    return f"({text})" if rank == _SCOPED else text
+
+
+def _of_state(state: Formula) -> int:
+    """The rank of a clause about a state, which may have an `and` or an `or`."""
+    return _PLAIN if is_literal(state) else _LIST
 
 
 def _without_negation(node: Formula) -> Formula:

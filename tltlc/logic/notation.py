@@ -25,7 +25,8 @@ _STRENGTH: Final[Mapping[Op, int]] = {
 class Notation(NamedTuple):
     """How operators and constants are written: ``prefix`` before an operand, ``infix`` between two.
 
-    ``brackets_between_infix`` asks for brackets wherever one infix operator stands in another.
+    ``brackets_between_infix`` asks for brackets wherever one infix operator stands in another, and
+    ``brackets_around_comparisons`` around those that are operands.
     ``within`` and ``during`` are the prefixes of ``F[0,n]`` and ``G[0,n]``, with ``{last}`` for n and
     ``{count}`` for the n + 1 samples.
     """
@@ -35,6 +36,7 @@ class Notation(NamedTuple):
     constants: Mapping[Op, str]
     space_before_bracket: bool
     brackets_between_infix: bool = False
+    brackets_around_comparisons: bool = True
     within: str = ""
     during: str = ""
 
@@ -48,6 +50,31 @@ ASCII: Final = Notation(
     space_before_bracket=False,
     within="F[0,{last}] ",
     during="G[0,{last}] ",
+)
+UNICODE: Final = Notation(
+    {"not": "¬", "X": "○", "N": "N ", "F": "◇", "G": "□"},
+    {"and": " ∧ ", "or": " ∨ ", "implies": " ⇒ ", "iff": " ⇔ ", **LETTERS, "U": " 𝒰 "},
+    {"true": "⊤", "false": "⊥"},
+    space_before_bracket=False,
+    within="◇[0,{last}] ",
+    during="□[0,{last}] ",
+)
+WORDS: Final = Notation(
+    {"not": "not ", "X": "next ", "N": "weak_next ", "F": "eventually ", "G": "always "},
+    {
+        "and": " and ",
+        "or": " or ",
+        "implies": " implies ",
+        "iff": " iff ",
+        "U": " until ",
+        "W": " weak_until ",
+        "R": " release ",
+        "M": " strong_release ",
+    },
+    {"true": "true", "false": "false"},
+    space_before_bracket=True,
+    within="eventually within {last} steps ",
+    during="always for {count} steps ",
 )
 
 
@@ -72,7 +99,7 @@ def write(formula: Formula, notation: Notation, least: int = 0) -> str:
         if bound is not None:
             prefix = notation.within if bound.op == "F" else notation.during
             _push_operand(stack, prefix.format(last=bound.steps, count=bound.steps + 1), bound.body, notation)
-        elif _needs_brackets(node, least):
+        elif _needs_brackets(node, least, notation):
             stack += [")", (node, 0), "("]
         elif node.op == "atom":
             pieces.append(node.name)
@@ -92,7 +119,7 @@ def _bound(node: Formula) -> Bounded | None:
 
 
 def _push_operand(stack: list[_Item], prefix: str, operand: Formula, notation: Notation) -> None:
-    bracket = _needs_brackets(operand, OPERAND) and not notation.space_before_bracket
+    bracket = _needs_brackets(operand, OPERAND, notation) and not notation.space_before_bracket
     stack += [(operand, OPERAND), prefix.rstrip() if bracket else prefix]
 
 
@@ -109,9 +136,9 @@ def _push_infix(stack: list[_Item], node: Formula, notation: Notation) -> None:
             stack.append(notation.infix[node.op])
 
 
-def _needs_brackets(node: Formula, least: int) -> bool:
+def _needs_brackets(node: Formula, least: int, notation: Notation) -> bool:
     """Whether a node needs brackets where its operator must bind at least as tightly as ``least``."""
-    if node.op == "atom" and least and ("<" in node.name or ">" in node.name):
+    if notation.brackets_around_comparisons and node.op == "atom" and least and ("<" in node.name or ">" in node.name):
         return True  # a comparison: the grammar reads F a > 0 as F(a > 0), a person might not
     if _STRENGTH[node.op] >= least:
         return False

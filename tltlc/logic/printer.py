@@ -2,40 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from tltlc.logic.english import english_text
 from tltlc.logic.formula import Formula
-from tltlc.logic.notation import ASCII, LETTERS, OPERAND, Notation, write
+from tltlc.logic.notation import ASCII, OPERAND, UNICODE, WORDS, write
 
 __all__ = ["ascii_text", "english_text", "operand_text", "unicode_text", "words_text"]
-
-
-_UNICODE: Final = Notation(
-    {"not": "¬", "X": "○", "N": "N ", "F": "◇", "G": "□"},
-    {"and": " ∧ ", "or": " ∨ ", "implies": " ⇒ ", "iff": " ⇔ ", **LETTERS, "U": " 𝒰 "},
-    {"true": "⊤", "false": "⊥"},
-    space_before_bracket=False,
-    within="◇[0,{last}] ",
-    during="□[0,{last}] ",
-)
-_WORDS: Final = Notation(
-    {"not": "not ", "X": "next ", "N": "weak_next ", "F": "eventually ", "G": "always "},
-    {
-        "and": " and ",
-        "or": " or ",
-        "implies": " implies ",
-        "iff": " iff ",
-        "U": " until ",
-        "W": " weak_until ",
-        "R": " release ",
-        "M": " strong_release ",
-    },
-    {"true": "true", "false": "false"},
-    space_before_bracket=True,
-    within="eventually within {last} steps ",
-    during="always for {count} steps ",
-)
 
 
 def ascii_text(formula: Formula) -> str:
@@ -50,9 +21,9 @@ def operand_text(formula: Formula) -> str:
 
 def unicode_text(formula: Formula) -> str:
     """The formula in symbols, ``◇(a ∧ ○◇b) ∧ □¬c``; ``N W R M`` have no symbol and stay letters."""
-    return write(formula, _UNICODE)
+    return write(formula, UNICODE)
 
 
 def words_text(formula: Formula) -> str:
     """The formula in words, ``eventually (a and next eventually b) and always not c``."""
-    return write(formula, _WORDS)
+    return write(formula, WORDS)

@@ -71,10 +71,10 @@ def _unmet(expect: Expect, step: Step | None, fspa: Fspa) -> Diagnostic | None:
         return _failure(expect, "a trace has at least one sample", "put a `step` before the first `expect`")
     if expect.kind == "verdict":
         if expect.value != step.verdict:
-            return _failure(expect, f"it is {step.verdict}", _remains(step))
+            return _failure(expect, f"it is {step.verdict}", _remains(step, fspa))
     elif expect.kind == "progress":
         if not _compares(step.progress, expect):
-            return _failure(expect, f"the progress is {shown(step.progress)}", _remains(step))
+            return _failure(expect, f"the progress is {shown(step.progress)}", _remains(step, fspa))
     else:
         label = fspa.states[step.state].label
         if _squeezed(str(expect.value)) not in map(_squeezed, (label.ascii, label.unicode, label.english)):
@@ -94,8 +94,8 @@ def _squeezed(label: str) -> str:
     return "".join(label.split())
 
 
-def _remains(step: Step) -> str | None:
-    return f"what remains is `{step.label}`" if step.label not in ("true", "false") else None
+def _remains(step: Step, fspa: Fspa) -> str | None:
+    return None if step.label in ("true", "false") else f"what remains: {fspa.states[step.state].label.english}"
 
 
 def _failure(expect: Expect, remark: str, help: str | None = None) -> Diagnostic:  # noqa: A002

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import DEFAULT_STATE_BUDGET
 from tltlc.automaton.diagrams import OutOfSteps
@@ -13,12 +11,9 @@ from tltlc.rabin.analysis import analysis_of_rabin
 from tltlc.rabin.assembly import assembled
 from tltlc.rabin.blowup import blow_up
 from tltlc.rabin.construct import rabin
-from tltlc.rabin.work import OutOfWork, Work
+from tltlc.rabin.work import STEPS_PER_STATE, OutOfWork, Work
 from tltlc.rabin.written import Writer, text_of
 from tltlc.resolve.spec import Spec
-
-STEPS_PER_STATE: Final = 400
-"""Steps of work allowed for each state of the budget."""
 
 
 def build_infinite(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
@@ -26,8 +21,8 @@ def build_infinite(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> F
 
     A state accepts (``accepting``) that lies on an accepted cycle; a trap is one from which none is reached.  Raises
     :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where the construction takes more than
-    :data:`STEPS_PER_STATE` steps for each state of ``state_budget``, TLT0502 where a guard has too many prime
-    implicants.
+    :data:`~tltlc.rabin.work.STEPS_PER_STATE` steps for each state of ``state_budget``, TLT0502 where a guard has too
+    many prime implicants.
     """
     with recursion_room():
         try:

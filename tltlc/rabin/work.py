@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Final
 
+STEPS_PER_STATE: Final = 400
+"""Steps of work allowed for each state of a budget."""
+
 DEFAULT_WORK: Final = 20_000_000
 """Steps that making, reading or comparing automata may take, each of one to three microseconds."""
 

@@ -22,8 +22,12 @@ def text_of(formula: Formula) -> Text:
     plain = ascii_text(formula)
     if len(plain) > _LONGEST_IN_ENGLISH:
         return Text(plain, unicode_text(formula), f"Satisfy {plain}.")
-    said = Writer(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
-    return Text(plain, unicode_text(formula), english_text(said, endless=True))
+    return Text(plain, unicode_text(formula), english_text(without_constants(formula), endless=True))
+
+
+def without_constants(formula: Formula) -> Formula:
+    """A formula that is equal on every infinite trace, and a constant or with none in it."""
+    return Writer(formula).formula(infinite_form(formula)) if _has_constants(formula) else formula
 
 
 class Writer:

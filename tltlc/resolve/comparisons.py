@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from tltlc.expression import Const, Expression, Op
-from tltlc.grammar.tree import Binary
+from tltlc.grammar.tree import Binary, Number
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
 from tltlc.resolve.dimensions import same_dimension
@@ -61,11 +61,19 @@ def _check(x: Quantity, op: str, c: float, negated: bool, expr: Binary, env: Env
         advice = "compare with a value inside that range, or write `true` or `false`"
         if x.is_constant:
             message, advice = "both sides are constant", f"compare a signal, or write `{'true' if holds else 'false'}`"
+        elif _is_percentage(x, c, op, expr):
+            advice = f"write `{source.slice(expr.span)} %`: a ratio is a number in [0, 1]"
         title = f"this comparison {'always' if holds else 'never'} holds"
         raise problem("TLT0310", title, source, expr.span, message, advice=advice)
     needed = [x.high == inf, x.low == -inf]
     if any(needed):
         raise _unbounded(x, needed, expr, env)
+
+
+def _is_percentage(x: Quantity, c: float, op: str, expr: Binary) -> bool:
+    """Whether something in [0, 1] is compared with a plain number that is a percentage, and then says something."""
+    is_plain = isinstance(expr.right, Number) and expr.right.unit is None
+    return (x.low, x.high) == (0, 1) and is_plain and (2 <= c < 100 or (c == 100 and op == "<"))
 
 
 def _unbounded(x: Quantity, needed: list[bool], expr: Binary, env: Env) -> ResolutionError:

@@ -24,6 +24,7 @@ from tltlc.resolve.predicates import argument_value, predicate
 from tltlc.resolve.problem import ResolutionError
 from tltlc.resolve.scope import Binding
 from tltlc.resolve.steps import Steps, run
+from tltlc.resolve.units import value_type
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown, Value
 from tltlc.source import Span
 
@@ -121,6 +122,9 @@ def _named(expr: Name | Call, env: Env) -> Steps:
     declaration = binding.declaration
     if isinstance(declaration, SignalDecl) and declaration.type == "bool":
         return _bool_atom(signal(expr, binding, env), declaration.doc, expr, env)
+    if isinstance(declaration, SignalDecl) and declaration.type is not None and value_type(declaration.type) is None:
+        # That there is no such type has been said where it is declared.
+        raise ResolutionError(None)
     raise not_a_formula(expr, env)
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 
-from tltlc.diagnostics.diagnostic import Label, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import is_file, read_source
 from tltlc.grammar.tree import Import, Module
 from tltlc.record import record, replace
@@ -120,6 +121,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     target = declaration.target
     here = _folder(source)
     folders = (here, *options.library_dirs, standard_library())
+    itself = Path(source.name).name
     if declaration.is_path:
         shown = here / target
         if not is_file(shown):
@@ -128,7 +130,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
                 f"there is no file `{target}` beside this one",
                 source,
                 declaration.target_span,
-                advice=_similar(target, [path.name for path in _files(shown.parent)])
+                advice=_similar(target, [path.name for path in _files(shown.parent) if path.name != itself])
                 or _unquoted(target, folders)
                 or "a path begins at the folder of this file",
             )
@@ -137,7 +139,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     for folder in folders:
         if is_file(folder / name):
             return Path(_normal((folder / name).absolute())), _shown(folder / name)
-    known = sorted({path.stem for folder in folders for path in _files(folder)})
+    known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
     advice = _similar(target, known) or "a library is a file NAME.tltl beside this one or in a --library folder"
     raise problem("TLT0010", f"there is no library `{target}`", source, declaration.target_span, advice=advice)
 
@@ -179,8 +181,6 @@ def _shown(path: Path) -> str:
 
 
 def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log: Log) -> _Visit:
-    from tltlc.grammar.parser import parse
-
     try:
         text = read_source(path, shown)
     except TltlError as failure:
@@ -189,11 +189,19 @@ def _parse(path: Path, shown: str, declaration: Import, source: SourceFile, log:
         # TLT0001 is for the files that a command names.
         code = "TLT0010" if found.code == "TLT0001" else found.code
         raise ResolutionError(replace(found, code=code, labels=(*found.labels, here))) from None
-    module, diagnostics = parse(text)
+    module, diagnostics = _parsed(text)
     for diagnostic in diagnostics:
         log.add(diagnostic)
     complete = all(diagnostic.severity != "error" for diagnostic in diagnostics)
     return _Visit(module, path, path.stem, declaration, complete)
+
+
+@lru_cache(maxsize=64)
+def _parsed(text: SourceFile) -> tuple[Module, tuple[Diagnostic, ...]]:
+    """An imported file, parsed once however many files import it."""
+    from tltlc.grammar.parser import parse
+
+    return parse(text)
 
 
 def _cycle(declaration: Import, source: SourceFile, path: Path, stack: list[_Visit]) -> ResolutionError:

@@ -7,6 +7,7 @@ from typing import Literal
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, SignalDecl
 from tltlc.grammar.walk import parts
+from tltlc.grammar.words import CONDITIONS
 from tltlc.resolve import units
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.problem import ResolutionError, problem
@@ -15,7 +16,10 @@ from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
 _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
 
-
+_MOST_NAMES = 5
+"""So many entities are named in a message."""
+_MOST_HINTS = 50
+"""Behind so many problems an unknown name is not compared with all that are known: of many, that takes long."""
 _WAYS_TO_DECLARE = {
     "predicate": "declare it, e.g. `signal {name}: bool`, or import the library that has it",
     "signal or param": "declare it, e.g. `signal {name} in [0, 1]`, or import the library that has it",
@@ -35,9 +39,17 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
     if env.scope.incomplete:
         raise ResolutionError(None)
     span = use.name_span if isinstance(use, Call) else use.span
-    hint = suggestion(use.name, env.scope, wanted, env.local)
+    hint = suggestion(use.name, env.scope, wanted, env.local) if len(env.context.log) < _MOST_HINTS else ""
     library = None if hint else library_with(use.name)
     advice = f"`{use.name}` is in the library {library}: add `import {library}`" if library else None
+    if use.name in CONDITIONS and isinstance(use, Call):
+        raise problem(
+            "TLT0201",
+            f"`{use.name}` is no operator",
+            env.scope.source,
+            span,
+            advice="`if a, then b` is written `a implies b`; where both are to hold at one step, `a and b`",
+        )
     if not hint and not library:
         advice = _WAYS_TO_DECLARE[what].format(name=use.name)
     raise problem("TLT0201", f"no {what} `{use.name}` here", env.scope.source, span, hint, advice=advice)
@@ -62,8 +74,33 @@ def entity(expr: Expr, env: Env) -> Entity:
         f"expected an entity, found {described_kind(expr, env)}",
         env.scope.source,
         expr.span,
-        advice="entities are declared with `entity NAME`",
+        advice=_entities(env) if not isinstance(expr, tree.Binary) else _ONE_ENTITY,
     )
+
+
+_ONE_ENTITY = "name one entity, and join what is said of each by `and`, `or` or `then`"
+
+
+def _entities(env: Env) -> str:
+    """Which entities there are."""
+    known = [f"`{name}`" for name, binding in env.scope.names.items() if binding.kind == "entity"]
+    listed = ", ".join(known[:_MOST_NAMES]) + (", …" if len(known) > _MOST_NAMES else "")
+    return f"the entities are {listed}" if known else "declare one with `entity NAME`"
+
+
+def said_of(entity: str, env: Env, *, number: bool) -> str:
+    """What can be said of an entity in this scope, or measured of it, as a help."""
+    # What a predicate says is meant to be asked for.
+    for name, binding in sorted(env.scope.names.items(), key=lambda item: item[1].kind):
+        declared = binding.declaration
+        if isinstance(declared, (SignalDecl, tree.PredicateDecl)):
+            is_number = isinstance(declared, SignalDecl) and declared.type != "bool"
+            needed = [parameter for parameter in declared.parameters if parameter.default is None]
+            of_entity = len(needed) == 1 and (needed[0].type == "entity" or isinstance(declared, SignalDecl))
+            if of_entity and is_number == number:
+                return f"{'measure' if number else 'say what holds of'} it, e.g. `{name}({entity})`"
+    example = "distance(x: entity): length in [0 m, 100 m]" if number else "at(x: entity): bool"
+    return f"an entity has no {'value' if number else 'truth'} of its own: declare one, e.g. `signal {example}`"
 
 
 def kind_of(expr: Expr, env: Env) -> Literal["entity", "number", "formula"]:
@@ -108,7 +145,7 @@ def not_a_formula(expr: Expr, env: Env) -> ResolutionError:
     if kind_of(expr, env) == "number":
         advice = _how_to_compare(expr, env)
     elif kind_of(expr, env) == "entity":
-        advice = f"say what holds of it, e.g. `near({env.scope.source.slice(expr.span)})`"
+        advice = said_of(env.scope.source.slice(expr.span), env, number=False)
     found = described_kind(expr, env)
     return problem("TLT0301", f"expected a formula, found {found}", env.scope.source, expr.span, advice=advice)
 

@@ -12,8 +12,10 @@ from tltlc.record import EMPTY, record
 class ResolveOptions:
     """``library_dirs`` are searched for imports after the file's own folder; ``params`` overrides values by name.
 
-    A value is written as in a source text, ``"25 m"``; without a unit it is in SI units.
+    A value is written as in a source text, ``"25 m"``; without a unit it is in SI units.  ``proofs`` says whether
+    predicates are proved to stay in their ranges, which takes longer than all the rest.
     """
 
     library_dirs: tuple[Path, ...] = ()
     params: Mapping[str, str] = EMPTY
+    proofs: bool = True

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import cast
+from typing import Final, cast
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.expression import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
+from tltlc.grammar.words import UNITS_ELSEWHERE
 from tltlc.record import record, replace
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
@@ -99,6 +100,11 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
     if parameter.type == "entity" or (parameter.type is None and kind_of(argument, env) == "entity"):
         return entity(argument, env)
     type_ = parameter_type(parameter, binding)
+    if type_ and kind_of(argument, env) == "entity":
+        title = f"`{parameter.name}` of `{binding.name}` is {'an' if type_ == 'angle' else 'a'} {type_}, no entity"
+        name = env.scope.source.slice(argument.span)
+        advice = f"for `{name}`, too, write a second `{binding.name}(…)`, joined by `and`, `or` or `then`"
+        raise problem("TLT0302", title, env.scope.source, argument.span, advice=advice)
     if type_ == "bool" and isinstance(argument, tree.Constant):
         return constant(float(argument.value), units.PLAIN)
     value = quantity(argument, env, depth)
@@ -126,12 +132,22 @@ def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
     raise unknown_type(parameter.type, parameter, binding.scope)
 
 
+_TYPES_ELSEWHERE: Final = {
+    **dict.fromkeys(("int", "integer", "float", "double", "real"), "number"),
+    "distance": "length",
+    "duration": "time",
+    "velocity": "speed",
+}
+"""What types are called elsewhere, beside units."""
+
+
 def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:
     """The problem of a type that the language has not."""
     from difflib import get_close_matches
 
     known = [*units.TYPES, "entity"]
-    close = get_close_matches(name, known, n=1)
+    meant = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
+    close = [meant] if meant else get_close_matches(name.lower(), known, n=1)
     advice = f"did you mean `{close[0]}`?" if close else f"the types are {', '.join(known)}"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)
     span = Span(start, start + len(name)) if start >= 0 else at.span

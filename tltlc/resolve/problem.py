@@ -53,6 +53,9 @@ class Log:
     def __init__(self) -> None:
         self._found: dict[object, Diagnostic] = {}
 
+    def __len__(self) -> int:
+        return len(self._found)
+
     def add(self, diagnostic: Diagnostic | None) -> None:
         """Keep a diagnostic; None and repetitions are ignored."""
         if diagnostic is None:
@@ -62,5 +65,12 @@ class Log:
         self._found.setdefault((diagnostic.code, place), diagnostic)
 
     def all(self) -> tuple[Diagnostic, ...]:
-        """Every diagnostic, in the order in which they were found."""
-        return tuple(self._found.values())
+        """Every diagnostic: those of a file in the order of its text, files in the order in which they came up."""
+        files: dict[str, int] = {}
+
+        def place(diagnostic: Diagnostic) -> tuple[int, int]:
+            main = diagnostic.labels[0] if diagnostic.labels else None
+            name, start = (main.source.name, main.span.start) if main else ("", 0)
+            return files.setdefault(name, len(files)), start
+
+        return tuple(sorted(self._found.values(), key=place))

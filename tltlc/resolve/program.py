@@ -8,12 +8,12 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
 from tltlc.logic.formula import Formula
-from tltlc.record import replace
+from tltlc.record import record, replace
 from tltlc.resolve import formulas, predicates
 from tltlc.resolve.checks import check_predicates
 from tltlc.resolve.context import Context
 from tltlc.resolve.declarations import declare
-from tltlc.resolve.imports import load
+from tltlc.resolve.imports import Loaded, load
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.resolve.scope import Scope, build_scopes
@@ -27,12 +27,29 @@ FormulaOf = Callable[[Expr], "Formula | None"]
 """The formula that an expression stands for, None where it stands for none."""
 
 
+@record
+class Resolution:
+    """A program, what its module sees (``env``), the modules it is made of (itself last), and what is to be said."""
+
+    program: Program
+    env: Env
+    modules: tuple[Loaded, ...]
+    diagnostics: tuple[Diagnostic, ...]
+
+
 def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Program, tuple[Diagnostic, ...]]:
     """The specs and tests of a module that resolve, and everything that is to be said about it.
 
     Reads the files that it imports.  Never raises on bad input: what is in error is reported and left out.
     """
-    env, groups = _declared(module, options or ResolveOptions())
+    found = resolution(module, options)
+    return found.program, found.diagnostics
+
+
+def resolution(module: Module, options: ResolveOptions | None = None) -> Resolution:
+    """As :func:`resolve`, with the scope and the modules, for tools that look at expressions and names themselves."""
+    options = options or ResolveOptions()
+    env, groups, modules = _declared(module, options)
     context, scope = env.context, env.scope
     specs = _specs(scope, groups, env)
     tests = [
@@ -41,12 +58,14 @@ def resolve(module: Module, options: ResolveOptions | None = None) -> tuple[Prog
         if isinstance(declaration, TestDecl)
     ]
     _check_unused(scope, env)
-    check_predicates(context)
+    if options.proofs:
+        check_predicates(context)
     program = Program(
         tuple(found for found in specs.values() if found is not None),
         tuple(found for found in tests if found is not None),
+        groups,
     )
-    return program, context.log.all()
+    return Resolution(program, env, modules, context.log.all())
 
 
 def resolve_atoms(
@@ -58,7 +77,7 @@ def resolve_atoms(
     None where the module or a text is in error, and where two are one atom.  Further formulas can be read, of which
     nothing is said.
     """
-    env, groups = _declared(module, options or ResolveOptions())
+    env, groups, _ = _declared(module, options or ResolveOptions())
     context = env.context
     kept: list[Expr] = []
 
@@ -112,12 +131,13 @@ def _atom(source: SourceFile, env: Env, kept: list[Expr]) -> tuple[str, Label]:
     return found.name, here
 
 
-def _declared(module: Module, options: ResolveOptions) -> tuple[Env, tuple[tuple[str, ...], ...]]:
-    """What a module sees, with its own declarations and those of its imports, and the groups of ``exclusive``."""
+def _declared(module: Module, options: ResolveOptions) -> tuple[Env, tuple[tuple[str, ...], ...], tuple[Loaded, ...]]:
+    """What a module sees, itself and by its imports, the groups of ``exclusive``, and these modules."""
     context = Context()
-    scopes = build_scopes(load(module, options, context.log), context.log)
+    modules = load(module, options, context.log)
+    scopes = build_scopes(modules, context.log)
     declare(scopes, options, context)
-    return Env(context, scopes[-1]), tuple(group for each in scopes for group in _exclusive(each, context))
+    return Env(context, scopes[-1]), tuple(group for each in scopes for group in _exclusive(each, context)), modules
 
 
 def _exclusive(scope: Scope, context: Context) -> list[tuple[str, ...]]:

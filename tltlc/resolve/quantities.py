@@ -13,7 +13,7 @@ from tltlc.resolve import functions, units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.declared_values import of_signal, param, signal
 from tltlc.resolve.dimensions import mismatch, same_dimension
-from tltlc.resolve.kinds import described_kind, lookup
+from tltlc.resolve.kinds import described_kind, kind_of, lookup, said_of
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.ranges import hull
 from tltlc.resolve.scope import FUNCTIONS
@@ -150,6 +150,7 @@ def _infix(expr: tree.Binary, env: Env, depth: int) -> Quantity:
         scale, dimension = units.in_si(1.0, expr.right.name) or (1.0, units.PLAIN)
         per = constant(scale, dimension)
         return _applied("/", (left, per), units.product(left.dimension, dimension, -1.0), expr, env)
+    _check_speed(expr, env)
     right = quantity(expr.right, env, depth)
     if expr.op in ("+", "-"):
         return _applied(expr.op, (left, right), same_dimension(left, right, expr.right, env), expr, env)
@@ -173,6 +174,24 @@ def _is_per_time(expr: tree.Binary, env: Env) -> bool:
         return False
     declared = env.scope.names.get(per.name)
     return env.constant or declared is None or declared.kind not in ("param", "signal")
+
+
+def _check_speed(expr: tree.Binary, env: Env) -> None:
+    """Raises ResolutionError for ``a / 1 m/s``, which is read as ``(a / 1 m) / s``, where there is no `s`."""
+    inner, per = expr.left, expr.right
+    if expr.op != "/" or not isinstance(inner, tree.Binary) or inner.op not in ("*", "/") or not isinstance(per, Name):
+        return
+    speed = replace(expr, left=inner.right)
+    if per.name not in env.scope.names and _is_per_time(speed, env):
+        span = inner.right.span.to(per.span)
+        raise problem(
+            "TLT0304",
+            "a speed needs brackets here",
+            env.scope.source,
+            span,
+            f"write `({env.scope.source.slice(span)})`",
+            advice="signs of one strength are read from the left: `a / 1 m/s` is `(a / 1 m) / s`",
+        )
 
 
 def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Quantity:
@@ -228,6 +247,8 @@ def _not_a_number(expr: Expr, env: Env) -> ResolutionError:
     advice = "arithmetic takes numbers: signals, params and predicates"
     if isinstance(expr, tree.Binary) and expr.op in _COMPARISONS:
         advice = "a comparison is a formula: `let rich = coins > 30` names one, and `and` joins two"
+    elif kind_of(expr, env) == "entity":
+        advice = said_of(env.scope.source.slice(expr.span), env, number=True)
     title = f"expected a number, found {described_kind(expr, env)}"
     return problem("TLT0302", title, env.scope.source, expr.span, advice=advice)
 

@@ -73,7 +73,8 @@ def suggestion(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[s
 
     wanted = set(kinds)
     known = [n for n, binding in scope.names.items() if binding.kind in wanted]
-    close = get_close_matches(name, [*local, *known], n=1, cutoff=0.6)
+    names = [*local, *known]
+    close = [n for n in names if n.lower() == name.lower()] or get_close_matches(name, names, n=1, cutoff=0.6)
     if not close:
         return ""
     binding = scope.names.get(close[0])

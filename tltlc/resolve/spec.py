@@ -141,7 +141,11 @@ class Test:
 
 @record
 class Program:
-    """A resolved file: its own specs and tests, in order."""
+    """A resolved file: its own specs and tests, in order.
+
+    ``exclusive`` are the names of the atoms of each group that it and its imports declare, used or not.
+    """
 
     specs: tuple[Spec, ...]
     tests: tuple[Test, ...]
+    exclusive: tuple[tuple[str, ...], ...] = ()

@@ -156,7 +156,7 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
     assert isinstance(clause.value, Number)
     if clause.value.unit is None:
         digits = env.scope.source.slice(clause.value.span)
-        advice = f"write `limit {digits} steps` or `limit {digits} s`"
+        advice = f"write `{digits} steps` or, with a clock, `{digits} s`"
         raise problem("TLT0312", "a limit needs a unit", env.scope.source, clause.value.span, advice=advice)
     steps = samples(clause.value, env)
     if steps < 1:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal, cast
 
-from tltlc.grammar.tree import Expr, TestDecl, TestExpect, TestStep
+from tltlc.grammar.tree import Expr, Group, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
 from tltlc.resolve.problem import ResolutionError, problem
@@ -50,10 +51,11 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
 
 def _step(item: TestStep, spec: Spec, env: Env) -> Step:
     source = env.scope.source
+    names = {_squeezed(atom.name): atom.name for atom in spec.atoms}
     values: dict[str, bool] = {}
     for written in (part for atom in item.atoms for part in conjuncts(atom)):
-        name, holds = _literal(written, env)
-        if name not in {atom.name for atom in spec.atoms}:
+        name, holds = _literal(written, names, env)
+        if _squeezed(name) not in names:
             known = ", ".join(f"`{atom.name}`" for atom in spec.atoms)
             title = f"`{name}` is no atom of the spec `{spec.name}`"
             raise problem("TLT0209", title, source, written.span, advice=f"its atoms are {known}")
@@ -68,15 +70,25 @@ def _step(item: TestStep, spec: Spec, env: Env) -> Step:
     return Step(item.times, frozenset(name for name, holds in values.items() if holds))
 
 
-def _literal(written: Expr, env: Env) -> tuple[str, bool]:
-    found = formula(written, env)
-    holds = True
+def _literal(written: Expr, names: Mapping[str, str], env: Env) -> tuple[str, bool]:
+    """The name of an atom, written as a formula or as the name that it has, which says no units, and its polarity."""
+    holds, inner = True, written
+    while isinstance(inner, Group) or (isinstance(inner, Unary) and inner.op == "not"):
+        inner, holds = (inner.inner, holds) if isinstance(inner, Group) else (inner.operand, not holds)
+    name = names.get(_squeezed(env.scope.source.text[inner.span.start : inner.span.end]))
+    if name is not None:
+        return name, holds
+    found = formula(inner, env)
     while found.op == "not":
         found, holds = found.args[0], not holds
     if found.op != "atom":
         advice = "name predicates, `bool` signals or comparisons, each with `not` or without"
         raise problem("TLT0316", "a step consists of atoms", env.scope.source, written.span, advice=advice)
     return found.name, holds
+
+
+def _squeezed(text: str) -> str:
+    return "".join(text.split())
 
 
 def _expect(item: TestExpect, env: Env) -> Expect:

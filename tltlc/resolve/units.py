@@ -60,6 +60,14 @@ def value_type(name: str) -> ValueType | None:
     return cast(ValueType, name) if name in TYPES else None
 
 
+def type_of_unit(unit: str) -> str | None:
+    """The type of what is measured in a unit; None for what is no unit of a type."""
+    if unit == "%":
+        return "ratio"
+    dimension = _UNITS[unit][2] if unit in _UNITS else None
+    return next((name for name, other in TYPES.items() if other == dimension), None)
+
+
 def in_si(value: float, unit: str | None) -> tuple[float, Dimension] | None:
     """A literal's value in SI units and its dimension; None for a unit that measures no quantity (``steps``)."""
     if unit is None:

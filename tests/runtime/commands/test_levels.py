@@ -83,7 +83,6 @@ def test_one_variant_of_all_levels(tltlc) -> None:  # type: ignore[no-untyped-de
 
 
 def test_wrong_usage(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
-    assert tltlc("check").status == 2
     assert tltlc("check", "--level", "navigation:v7").status == 2
     assert tltlc("check", "--level", "nowhere.toml").status == 3
     assert tltlc("check", "--level", "navigation:v0", "--entities", "s9").status == 2

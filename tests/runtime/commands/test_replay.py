@@ -115,7 +115,7 @@ def test_a_check_that_fails(tltlc, recorded: Path, episode: Episode) -> None:  #
 def test_a_file_that_is_broken_hides_no_other(tltlc, recorded: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     Path("cut.episode.npz").write_bytes(b"")
     found: Outcome = tltlc("replay", "cut.episode.npz", "gone.episode.npz", FILE)
-    assert found.status == 1 and found.out.startswith(FILE)
+    assert found.status == 3 and found.out.startswith(FILE)
     assert "TLT0820" in found.err and "TLT0001" in found.err
 
 

@@ -12,6 +12,7 @@ LEAST_FOLDED = 3
 """Inner states from which on a run is folded: five states with both ends."""
 
 _number = re.compile(r"(\d+)")
+_one_step = re.compile(r"\b1 step\b")
 
 
 @record
@@ -111,7 +112,8 @@ def marked(fspa: Fspa) -> Fspa:
 
 def span(first: str, last: str) -> str:
     """Two texts as one: with ranges where they differ in numbers alone, ``F[0,39…2] p``, else both."""
-    one, other = _number.split(first), _number.split(last)
-    if one[::2] == other[::2]:
-        return "".join(a if a == b else f"{a}…{b}" for a, b in zip(one, other, strict=True))
+    for texts in ((first, last), [_one_step.sub("1 steps", text) for text in (first, last)]):
+        one, other = map(_number.split, texts)
+        if one[::2] == other[::2]:
+            return "".join(a if a == b else f"{a}…{b}" for a, b in zip(one, other, strict=True))
     return f"{first} … {last}"

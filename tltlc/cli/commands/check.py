@@ -37,15 +37,17 @@ class Check(click.Command):
     cls=Check,
     epilog="""\b
 Examples:
+  tltlc check                                    every .tltl file in this folder, and below
   tltlc check cover_and_hide.tltl
-  tltlc check --format github levels/*.tltl      remarks on a pull request
-  tltlc check --format sarif levels/*.tltl > tltlc.sarif
+  tltlc check levels                             those of another folder
+  tltlc check --format github levels             remarks on a pull request
+  tltlc check --format sarif levels > tltlc.sarif
   tltlc check cover_and_hide.tltl --level vault.toml
   tltlc check --level navigation:v1              a level against its own spec
   tltlc check --level all --help                 the further options that levels have
 """,
 )
-@click.argument("specs", metavar="[SPEC]...", nargs=-1)
+@click.argument("specs", metavar="[SPEC_OR_FOLDER]...", nargs=-1)
 @click.option(
     "--level",
     "levels",
@@ -64,20 +66,23 @@ def command(
 ) -> int:
     """Report every error and warning of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
+    Of a folder, by default the current one, every .tltl file in it and below is checked.
     With --level, also what a level does not have that a spec needs, and what nobody can reach in it; without a SPEC,
     by the spec that the level is made for.  The exit status is 1 where there is an error, and 0 where there are
     warnings at most.
     """
+    from tltlc.cli.folders import every_source
     from tltlc.cli.inputs import open_input
-    from tltlc.cli.report import Report
+    from tltlc.cli.report import Report, counted, tally
     from tltlc.diagnostics.diagnostic import TltlError
+    from tltlc.spec_file import split
 
     context = click.get_current_context()
-    if not specs and not levels:
-        raise click.UsageError("Missing argument `SPEC...`", context)
+    specs = specs or (() if levels else (".",))
     inputs = []
     with Report(format) as report:
-        for spec in specs:
+        every = every_source(specs, report)
+        for spec in every:
             try:
                 opened = open_input(spec, settings)
             except TltlError as error:
@@ -85,9 +90,10 @@ def command(
                 continue
             report.add(opened.diagnostics)
             inputs.append(opened)
-            if not opened.diagnostics:
-                count = len(opened.automata)
-                report.say(f"{opened.name}: {count} spec{'' if count == 1 else 's'}, nothing to report")
+            if spec in specs and not opened.diagnostics:
+                report.say(f"{opened.name}: {counted(len(opened.automata), 'spec')}, nothing to report")
+        if len(every) > 1 or not set(every).issubset(specs):
+            report.say(f"{counted(len({split(each)[0] for each in every}), 'file')}: {tally(report.found)}")
         if levels and (inputs or not specs):
             context.meta[LEVELS].callback(levels=levels, inputs=inputs, settings=settings, report=report, **options)
     return report.status

@@ -27,10 +27,10 @@ Examples:
   tltlc compile cover_and_hide.tltl -o build -t json,svg
   tltlc compile levels.tltl --spec level_1 --spec level_2
   tltlc compile build/level_1.fspa.json -t python    from an artefact
-  tltlc compile levels/*.tltl -o Assets/Specs -t csharp --watch
+  tltlc compile levels -o Assets/Specs -t csharp --watch    every .tltl file in the folder, and below
 """
 )
-@click.argument("specs", metavar="SPEC...", nargs=-1, required=True)
+@click.argument("specs", metavar="SPEC_OR_FOLDER...", nargs=-1, required=True)
 @output_option
 @target_option
 @click.option("--spec", "names", metavar="NAME", multiple=True, help="Only this spec of each file (repeatable).")
@@ -50,8 +50,10 @@ def command(
     """Compile the specs of each SPEC (a file, FILE:NAME, an artefact, or - for standard input).
 
     For each spec NAME this writes NAME.fspa.json, NAME.dot and NAME_monitor.py, or what -t asks for.
-    Nothing is written unless everything could be, and files that would not change stay untouched.
+    Nothing is written unless everything could be, and files that would not change stay untouched.  Of a folder, as of
+    . for the current one, every .tltl file in it and below is compiled.
     """
+    from tltlc.cli.folders import every_source, in_folders
     from tltlc.cli.report import Report
 
     def compile_once(changed: tuple[str, ...] = ()) -> int:
@@ -60,8 +62,8 @@ def command(
                 report.say(f"\n{time.strftime('%H:%M:%S')} changed: {', '.join(changed)}")
             asked = targets_of(target_lists)
             files: Files = {}
-            for opened in _opened(specs, settings, names, report):
-                if not opened.automata:
+            for opened in _opened(every_source(specs, report), settings, names, report):
+                if not opened.automata and opened.name not in in_folders(specs):
                     report.say(f"{opened.name}: there is no spec in it")
                 _add(files, files_of(opened.automata, asked, opened.project, report), opened.name)
             if report.status == exits.CLEAN:
@@ -88,11 +90,11 @@ def command(
 
         if any(split(spec)[0] == STDIN for spec in specs):
             raise click.UsageError("--watch takes files: standard input does not change")
-        repeat(compile_and_tell)
+        repeat(compile_and_tell, lambda: in_folders(specs))
     return compile_once()
 
 
-def _opened(specs: tuple[str, ...], settings: Settings, names: tuple[str, ...], report: Report) -> Iterator[Input]:
+def _opened(specs: list[str], settings: Settings, names: tuple[str, ...], report: Report) -> Iterator[Input]:
     """The arguments that have no errors, compiled; what is found in each is shown."""
     from tltlc.cli.inputs import open_input
     from tltlc.diagnostics.diagnostic import TltlError

@@ -72,6 +72,7 @@ def command(
     files.  Its atomic propositions are predicates of LIB.tltl, written as in a spec: "near(exit)".
     """
     from tltlc.automaton.build import DEFAULT_STATE_BUDGET
+    from tltlc.cli.inputs import check_text
     from tltlc.cli.report import Report
     from tltlc.cli.settings import check_libraries
     from tltlc.files import MAX_ARTEFACT_BYTES, read_source
@@ -87,6 +88,7 @@ def command(
         project = project_for(predicates)
         source = read_text(file, MAX_ARTEFACT_BYTES)
         library = read_source(predicates)
+        check_text(library)
         resolve = ResolveOptions((*settings.libraries, *project.libraries), settings.params)
         budget = settings.state_budget or DEFAULT_STATE_BUDGET
         options = ImportOptions(atoms, name, level, limit, judge, resolve, budget)

@@ -46,11 +46,17 @@ def command(what: str, libraries: tuple[Path, ...], as_json: bool) -> int:
         rows = list(_predicates(libraries, report.add) if what == "predicates" else _LISTS[what]())
         if as_json:
             print(json.dumps(rows, indent=2, ensure_ascii=False))
-        elif sys.stdout.isatty():
-            _table(rows)
         else:
-            _lines(rows)
+            show(rows)
     return report.status
+
+
+def show(rows: list[Row]) -> None:
+    """A table for a terminal, columns with tabs for a file."""
+    if sys.stdout.isatty():
+        _table(rows)
+    else:
+        _lines(rows)
 
 
 def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -20,25 +18,27 @@ if TYPE_CHECKING:
 @click.command(
     epilog="""\b
 Examples:
+  tltlc test                         every .tltl file in this folder, and below
   tltlc test cover_and_hide.tltl
   tltlc test levels.tltl:level_1     only the tests of that spec
-  tltlc test levels                  every .tltl file in the folder, and below
+  tltlc test levels                  those of another folder
 """
 )
-@click.argument("paths", metavar="FILE_OR_FOLDER...", nargs=-1, required=True)
+@click.argument("paths", metavar="[FILE_OR_FOLDER]...", nargs=-1)
 @source_options
 def command(paths: tuple[str, ...], settings: Settings, format: str) -> int:  # noqa: A002
     """Run test blocks: a line for each on standard output, and what went wrong on standard error.
 
-    The exit status is 1 where a test fails or a file has errors.
+    Without arguments, those of the current folder.  The exit status is 1 where a test fails or a file has errors.
     """
+    from tltlc.cli.folders import sources
     from tltlc.cli.report import Report
 
     passed = failed = unread = 0
     with Report(format, results=True) as report:
-        for argument in paths:
+        for argument in paths or (".",):
             before = passed + failed + unread
-            for path in _files(argument):
+            for path in sources(argument):
                 try:
                     results = _run(path, settings, report.add)
                 except TltlError as error:
@@ -56,30 +56,14 @@ def command(paths: tuple[str, ...], settings: Settings, format: str) -> int:  # 
     return report.status
 
 
-def _files(argument: str) -> list[str]:
-    """The argument itself, or the sources in a folder; error TLT0722 where there are none."""
-    folder = Path(argument)
-    if not os.path.isdir(folder):  # noqa: PTH112 (pathlib raises where a name is too long)
-        return [argument]
-    inside = [file for file in sorted(folder.rglob("*.tltl")) if not _is_hidden(file.relative_to(folder))]
-    if not inside:
-        raise TltlError([Diagnostic("TLT0722", f"there is no .tltl file in `{argument}`", help="name another folder")])
-    return [str(file) for file in inside]
-
-
-def _is_hidden(path: Path) -> bool:
-    return any(part.startswith(".") for part in path.parts)
-
-
 def _run(path: str, settings: Settings, add: Callable[[Iterable[Diagnostic]], None]) -> tuple[TestResult, ...]:
-    from tltlc.cli.inputs import open_input
+    from tltlc.cli.inputs import no_text, open_input
     from tltlc.monitor.tests import run_tests
 
     opened = open_input(path, settings)
     add(opened.diagnostics)
     if opened.program is None:
-        title = f"`{opened.name}` is an artefact, and artefacts hold no test blocks"
-        raise TltlError([Diagnostic("TLT0722", title, help="name the .tltl file that it was compiled from")])
+        raise TltlError([no_text(opened.name)])
     return run_tests(opened.program, opened.automata)
 
 

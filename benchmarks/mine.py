@@ -1,0 +1,168 @@
+"""Specs recovered from traces in which they are planted, by ``tltlc mine`` and by peers that learn formulas."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from statistics import median
+from typing import Any, Final
+
+from benchmarks.markdown import met_or_missed, table
+from benchmarks.mine_peers import Learned, enumerated, has_scarlet, scarlet
+from benchmarks.mine_traces import Planted, evidence, of_the_paper, planted
+from benchmarks.store import Record, Store, measure_missing, source_digest
+from tltlc.automaton.fspa import Fspa
+from tltlc.comparison import are_equivalent
+from tltlc.mine.confirm import confirmed
+from tltlc.mine.evidence import Evidence
+from tltlc.mine.search import Options, Search
+from tltlc.mine.vocabulary import of_columns
+from tltlc.pipeline import CompileOptions, compile_source
+from tltlc.source import SourceFile
+
+SECTION = "mine"
+TRACES, COUNTEREXAMPLES = 40, 80
+NOISE: Final = 0.05
+_SEED: Final = 1
+_TOP: Final = 5
+_RANDOM: Final = 20
+_MOST_PEER_S: Final = 20.0
+_LEAST_FOUND: Final = 20
+"""Of the specs without noise, as many are to be at rank 1."""
+_FACTOR: Final = 10.0
+
+SPECS: Final[Mapping[str, Planted]] = {
+    spec.name: spec for spec in (*of_the_paper(), *(planted(number) for number in range(_RANDOM)))
+}
+PEERS: Final = {"enumeration": "plain enumeration", "scarlet": "Scarlet 0.0.4"}
+
+
+def measure(store: Store, timeout_s: float, say: Callable[[str], None]) -> None:
+    """Plant and recover each spec whose record is not of this code."""
+    code = {"source": source_digest("tltlc/mine", "benchmarks/mine_peers.py", "benchmarks/mine_traces.py")}
+    if not has_scarlet():
+        say("mine: Scarlet is left out, since it is not installed (benchmarks/requirements.txt)")
+    peer_s = min(timeout_s, _MOST_PEER_S)
+    measure_missing(
+        store, SECTION, SPECS, lambda name: {**_measured(SPECS[name], peer_s), **code}, say, done="ours", like=code
+    )
+
+
+def _measured(spec: Planted, peer_s: float) -> Record:
+    clean, noisy = (evidence(spec, TRACES, COUNTEREXAMPLES, seed=_SEED, noise=noise) for noise in (0.0, NOISE))
+    wanted = spec.automaton()
+    record: Record = {
+        "clauses": list(spec.clauses),
+        "limit_s": peer_s,
+        "ours": _ours(clean, wanted, 1.0),
+        "noisy": _ours(noisy, wanted, 1.0 - 2 * NOISE),
+        "enumeration": _peer(enumerated(clean, peer_s), spec, wanted),
+    }
+    if has_scarlet():
+        record["scarlet"] = _peer(scarlet(clean, peer_s), spec, wanted)
+    return record
+
+
+def _ours(given: Evidence, wanted: Fspa, min_support: float) -> Record:
+    """The time from letters in memory to proposals that automata have confirmed, and the rank of the planted spec."""
+    begun = time.perf_counter()
+    words = of_columns(dict.fromkeys(given.atoms(), True))
+    search = Search(given, Options(min_support=min_support))
+    for _ in search.run():
+        pass
+    found = confirmed(search.ranked(), given, words, CompileOptions(), _TOP)
+    seconds = time.perf_counter() - begun
+    ranks = [rank for rank, proposal in enumerate(found, start=1) if are_equivalent(proposal.fspa, wanted)]
+    return {"seconds": seconds, "rank": ranks[0] if ranks else None, "tried": search.tried}
+
+
+def _peer(learned: Learned, spec: Planted, wanted: Fspa) -> Record:
+    equal = False
+    if learned.formula is not None:
+        signals = "".join(f"signal {atom}: bool\n" for atom in spec.likely)
+        text = f"{signals}spec learned = {learned.formula}\n"
+        equal = are_equivalent(compile_source(SourceFile("learned.tltl", text)).automata[0], wanted)
+    return {"seconds": learned.seconds, "formula": learned.formula, "equal": equal, "tried": learned.tried}
+
+
+def goals(records: Mapping[str, Record]) -> Iterable[Sequence[str]]:
+    """Rows of the table of goals, once all specs were measured."""
+    if any("ours" not in records.get(name, {}) for name in SPECS):
+        return
+    first = sum(records[name]["ours"]["rank"] == 1 for name in SPECS)
+    yield (
+        f"the planted spec at rank 1, up to equivalence, for {_LEAST_FOUND} of {len(SPECS)} specs",
+        f"{first} of {len(SPECS)}",
+        met_or_missed(first >= _LEAST_FOUND),
+    )
+    ratios = {peer: _ratios(records, peer) for peer in PEERS}
+    measured = {peer: found for peer, found in ratios.items() if found}
+    said = "; ".join(f"{PEERS[peer]} {median(found):.0f} times as long or longer" for peer, found in measured.items())
+    met = all(median(found) >= _FACTOR for found in measured.values())
+    yield "specs from traces in a tenth of the peers' time (median)", said, met_or_missed(met)
+
+
+def section(records: Mapping[str, Record]) -> str:
+    """The section on specs from traces."""
+    there = {name: records[name] for name in SPECS if "ours" in records.get(name, {})}
+    if not there:
+        return ""
+    rows = [_row(name, record) for name, record in there.items()]
+    limits = sorted({record["limit_s"] for record in there.values() if "limit_s" in record})
+    stopped = f"Both are stopped after {' or '.join(f'{limit:g}' for limit in limits)} s. " if limits else ""
+    header = ("planted", "clauses", "ours, s", "rank", "with noise", *(f"{peer}, s" for peer in PEERS.values()))
+    counts = "; ".join(
+        f"{what} {sum(map(found, there.values()))} of {len(there)}"
+        for what, found in (
+            ("ours at rank 1", lambda record: record["ours"]["rank"] == 1),
+            ("with noise", lambda record: record["noisy"]["rank"] == 1),
+            *((title, lambda record, peer=peer: _is_equal(record, peer)) for peer, title in PEERS.items()),
+        )
+    )
+    return f"""
+## Specs from traces
+
+`python -m benchmarks --only {SECTION}` plants the paper's three plans and {_RANDOM} random specs in {TRACES} traces
+that satisfy them and {COUNTEREXAMPLES} that do not (random walks on the automaton; half of the latter near misses),
+over free atoms, and has them recovered. The traces are those of seed {_SEED}, the same in each run; each time is that
+of one run. The planted specs are of kinds that `mine` has templates for, with atoms, lengths and noise that it is not
+told. Enumeration can say all of them, Scarlet's fragment those without an until; both look for any formula that
+separates the traces. *Ours* is wall time from letters in memory to the {_TOP} best proposals, each compiled and judged
+by its automaton; *rank* is that of the proposal that is equivalent to the planted spec, *with noise* the same where
+{NOISE:.0%} of the traces have changed sides. Enumeration, written for this in Python with a bit per sample, goes
+through all formulas of `! & | X F G U` by size, those alike on all samples once, until one separates all; Scarlet
+(TACAS 2022) is the package from PyPI, its process included. {stopped}A peer's time has `=` where its
+formula is equivalent to the planted one, `≠` where it only separates these traces, and `>` where it found none in that
+time.
+
+Recovered: {counts}.
+
+{table(header, rows)}
+"""
+
+
+def _row(name: str, record: Record) -> tuple[str, ...]:
+    def rank(part: Mapping[str, Any]) -> str:
+        return str(part["rank"] or "–")
+
+    clauses = "; ".join(f"`{clause}`" for clause in record["clauses"])
+    ours = record["ours"]
+    peers = (_peer_cell(record[peer]) if peer in record else "–" for peer in PEERS)
+    return (name, clauses, f"{ours['seconds']:.2f}", rank(ours), rank(record["noisy"]), *peers)
+
+
+def _peer_cell(peer: Mapping[str, Any]) -> str:
+    if peer["formula"] is None:
+        return f"> {peer['seconds']:.1f}"
+    return f"{peer['seconds']:.2f} {'=' if peer['equal'] else '≠'}"
+
+
+def _is_equal(record: Record, peer: str) -> bool:
+    return bool(record.get(peer, {}).get("equal"))
+
+
+def _ratios(records: Mapping[str, Record], peer: str) -> list[float]:
+    """The peer's time, or that at which it was stopped, by ours."""
+    return [
+        records[name][peer]["seconds"] / records[name]["ours"]["seconds"] for name in SPECS if peer in records[name]
+    ]

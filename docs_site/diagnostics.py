@@ -1,0 +1,67 @@
+"""A page for each diagnostic, and one that lists them by family."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import groupby
+from typing import Any, Final
+
+from docs_site.page import Page
+from tltlc.diagnostics import codes
+
+FOLDER: Final = "tltlc/diagnostics/pages"
+
+FAMILIES: Final = {
+    "TLT00": "Files and imports",
+    "TLT01": "Syntax",
+    "TLT02": "Names",
+    "TLT03": "Types, units and values",
+    "TLT04": "Warnings and lint",
+    "TLT05": "Automata",
+    "TLT06": "Artefacts, traces and tests",
+    "TLT07": "Commands and the project file",
+    "TLT08": "Levels, episodes, policies and training",
+    "TLT09": "Suites, demonstrations and Table I",
+}
+"""What the codes of each beginning are about."""
+
+
+def pages() -> Iterator[Page]:
+    """The list of all codes first."""
+    yield Page("diagnostics/index.md", _index(), f"{FOLDER}/index.md")
+    for code in codes.codes():
+        yield Page(_uri(code), codes.page(code), f"{FOLDER}/{code}.md")
+
+
+def navigation() -> list[Any]:
+    """The pages as MkDocs wants them, by family."""
+    return [
+        "diagnostics/index.md",
+        *({FAMILIES[family]: [{code: _uri(code)} for code in members]} for family, members in _families()),
+    ]
+
+
+def homes() -> dict[str, str]:
+    """The pages of the files, for links to them."""
+    return {FOLDER: "diagnostics/index.md"} | {f"{FOLDER}/{code}.md": _uri(code) for code in codes.codes()}
+
+
+def _index() -> str:
+    lines = [
+        "# Diagnostics",
+        "",
+        f"Every message of `tltlc` has one of these {len(codes.codes())} codes. `tltlc explain TLT0305` shows the page",
+        "of a code in the terminal.",
+    ]
+    for family, members in _families():
+        lines += ["", f"## {FAMILIES[family]}", "", "| code | means |", "|---|---|"]
+        lines += [f"| {code} | {codes.title(code).replace('|', '&#124;')} |" for code in members]
+    return "\n".join(lines) + "\n"
+
+
+def _families() -> Iterator[tuple[str, list[str]]]:
+    return ((family, [*members]) for family, members in groupby(codes.codes(), key=lambda code: code[:5]))
+
+
+def _uri(code: str) -> str:
+    return f"diagnostics/{code}.md"

@@ -1,0 +1,133 @@
+"""Ladders of runs that count in step: what is folded agrees, and nothing of the automaton is lost."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import find, given
+from hypothesis import strategies as st
+
+from tests.backends.strategies import automata, hostile_automata, infinite_automata
+from tests.backends.test_folding import automaton, chains, counting, endless
+from tests.fixtures import cover_and_hide
+from tltlc.automaton.fspa import Edge, Fspa, Guard
+from tltlc.backends.drawing.folding import LEAST_FOLDED, folded, marked
+from tltlc.backends.drawing.rungs import folded_in_step
+from tltlc.record import replace
+
+IN_STEP = (
+    "F[0,{n}] a & F[0,{m}] b",
+    "G !c & F[0,{n}] a & F[0,{m}] b",
+    "G[0,{n}] a | F[0,{m}] b",
+    "F[0,{n}] a & G[0,{m}] b & F[0,{n}] c",
+    "F(c & F[0,{n}] a & F[0,{m}] b)",
+)
+
+
+def in_step() -> st.SearchStrategy[Fspa]:
+    """Automata of formulas with several bounds, mostly of one length."""
+    bounds = st.integers(3, 9).flatmap(lambda n: st.tuples(st.just(n), st.sampled_from([n, n, n + 2])))
+    return st.builds(
+        lambda text, bounds: automaton(text.format(n=bounds[0], m=bounds[1])), st.sampled_from(IN_STEP), bounds
+    )
+
+
+GUARDS = [Guard(name, (((index, True),),)) for index, name in enumerate("pqrs")]
+
+
+@st.composite
+def ladders(draw: st.DrawFn) -> Fspa:
+    """Rungs of three states, which go on in their own run or in another, and a few things that are different."""
+    rungs = draw(st.integers(4, 9))
+    ways = st.permutations(range(3)).flatmap(lambda way: st.integers(1, 3).map(lambda length: way[:length]))
+    ahead = {0: [0, 1, 2], 1: draw(ways), 2: draw(ways)}
+    edges = {(0, 1 + way): GUARDS[way] for way in ahead[0]}
+    for rung in range(rungs):
+        for slot, way in ahead.items():
+            for guard, target in zip(GUARDS, way, strict=False):
+                edges[1 + 3 * rung + slot, 1 + 3 * (rung + 1) + target] = guard
+    size = 1 + 3 * (rungs + 1)
+    states = [replace(cover_and_hide().states[0], id=index) for index in range(size)]
+    for _ in range(draw(st.integers(0, 2))):
+        here, there = draw(st.integers(0, size - 1)), draw(st.integers(0, size - 1))
+        edges.setdefault((here, there), draw(st.sampled_from(GUARDS)))
+    if draw(st.booleans()):
+        here = draw(st.integers(0, size - 1))
+        states[here] = replace(states[here], accepting=True)
+    rows = tuple(Edge(source, target, guard) for (source, target), guard in sorted(edges.items(), key=lambda e: e[0]))
+    return replace(cover_and_hide(), states=tuple(states), edges=rows)
+
+
+ANY = in_step() | ladders() | counting() | endless() | chains() | automata() | infinite_automata() | hostile_automata()
+
+
+@given(ANY)
+def test_every_edge_is_drawn_or_is_one_along_a_run(fspa: Fspa) -> None:
+    drawing = folded_in_step(fspa)
+    fspa = marked(fspa)
+    first = {state.id: run for run, states in drawing.folded.items() for state in states}
+    drawn = [state.id for state in drawing.states]
+    assert sorted([*(set(drawn) - set(drawing.folded)), *first]) == list(range(len(fspa.states)))
+    assert 0 not in first
+    assert all(len(run) >= LEAST_FOLDED and run[0].id == state for state, run in drawing.folded.items())
+    targets: dict[object, set[int]] = {}
+    for edge in drawing.edges:
+        assert {edge.source, edge.target} <= set(drawn)
+        targets.setdefault((edge.source, edge.guard), set()).add(edge.target)
+    for edge in fspa.edges:
+        source, target = first.get(edge.source, edge.source), first.get(edge.target, edge.target)
+        for shown in targets[source, edge.guard]:
+            if shown == target:
+                break
+            if source == target:  # along a run, which leads to its end
+                assert shown not in drawing.folded
+                break
+            # From the last inner rung to the one behind it.
+            if shown in drawing.folded and edge.target in {
+                each.target for each in fspa.edges if each.source == drawing.folded[shown][-1].id
+            }:
+                break
+        else:
+            raise AssertionError(edge)
+
+
+@given(ANY)
+def test_states_that_are_folded_agree(fspa: Fspa) -> None:
+    drawing = folded_in_step(fspa)
+    fspa = marked(fspa)
+    inner = {state.id for run in drawing.folded.values() for state in run}
+    guards: dict[int, set[object]] = {state.id: set() for state in fspa.states}
+    for edge in fspa.edges:
+        guards[edge.source].add(edge.guard)
+        assert edge.target not in inner or edge.target in drawing.folded or edge.source in inner
+    for run in drawing.folded.values():
+        assert len({(state.verdict, state.accepting, frozenset(guards[state.id])) for state in run}) == 1
+
+
+def test_ladders_of_the_tests_are_folded() -> None:
+    assert folded_in_step(find(ladders(), lambda fspa: len(folded_in_step(fspa).folded) == 3))
+
+
+@given(counting() | in_step())
+def test_at_least_what_a_run_alone_would_fold_is_folded(fspa: Fspa) -> None:
+    assert len(folded_in_step(fspa).states) <= len(folded(fspa).states)
+
+
+@pytest.mark.parametrize(
+    ("formula", "inner", "states"),
+    [
+        ("F[0,40] a", [39], 5),
+        ("F a & F b & F c", [], 8),
+        ("F[0,100] a & F[0,100] b", [98, 98, 98], 12),
+        ("F[0,40] a & F[0,40] b & F[0,40] c", [38] * 7, 24),
+        ("G(a -> F[0,9] b) & G(b -> F[0,9] c)", [], 56),
+    ],
+)
+def test_how_much_is_folded(formula: str, inner: list[int], states: int) -> None:
+    drawing = folded_in_step(automaton(formula))
+    assert [len(run) for run in drawing.folded.values()] == inner
+    assert len(drawing.states) == states
+
+
+@pytest.mark.parametrize("formula", ["F[0,40] a", "G[0,12] a", "G(a -> G[0,10] b)", "F a & F b"])
+def test_a_run_alone_is_folded_as_ever(formula: str) -> None:
+    assert folded_in_step(automaton(formula)) == folded(automaton(formula))

@@ -1,0 +1,24 @@
+"""The starter project: what its README says is what there is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Outcome
+
+_COMMAND = re.compile(r"^    tltlc (.+?)(?:  +.*)?$", re.MULTILINE)
+
+
+def test_each_command_of_its_readme_succeeds(
+    tltlc: Callable[..., Outcome], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert tltlc("new", "game").status == 0
+    monkeypatch.chdir(tmp_path / "game")
+    commands = _COMMAND.findall(Path("README.md").read_text())
+    assert len(commands) >= 7
+    assert {command: tltlc(*command.split()).status for command in commands} == dict.fromkeys(commands, 0)

@@ -1,0 +1,16 @@
+"""The guide to changes is run as its reader would."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import DOCS
+from tests.docs.sessions import Shell, run_page
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the page speaks to a POSIX shell")
+def test_the_guide_runs(tmp_path: Path) -> None:
+    assert run_page((DOCS / "guides" / "changes.md").read_text(encoding="utf-8"), Shell(tmp_path)) == 4

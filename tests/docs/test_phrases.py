@@ -1,0 +1,111 @@
+"""The phrase book: each clause is read back as it says, needs no remark, and means what stands beside it."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import pytest
+
+import tltlc
+from tests.docs.blocks import DOCS, blocks
+from tltlc.automaton.fspa import Fspa
+from tltlc.comparison import are_equivalent
+from tltlc.lint import run
+from tltlc.monitor import Monitor
+from tltlc.source import SourceFile
+
+PAGE = DOCS / "guides" / "phrases.md"
+(DECLARED,) = (block.text for block in blocks(PAGE) if block.kind == "tltl")
+ROWS = [
+    [cell.strip() for cell in row.strip("|").split(" | ")]
+    for row in PAGE.read_text(encoding="utf-8").splitlines()
+    if row.startswith("| ") and "`" in row
+]
+PHRASES = [(write, read) for _, write, read in ROWS if write.startswith("`") and not read.startswith("`")]
+MEASURES = [(declare, ask) for _, declare, ask in ROWS if declare.startswith("`") and ask.startswith("`")]
+SLIPS = [(wrong, right) for wrong, _, right in ROWS if wrong.startswith("`")]
+
+
+def text_of(cell: str) -> str:
+    clauses = " ".join(re.findall(r"`([^`]+)`", cell))
+    return f"{DECLARED}spec phrase {{\n    limit 60 s\n    {clauses}\n}}\n"
+
+
+def compiled(cell: str) -> Fspa:
+    (fspa,) = tltlc.compile_text(text_of(cell))
+    return fspa
+
+
+def test_all_rows_are_found() -> None:
+    assert len(PHRASES) >= 20
+    assert len(SLIPS) >= 6
+    assert len(MEASURES) >= 6
+    assert len(PHRASES) + len(MEASURES) + len(SLIPS) == len(ROWS)
+
+
+@pytest.mark.parametrize(("write", "read"), PHRASES)
+def test_it_is_read_back(write: str, read: str) -> None:
+    assert compiled(write).formula.english == read
+
+
+@pytest.mark.parametrize("write", [write for write, _ in PHRASES])
+def test_it_needs_no_remark(write: str) -> None:
+    """But that rules alone are judged at the limit, and what the page declares for other phrases."""
+    found = {each.diagnostic.code for each in run.lint(SourceFile("phrase.tltl", text_of(write)))}
+    assert found <= {"TLT0420", "TLT0421"}
+
+
+@pytest.mark.parametrize(("declare", "ask"), MEASURES)
+def test_what_is_measured_can_be_asked_for(declare: str, ask: str) -> None:
+    entity = "entity gate\n" if "gate" in ask else ""
+    text = f"{entity}{declare.strip('`')}\nspec asked {{ limit 9 steps  reach {ask.strip('`')} }}\n"
+    (fspa,) = tltlc.compile_text(text)
+    assert [len(fspa.atoms), fspa.spec_size] == [1, 1]
+    assert not run.lint(SourceFile("asked.tltl", text))
+
+
+@pytest.mark.parametrize(("wrong", "right"), SLIPS)
+def test_what_does_not_say_it_says_something_else(wrong: str, right: str) -> None:
+    assert not are_equivalent(compiled(wrong), compiled(right))
+
+
+ACCEPTED = {
+    "`reach near(key)` `reach near(chest)`": (["near(chest)", "near(key)"], ["near(key)", "near(key)"]),
+    "`require (not near(chest)) weak_until near(key)`": (
+        ["", "near(key)", "near(chest)"],
+        ["near(chest)", "near(key)"],
+    ),
+    "`require hidden until near(key)`": (["hidden", "near(key)"], ["hidden", "hidden"]),
+    "`require always (alarm implies always not seen)`": (["seen", "alarm"], ["alarm", "seen"]),
+    "`require always (alarm implies eventually near(exit))`": (["alarm", "near(exit)"], ["near(exit)", "alarm"]),
+    "`require always (alarm implies next hidden)`": (["alarm", "hidden"], ["alarm", ""]),
+    "`require (eventually alarm) implies eventually near(exit)`": (["near(exit)", "alarm"], ["alarm", ""]),
+    "`require eventually within 5 s near(exit)`": ([*[""] * 50, "near(exit)"], [*[""] * 51, "near(exit)"]),
+}
+"""A trace that a phrase accepts, and one that it does not: the atom of each step."""
+
+
+@pytest.mark.parametrize("write", ACCEPTED)
+def test_it_means_what_it_says(write: str) -> None:
+    assert write in dict(PHRASES)
+    fspa = compiled(write)
+    for trace, expected in zip(ACCEPTED[write], (True, False), strict=True):
+        monitor = Monitor(fspa)
+        for letter in trace:
+            step = monitor.step_atoms([1.0 if atom.name == letter else -1.0 for atom in fspa.atoms])
+        assert step.accepting == expected, trace
+
+
+def test_staying_is_met_at_once_where_it_is_said_by_always() -> None:
+    step = Monitor(compiled("`reach (always for 3 s near(vault))`")).step_atoms([1.0])
+    assert step.accepting and step.done
+
+
+def test_the_sequence_is_met_in_its_order_alone() -> None:
+    fspa = compiled("`reach near(key) then near(chest) then near(exit)`")
+    for order in product(range(3), repeat=3):
+        monitor = Monitor(fspa)
+        for place in order:
+            step = monitor.step_atoms([1.0 if place == atom else -1.0 for atom in range(len(fspa.atoms))])
+        assert step.accepting == (order == (0, 1, 2))

@@ -1,0 +1,143 @@
+"""The extension's colours know every word and sign of the language: its grammar is held against tltl.lark."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tltlc.grammar.lexer import tokenize
+from tltlc.grammar.parser import parse
+from tltlc.grammar.tables import load
+from tltlc.grammar.words import CLAUSES, DECLARATIONS, VERDICTS
+from tltlc.resolve.scope import FUNCTIONS
+from tltlc.resolve.units import TYPES
+from tltlc.source import SourceFile
+
+ROOT = Path(__file__).parents[2]
+EXTENSION = ROOT / "editors" / "vscode"
+GRAMMAR = json.loads((EXTENSION / "syntaxes" / "tltl.tmLanguage.json").read_text(encoding="utf-8"))
+SOURCES = sorted([*(ROOT / "examples").glob("*.tltl"), *(ROOT / "stdlib_predicates").glob("*.tltl")])
+
+SCOPES = {
+    **dict.fromkeys(map(str.upper, DECLARATIONS), "keyword.declaration"),
+    **dict.fromkeys(map(str.upper, CLAUSES), "keyword.control"),
+    **dict.fromkeys(["ALL", "ANY", "WHEN", "OTHERWISE"], "keyword.control"),
+    **dict.fromkeys(["TRUE", "FALSE"], "constant.language"),
+    **dict.fromkeys(["LESS", "AT_MOST", "MORE", "AT_LEAST"], "keyword.operator.comparison"),
+    **dict.fromkeys(["PLUS", "MINUS", "TIMES_SIGN", "DIVIDE", "POWER"], "keyword.operator.arithmetic"),
+    "EQUAL": "keyword.operator.assignment",
+    **dict.fromkeys(["COLON", "COMMA"], "punctuation.separator"),
+    **dict.fromkeys(["LPAR", "RPAR", "LBRACE", "RBRACE", "LSQB", "RSQB"], "punctuation.bracket"),
+}
+"""The scope of each terminal; every other one is an operator of formulas."""
+
+
+def rules(patterns: list[dict[str, object]]) -> Iterator[dict[str, object]]:
+    """The rules of the grammar in the order in which they are tried."""
+    for each in patterns:
+        if "include" in each:
+            yield from rules(GRAMMAR["repository"][str(each["include"])[1:]]["patterns"])
+        else:
+            yield each
+
+
+RULES = [(re.compile(str(rule["match"])), rule) for rule in rules(GRAMMAR["patterns"])]
+
+
+def coloured(text: str) -> dict[int, tuple[str, str]]:
+    """The pieces of a text that have a scope, as an editor finds them: line by line, the earliest match first."""
+    found = {}
+    start = 0
+    for line in text.splitlines(keepends=True):
+        at = 0
+        while at < len(line):
+            matches = [
+                (match.start(), order, match)
+                for order, (pattern, _) in enumerate(RULES)
+                if (match := pattern.search(line, at))
+            ]
+            if not matches:
+                break
+            _, order, match = min(matches, key=lambda each: each[:2])
+            rule = RULES[order][1]
+            captures = rule.get("captures", {"0": {"name": rule.get("name")}})
+            assert isinstance(captures, dict)
+            for group, scope in captures.items():
+                piece = match.group(int(group))
+                if piece and piece.strip():
+                    blank = len(piece) - len(piece.lstrip())
+                    found[start + match.start(int(group)) + blank] = (piece.strip(), scope["name"])
+            at = max(match.end(), at + 1)
+        start += len(line)
+    return found
+
+
+@pytest.mark.parametrize(("spelling", "terminal"), [*load().words.items(), *load().signs.items()])
+def test_every_word_and_sign_has_its_colour(spelling: str, terminal: str) -> None:
+    piece, scope = coloured(f"{spelling} ")[0]
+    assert piece == spelling
+    assert scope.startswith(SCOPES.get(terminal, "keyword.operator"))
+
+
+@pytest.mark.parametrize("unit", load().units)
+def test_every_unit_has_its_colour(unit: str) -> None:
+    for space in ("", " "):
+        assert coloured(f"x > 1.5{space}{unit}")[len(f"x > 1.5{space}")] == (unit, "keyword.other.unit.tltl")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        *((f"signal n: {type_}", (type_,)) for type_ in (*TYPES, "entity")),
+        *((f"{function}(", (function,)) for function in FUNCTIONS),
+        *((f"expect {verdict}", ("expect", verdict)) for verdict in (*VERDICTS, "progress", "state")),
+        ("judge at goal", ("at", "goal")),
+        ("judge at limit", ("at", "limit")),
+        ("semantics infinite", ("infinite",)),
+        ("import core as c", ("as",)),
+        ("F within 3 steps p", ("within",)),
+        ("G for 3 steps p", ("for",)),
+        ("X after 3 steps p", ("after",)),
+        ("in [0, 1]", ("in",)),
+        ("all x in (a)", ("in",)),
+        ("step 3x a", ("step", "x")),
+        ('test "t" for s {', ("for",)),
+    ],
+)
+def test_the_small_words_have_theirs(text: str, words: tuple[str, ...]) -> None:
+    names = {piece for piece, scope in coloured(text).values() if not scope.startswith("variable.")}
+    assert set(words) <= names
+
+
+def test_the_small_words_are_covered() -> None:
+    assert {"after", "as", "at", "expect", "for", "in", "step", "x", "within"} == set(load().soft)
+
+
+def test_real_files_are_cut_as_the_compiler_cuts_them() -> None:
+    folders = ("examples", "stdlib_predicates", "tltlc", "runtime", "tests", "editors")
+    count = 0
+    for path in (path for folder in folders for path in (ROOT / folder).rglob("*.tltl")):
+        source = SourceFile(path.name, path.read_bytes().decode("utf-8", "replace"))
+        _, wrong = parse(source)
+        if not wrong:
+            count += 1
+            found = coloured(source.text)
+            for token in tokenize(source.text).tokens[:-1]:
+                assert found[token.start][0] == token.text, path
+    assert count > 100
+
+
+@pytest.mark.parametrize("file", ["vim/syntax/tltl.vim", "emacs/tltl-mode.el", "kate/tltl.xml"])
+def test_other_editors_know_every_word(file: str) -> None:
+    words = re.findall(r"\w+", (ROOT / "editors" / file).read_text(encoding="utf-8"))
+    assert set(load().words) <= set(words)
+
+
+def test_comments_and_texts_are_left_alone() -> None:
+    assert coloured("// spec a = G b")[0] == ("// spec a = G b", "comment.line.double-slash.tltl")
+    assert coloured("/// spec a")[0][1] == "comment.line.documentation.tltl"
+    assert coloured('"spec a // b"')[0] == ('"spec a // b"', "string.quoted.double.tltl")

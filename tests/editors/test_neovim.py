@@ -1,0 +1,170 @@
+"""Neovim with the settings of the guide: what its user sees, from the first key to the last process."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.editors.neovim import PROGRAM, Neovim
+from tests.editors.test_grammar import SOURCES
+from tltlc.grammar.lexer import tokenize
+from tltlc.grammar.tables import load
+from tltlc.grammar.words import CLAUSES, DECLARATIONS
+from tltlc.source import SourceFile
+
+pytest.importorskip("pygls", reason="the extra `lsp` is not installed")
+pytestmark = [
+    pytest.mark.skipif(PROGRAM is None, reason="Neovim, `nvim`, is not installed"),
+    pytest.mark.skipif(sys.platform == "win32", reason="what stands in for `tltlc` is a shell script"),
+]
+
+COMMON = """\
+import stealth
+entity s1, exit
+let leave = eventually near(exit)
+"""
+MAIN = """\
+import "common.tltl"
+
+/// The switch, then the exit.
+spec escape {
+    limit 400 steps
+    reach near(s1)
+    require leave
+    keep alive
+}
+
+test "in order" for escape {
+    step alive, near(s1)
+    step alive, near(exit)
+    expect holding
+}
+"""
+
+
+@pytest.fixture
+def editor(tmp_path: Path) -> Iterator[Neovim]:
+    folder = tmp_path / "game"
+    folder.mkdir()
+    (folder / "tltl.toml").touch()
+    (folder / "common.tltl").write_text(COMMON, encoding="utf-8")
+    (folder / "main.tltl").write_text(MAIN, encoding="utf-8")
+    started = Neovim(tmp_path / "home", folder)
+    yield started
+    started.end()
+
+
+def test_a_session(editor: Neovim) -> None:
+    editor.keys(":edit main.tltl<CR>")
+    editor.until(lambda: editor.lua("vim.bo.filetype") == "tltl", "the file")
+    lenses = editor.until(lambda: refreshed_lenses(editor), "lenses")
+    assert [each["command"]["title"] for each in lenses] == ["5 states, distance 1", "1 test passes"]
+
+    # A misspelt word is marked as it is typed, and mended by what is offered.
+    editor.keys(":lua vim.ui.select = function(items, _, choose) choose(items[1], 1) end<CR>")
+    editor.keys("/near(s1)<CR>cwneer<Esc>")
+    said = editor.until(editor.diagnostics, "a diagnostic")
+    assert said == ["no predicate `neer` here: did you mean `near` (from common.tltl)?"]
+    editor.keys(":lua vim.lsp.buf.code_action()<CR>")
+    editor.until(lambda: editor.lines() == MAIN.splitlines(), "the quick fix")
+    editor.until(lambda: not editor.diagnostics(), "no diagnostic")
+
+    # What is known there is offered, and comes into the text.
+    editor.keys("/keep<CR>oavoid see<C-x><C-o>")
+    menu = editor.until(lambda: editor.lua('vim.fn.complete_info({"items"}).items'), "names")
+    assert "seen" in [each["word"] for each in menu]
+    editor.keys("<C-e><Esc>u")
+
+    editor.keys("/near(s1)<CR>:lua vim.lsp.buf.hover()<CR>")
+    shown = editor.until(lambda: floating(editor), "what a name means")
+    assert "Closeness to `target`" in shown
+
+    # Another name, in both files.
+    editor.keys('/leave<CR>:lua vim.lsp.buf.rename("get_out")<CR>')
+    editor.until(lambda: "    require get_out" in editor.lines(), "the new name")
+    editor.keys(":silent wall<CR>:edit common.tltl<CR>")
+    editor.until(lambda: "let get_out = eventually near(exit)" in editor.lines(), "the other file")
+    editor.keys(":edit main.tltl<CR>")
+
+    editor.keys("/alive<CR>Oavoid    seen<Esc>:lua (vim.lsp.buf.format or vim.lsp.buf.formatting_sync)()<CR>")
+    editor.until(lambda: "    avoid seen" in editor.lines(), "the layout")
+
+    editor.keys(":write<CR>/near(s1)<CR>:lua vim.lsp.buf.definition()<CR>")
+    editor.until(lambda: editor.lua("vim.api.nvim_buf_get_name(0)").endswith("spatial.tltl"), "the library")
+    editor.until(lambda: editor.lua("vim.api.nvim_get_current_line()").startswith("predicate near("), "its line")
+
+    editor.keys(":qall!<CR>")
+    assert editor.process.wait(timeout=30) == 0
+    assert "Error" not in editor.errors()
+    assert_nothing_is_left(editor)
+
+
+def test_an_editor_that_dies_takes_the_server_along(editor: Neovim) -> None:
+    editor.keys(":edit main.tltl<CR>")
+    editor.until(lambda: refreshed_lenses(editor), "lenses")
+    editor.process.kill()
+    editor.process.wait()
+    assert_nothing_is_left(editor)
+
+
+def test_words_have_their_colours(editor: Neovim) -> None:
+    for path in SOURCES:
+        editor.keys(f":edit! {path}<CR>")
+        editor.until(lambda: editor.lua("vim.api.nvim_buf_get_name(0)") == str(path), path.name)  # noqa: B023
+        # Asked column by column, as they are drawn: what a unit is depends on the number before it.
+        groups = editor.lua(
+            "vim.tbl_map(function(line) return vim.tbl_map("
+            "function(column) return vim.fn.synIDattr(vim.fn.synID(line, column, 1), 'name') end,"
+            " vim.fn.range(1, #vim.fn.getline(line))) end, vim.fn.range(1, vim.fn.line('$')))"
+        )
+        text = path.read_text(encoding="utf-8")
+        source = SourceFile(path.name, text)
+        for token in tokenize(text).tokens[:-1]:
+            if token.type != "NAME" and token.text not in load().soft:
+                line, column = source.position(token.start)
+                before = source.line(line)[: column - 1]
+                group = groups[line - 1][len(before.encode())]
+                assert group in GROUPS.get(token.type, ("tltlOperator",)), (path.name, line, token.text)
+
+
+GROUPS = {
+    **dict.fromkeys(map(str.upper, DECLARATIONS), ("tltlDeclaration",)),
+    **dict.fromkeys([*map(str.upper, CLAUSES), "ALL", "ANY", "WHEN", "OTHERWISE"], ("tltlClause",)),
+    **dict.fromkeys(["TRUE", "FALSE"], ("tltlConstant",)),
+    **dict.fromkeys(["COLON", "COMMA", "LPAR", "RPAR", "LBRACE", "RBRACE", "LSQB", "RSQB"], ("",)),
+    "NUMBER": ("tltlNumber",),
+    "UNIT": ("tltlUnit",),
+    "STRING": ("tltlString",),
+}
+"""The colours of each terminal; every other one is an operator."""
+
+
+def refreshed_lenses(editor: Neovim) -> object:
+    # Asked for too early, some versions never ask again.
+    if not editor.lua("#vim.tbl_filter(function(client) return client.initialized end, vim.lsp.get_active_clients())"):
+        return None
+    editor.keys(":lua vim.lsp.codelens.refresh()<CR>")
+    return editor.lua("vim.lsp.codelens.get(vim.api.nvim_get_current_buf())")
+
+
+def floating(editor: Neovim) -> str:
+    """The text of the window that lies over the others, if there is one."""
+    lines: list[str] = editor.lua(
+        "vim.tbl_flatten(vim.tbl_map(function(window) return vim.api.nvim_win_get_config(window).relative ~= ''"
+        " and vim.api.nvim_buf_get_lines(vim.api.nvim_win_get_buf(window), 0, -1, true) or {} end,"
+        " vim.api.nvim_list_wins()))"
+    )
+    return "\n".join(lines)
+
+
+def assert_nothing_is_left(editor: Neovim) -> None:
+    for _ in range(100):
+        left = editor.left()
+        if not left:
+            return
+        time.sleep(0.05)
+    raise AssertionError(left)

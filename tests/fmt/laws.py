@@ -1,0 +1,62 @@
+"""What holds of the layout of any text, and trees without what the layout may change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.fmt import format_text
+from tltlc.grammar import tree
+from tltlc.grammar.parser import parse
+from tltlc.source import SourceFile, Span
+
+STEPS = (None, "step", "steps")
+
+
+def check(text: str, style: str) -> str:
+    """Assert every law of a text without errors, and return it formatted."""
+    before = read(text)
+    formatted = format_text(text, style)
+    after = read(formatted)
+    assert shape(after.declarations) == shape(before.declarations)
+    assert [comment.text for comment in after.comments] == [comment.text for comment in before.comments]
+    assert format_text(formatted, style) == formatted
+    lines = formatted.split("\n")
+    assert lines[-1] == ""
+    assert not formatted or (lines[0] and lines[-2])
+    assert all(line == line.rstrip() for line in lines)
+    # What is longer than a line is a comment, or holds a word that is.
+    assert all(len(line) <= 100 or "//" in line or len(max(line.split(), key=len)) > 40 for line in lines)
+    assert "\n\n\n" not in formatted
+    assert "\ufeff" not in formatted[:1]
+    return formatted
+
+
+def read(text: str) -> tree.Module:
+    module, found = parse(SourceFile("a.tltl", text))
+    assert found == ()
+    return module
+
+
+def shape(node: object) -> object:
+    """A tree without spans, where a bound is the samples that it covers."""
+    if isinstance(node, tuple):
+        return tuple(shape(item) for item in node)
+    if not hasattr(node, "__match_args__"):
+        return node
+    fields = {name: getattr(node, name) for name in node.__match_args__}
+    if isinstance(node, tree.Unary) and node.bound:
+        fields["bound"] = tuple(_covered(node.op, node.bound))
+    return type(node).__name__, {name: shape(value) for name, value in fields.items() if not isinstance(value, Span)}
+
+
+def _covered(op: str, bound: tree.Bound) -> Iterator[object]:
+    high = bound.high
+    steps = high.unit in STEPS
+    if bound.low is not None and (bound.low.value or bound.low.unit not in STEPS):
+        yield bound.low.value, bound.low.unit
+    if bound.words and op == "G":
+        yield high.value - 1 if steps else ("rounded up, less one", high.value, high.unit)
+    elif bound.words and op in ("X", "N"):
+        yield "after", high.value, high.unit
+    else:
+        yield high.value if steps else (high.value, high.unit)

@@ -1,0 +1,175 @@
+"""What messages on syntax say to write: taken, it leaves no error, and is what was meant."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.parser import parse
+from tltlc.lint.ways_out import of_messages
+from tltlc.source import SourceFile
+
+
+def mended(text: str) -> str:
+    """A text after the first way out that its one message names."""
+    source = SourceFile("a.tltl", text)
+    module, (diagnostic,) = parse(source)
+    way_out = next(iter(of_messages([diagnostic], module, errors)))
+    for edit in sorted(way_out.edits, key=lambda edit: -edit.span.start):
+        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
+    return text
+
+
+def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
+    return parse(source)[1]
+
+
+@pytest.mark.parametrize(
+    ("clause", "meant"),
+    [
+        # A condition.
+        ("reach if a then b", "reach a and b"),
+        ("reach a when b", "reach a and b"),
+        ("reach a then b while c", "reach a then b and c"),
+        ("reach a or b while c", "reach (a or b) and c"),
+        ("keep if p(x) q(y)", "keep p(x) implies q(y)"),
+        ("keep if not a, b", "keep not a implies b"),
+        ("keep a while b or c", "keep (b or c) implies a"),
+        ("avoid a when b", "avoid a and b"),
+        ("require (a if b) and c", "require (b implies a) and c"),
+        ("if a then reach b", "keep a implies eventually b"),
+        ("when a: b", "keep a implies b"),
+        ("reach a without b", "reach a avoid b"),
+        ("require a without b", "require a and not b"),
+        # An order.
+        ("reach a before b", "reach a then b"),
+        ("reach a after b", "reach b then a"),
+        ("reach a and then b", "reach a then b"),
+        ("reach a followed by b", "reach a then b"),
+        ("reach a next b", "reach a then b"),
+        ("avoid a before b", "require (not a) until b"),
+        ("avoid a or b before c", "require (not (a or b)) until c"),
+        ("avoid a after b", "require always (b implies always not a)"),
+        ("keep a before b", "require a until b"),
+        ("keep a after b", "keep b implies always a"),
+        ("keep a unless b", "keep a or b"),
+        ("avoid a unless b", "avoid a and not b"),
+        ("require a unless b", "require a weak_until b"),
+        # A time.
+        ("reach a within 20 steps", "require eventually within 20 steps a"),
+        ("reach a and b in 5 seconds", "require eventually within 5 s (a and b)"),
+        ("reach a then b within 20 steps", "reach a and eventually within 20 steps b"),
+        ("reach a or b then c within 20 steps", "reach (a or b) and eventually within 20 steps c"),
+        ("reach a then b then c within 20 steps", "reach a then b and eventually within 20 steps c"),
+        ("reach a then b for 20 steps", "reach a then (always for 20 steps b) and next after 20 steps b"),
+        ("reach a for 20 steps", "reach (always for 20 steps a) and next after 20 steps a"),
+        ("reach a then b after 3 steps", "reach a and next after 3 steps eventually b"),
+        ("reach a before 30 s", "require eventually within 30 s a"),
+        ("reach within 20 steps a", "require eventually within 20 steps a"),
+        ("reach a after 3 steps", "require next after 3 steps eventually a"),
+        ("keep a for 20 steps", "require always for 20 steps a"),
+        ("keep a implies b within 20 steps", "keep a implies eventually within 20 steps b"),
+        ("avoid a for 20", "require always for 20 steps not a"),
+        ("require eventually within 20 a", "require eventually within 20 steps a"),
+        # A clause in a formula, a formula for a clause.
+        ("keep a implies reach b", "keep a implies eventually b"),
+        ("keep a implies avoid b or c", "keep a implies always not (b or c)"),
+        ("keep a implies reach b then c", "keep a implies eventually (b then c)"),
+        ("reach a then reach b", "reach a then b"),
+        ("reach a then keep b", "reach a then (always b)"),
+        ("keep a or keep b", "require (always a) or (always b)"),
+        ("keep a and keep b", "keep a keep b"),
+        ("always a", "keep a"),
+        ("F a", "reach a"),
+        ("! a", "avoid a"),
+        ("always for 3 steps a", "require always for 3 steps a"),
+        ("p(x)", "reach p(x)"),
+        ("never a", "avoid a"),
+        ("avoids a", "avoid a"),
+        ("- reach a", "reach a"),
+        ("1. reach a", "reach a"),
+        ("reach: a", "reach a"),
+        # A limit.
+        ("400 steps limit", "limit 400 steps"),
+        ("within 400 steps", "limit 400 steps"),
+        ("limit of 400 steps", "limit 400 steps"),
+        ("limit = 20 seconds", "limit 20 s"),
+        ("limits 400 steps", "limit 400 steps"),
+        ("judge goal", "judge at goal"),
+        # Signs.
+        ("reach a, b", "reach a then b"),
+        ("keep a, b", "keep a and b"),
+        ("avoid a, b", "avoid a or b"),
+        ("reach a, then b", "reach a then b"),
+        ("reach a, b or c, p(x, y)", "reach a then b or c then p(x, y)"),
+        ("keep a, b or c", "keep a and (b or c)"),
+        ("keep a == true", "keep a"),
+        ("keep a != true", "keep not a"),
+        ("keep a == 0 or b", "keep (a >= 0 and a <= 0) or b"),
+        ("keep a == 3", "keep a >= 3 and a <= 3"),
+        ("keep F a + 1 == b", "keep F (a + 1 >= b and a + 1 <= b)"),
+        ("keep a <> 3", "keep a < 3 or a > 3"),
+        ("keep a != 3 or b", "keep (a < 3 or a > 3) or b"),
+        ("keep 3 < a < 4", "keep 3 < a and a < 4"),
+        ("keep a => 3", "keep a >= 3"),
+        ("keep a => b", "keep a implies b"),
+        ("keep a > 2,5", "keep a > 2.5"),
+        ("keep a > .5", "keep a > 0.5"),
+        ("keep a × 2 > 3", "keep a * 2 > 3"),
+        ("keep a is false", "keep not a"),
+        ("keep p(x) is true", "keep p(x)"),
+        ("keep a and p(x) is not true", "keep a and not p(x)"),
+        ("keep a is more than 3", "keep a > 3"),
+        ("keep a at least 3", "keep a >= 3"),
+        ("keep a below 3 m/s", "keep a < 3 m/s"),
+        ("reach the exit", "reach exit"),
+        ("reach a then never b", "reach a then (always not b)"),
+        ("keep NOT a", "keep not a"),
+        ("keep a AND b", "keep a and b"),
+        ("keep a or or b", "keep a or b"),
+        ("keep a not b", "keep a and not b"),
+        ("keep FG a", "keep F G a"),
+        # Brackets and quotes.
+        ("reach p[x]", "reach p(x)"),
+        ("keep {a or b} and c", "keep (a or b) and c"),
+        ("keep a()", "keep a"),
+        ("keep p x", "keep p(x)"),
+        ("reach p door then b", "reach p(door) then b"),
+        ("keep p hand", "keep p(hand)"),
+        ("keep p(x, y 3)", "keep p(x, y = 3)"),
+        ("keep p(x, y: 3)", "keep p(x, y = 3)"),
+        ("keep p(x y = 3)", "keep p(x, y = 3)"),
+        ("reach “p(x)”", "reach p(x)"),
+        ("reach p('x')", "reach p(x)"),
+        ('reach "a"', "reach a"),
+        ("keep è", "keep e"),
+    ],
+)
+def test_a_clause(clause: str, meant: str) -> None:
+    text = "spec s {{\n    {}\n    keep last\n}}\n"
+    assert mended(text.format(clause)) == text.format(meant)
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("entity a b", "entity a, b"),
+        ("entity a; b", "entity a, b"),
+        ("entity 2nd", "entity _2nd"),
+        ("entity my-door", "entity my_door"),
+        ("signal a in (0, 3)", "signal a in [0, 3]"),
+        ("signal a in [0 3]", "signal a in [0, 3]"),
+        ("signal a [0, 3]", "signal a in [0, 3]"),
+        ("signal at(entity): bool", "signal at(x: entity): bool"),
+        ("clock 20 fps", "clock 20 Hz"),
+        ("spec s = keep a", "spec s { keep a }"),
+        ("spec s = { keep a }", "spec s { keep a }"),
+        ('spec "my spec" = G a', "spec my_spec = G a"),
+        ("spec s = if a then b", "spec s = a implies b"),
+        ("let l = avoid a", "let l = always not a"),
+        ("test “t” for s { step a }", 'test "t" for s { step a }'),
+        ("object a", "entity a"),
+    ],
+)
+def test_a_declaration(text: str, meant: str) -> None:
+    assert mended(f"{text}\nentity last\n") == f"{meant}\nentity last\n"

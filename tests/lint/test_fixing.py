@@ -1,0 +1,99 @@
+"""Fixes: what they leave of a text, and that they change the meaning of nothing."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tltlc
+from tests.lint.helpers import codes, mended
+from tltlc.grammar.parser import parse
+
+SPEC = "spec s = F a\n"
+MORE = "signal x in [0, 9]\nspec s = F more(x, 1, 1)\n"
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("signal a: bool\nsignal b: bool\nspec s = F a\n", "signal a: bool\nspec s = F a\n"),
+        ("signal a: bool\n\n/// Of no use,\n/// this.\nsignal b: bool // no\n\n" + SPEC, "signal a: bool\n\n" + SPEC),
+        ("// A game.\nimport core\n\nsignal a: bool\n" + SPEC, "// A game.\n\nsignal a: bool\n" + SPEC),
+        ("import core\n\nsignal a: bool\n" + SPEC, "signal a: bool\n" + SPEC),
+        ("signal b: bool signal a: bool\n" + SPEC, "signal a: bool\n" + SPEC),
+        ("signal a: bool signal b: bool\n" + SPEC, "signal a: bool\n" + SPEC),
+        ("signal a: bool signal b: bool // both\n" + SPEC, "signal a: bool // both\n" + SPEC),
+        ("signal a: bool signal b: bool " + SPEC, "signal a: bool " + SPEC),
+        ("signal a: bool\n" + SPEC + "signal b: bool", "signal a: bool\n" + SPEC),
+        ("entity x, y, z\nsignal a(e): bool\nspec s = F a(y)\n", "entity y\nsignal a(e): bool\nspec s = F a(y)\n"),
+        ("entity x, y\nsignal a: bool\n" + SPEC, "signal a: bool\n" + SPEC),
+        ("signal a: bool\nsignal x: ratio\npredicate p = x\nlet q = F p\n" + SPEC, "signal a: bool\n" + SPEC),
+        ("import core (less, more)\n" + MORE, "import core (more)\n" + MORE),
+        (
+            "signal a: bool\nspec s {\n    limit 3 steps\n    reach a\n    reach a\n}\n",
+            "signal a: bool\nspec s {\n    limit 3 steps\n    reach a\n}\n",
+        ),
+        ("signal a: bool\r\n\r\nsignal b: bool\r\n\r\nspec s = F a\r\n", "signal a: bool\r\n\r\nspec s = F a\r\n"),
+        ("signal a: bool\r\nsignal b: bool\r\nspec s = F a\r\n", "signal a: bool\r\nspec s = F a\r\n"),
+    ],
+)  # fmt: skip
+def test_what_is_left(before: str, after: str) -> None:
+    assert mended(before).source.text == after
+
+
+def test_a_part_of_a_clause_is_left_to_the_author() -> None:
+    text = "signal a: bool\nspec s = F a & F a\n"
+    assert codes(text) == ["TLT0425"]
+    assert mended(text).source.text == text
+
+
+def test_what_was_fixed_is_told() -> None:
+    fixed = mended("signal a: bool\nsignal b: bool\nlet c = F b\nspec s { reach a }\n")
+    assert [each.title for each in fixed.fixed] == ["nothing uses the let `c`", "nothing uses the signal `b`"]
+    assert [each.diagnostic.code for each in fixed.left] == ["TLT0419"]
+
+
+DECLARATIONS = {
+    "import core": "core",
+    "import stealth (alive, hidden)": "stealth",
+    "/// Documented.\nentity x, y": "x y",
+    "signal a: bool": "a",
+    "signal b: bool  // behind it": "b",
+    "signal n in [0, 10]": "n",
+    "param most: number in [1, 9] = 5": "most",
+    "// A comment of its own.\npredicate few in [-1, 1] = (most - n) / 10": "few",
+    "let soon = F few": "soon",
+    "let at(e) = F (a & e)": "at",
+    "signal near_to(e: entity): bool": "near_to",
+    "// tltlc: allow TLT0418": "",
+}
+FORMULAS = ("F a", "G b", "soon", "at(b)", "F near_to(x)", "F n > 3", "G few", "a", "F a & F a", "G alive")
+
+
+@st.composite
+def modules(draw: st.DrawFn) -> str:
+    """A file of all the declarations, in some order, and specs that use some of them."""
+    order = draw(st.permutations(list(DECLARATIONS)))
+    gaps = draw(st.lists(st.sampled_from(["\n", "\n\n", "\n\n\n", " \n"]), min_size=len(order), max_size=len(order)))
+    formulas = draw(st.lists(st.sampled_from(FORMULAS), min_size=1, max_size=4))
+    clauses = draw(st.lists(st.sampled_from([f"require {formula}" for formula in FORMULAS]), min_size=1, max_size=4))
+    specs = [f"spec s{number} = {formula}\n" for number, formula in enumerate(formulas)]
+    block = "spec block {\n    " + "\n    ".join(clauses) + "\n}\n"
+    return "".join(map("".join, zip(order, gaps, strict=True))) + "\n".join([*specs, block])
+
+
+@settings(deadline=None)
+@given(modules())
+def test_fixes_change_the_automaton_of_no_spec_and_leave_nothing_to_fix(text: str) -> None:
+    fixed = mended(text)
+    assert not any(finding.fix for finding in fixed.left)
+    assert mended(fixed.source.text).source == fixed.source
+    _, problems = parse(fixed.source)
+    assert not problems
+    before, after = tltlc.compile_text(text), tltlc.compile_text(fixed.source.text)
+    assert [(f.states, f.edges, f.atoms, f.signals, f.judge) for f in before] == [
+        (f.states, f.edges, f.atoms, f.signals, f.judge) for f in after
+    ]
+    # A comment that says nothing to the linter stays, unless it stands behind what goes.
+    assert fixed.source.text.count("// A comment of its own.") == 1

@@ -1,0 +1,56 @@
+"""Ways out that can be taken at once, as editors and the playground offer them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.parser import parse
+from tltlc.lint.run import lint
+from tltlc.lint.ways_out import WayOut, of_findings, of_messages
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
+
+
+def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
+    module, found = parse(source)
+    return (*found, *resolve(module)[1])
+
+
+def ways_out(text: str) -> list[WayOut]:
+    source = SourceFile("x.tltl", text)
+    return list(of_messages(errors(source), parse(source)[0], errors))
+
+
+def after(text: str, way_out: WayOut) -> str:
+    for edit in sorted(way_out.edits, key=lambda edit: edit.span.start, reverse=True):
+        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
+    return text
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("spec x { kepe alive }", {"Write `keep`": "spec x { keep alive }"}),
+        ("spec x = F alive", {"Add `import stealth`": "import stealth\nspec x = F alive"}),
+        (
+            "/// Loud.\r\nspec x = F loud",
+            {"Declare `signal loud: bool`": "signal loud: bool\r\n/// Loud.\r\nspec x = F loud"},
+        ),
+        ("signal a: bool\nspec x = F a &", {}),
+    ],
+)
+def test_what_messages_name_is_tried(text: str, expected: dict[str, str]) -> None:
+    assert {each.title: after(text, each) for each in ways_out(text)} == expected
+
+
+def test_what_leaves_as_much_to_be_mended_is_no_way_out() -> None:
+    # Its import would not have it either.
+    module = parse(SourceFile("x.tltl", "spec x = F alive"))[0]
+    told = errors(module.source)
+    assert list(of_messages(told, module, lambda _: told)) == []
+
+
+def test_a_fix_is_named_by_what_it_does() -> None:
+    found = lint(SourceFile("x.tltl", "import core\nsignal a: bool\nentity e\nspec x = F a"))
+    assert [each.title for each in of_findings(found)] == ["Remove the import", "Remove it"]

@@ -1,0 +1,56 @@
+"""Formulas sorted into goals, what holds throughout, what recurs, and the rest."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.logic.strategies import formulas
+from tests.reference_formulas import read_formula
+from tltlc.logic.english import english_text
+from tltlc.logic.formula import Formula
+from tltlc.logic.outline import Goal, Outline, outline
+from tltlc.rabin.written import without_constants
+
+SMALL = formulas(max_leaves=8)
+
+
+def goals(*texts: str) -> tuple[Goal, ...]:
+    return tuple(map(Goal, texts))
+
+
+@pytest.mark.parametrize(
+    ("formula", "found"),
+    [
+        ("F(a & X F(b & X F c)) & G !d", Outline((goals("a", "b", "c"),), ("avoid d",))),
+        ("F a & F b", Outline((goals("a"), goals("b")))),
+        ("F(a & F b)", Outline(((Goal("a"), Goal("b", together=True)),))),
+        ("G(a & !b)", Outline(throughout=("keep a", "avoid b"))),
+        ("G(a -> F b)", Outline(throughout=("whenever a, reach b at that step or later",))),
+        # Here "throughout" is part of what is said, and not of the list.
+        ("G(a -> G b)", Outline(throughout=("whenever a, keep b throughout",))),
+        ("F G a & a U b", Outline(others=("from some step on keep a throughout", "reach b, keeping a until then"))),
+        ("true", Outline()),
+        ("false", Outline(others=("what nothing can satisfy",))),
+    ],
+)
+def test_over_finite_traces(formula: str, found: Outline) -> None:
+    assert outline(read_formula(formula)) == found
+
+
+def test_over_infinite_traces() -> None:
+    found = outline(read_formula("G F a & F b & G c & G(a -> F b)"), endless=True)
+    assert found.recurring == ("reach a",)
+    assert found.goals == (goals("b"),)
+    assert found.throughout == ("keep c", "whenever a, reach b at that step or later")
+
+
+@settings(max_examples=300, deadline=None)
+@given(SMALL, st.booleans())
+def test_all_of_a_formula_is_said_in_english(formula: Formula, endless: bool) -> None:
+    formula = without_constants(formula) if endless else formula
+    found = outline(formula, endless=endless)
+    said = [goal.text for row in found.goals for goal in row] + [*found.throughout, *found.recurring, *found.others]
+    assert all(said) and all(text == text.strip() for text in said)
+    assert said or english_text(formula, endless=endless) == "Nothing remains to be done."

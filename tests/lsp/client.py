@@ -1,0 +1,188 @@
+"""A client of the protocol that says what it is told to, and waits for nothing longer than it is told to."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[2]
+PROGRAM = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from tltlc.cli.main import main; main(['lsp'])"
+WAIT_S = 30.0
+
+
+class Refused(Exception):
+    """The server answered with an error."""
+
+
+class Client:
+    def __init__(self, folder: Path | None = None, encodings: tuple[str, ...] = (), **capabilities: Any) -> None:
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", PROGRAM],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=environment,
+        )
+        self.messages: queue.Queue[dict[str, Any]] = queue.Queue()
+        self.said: list[dict[str, Any]] = []
+        self.errors: list[str] = []
+        self._number = 0
+        threading.Thread(target=self._read, daemon=True).start()
+        self._listening = threading.Thread(target=self._read_errors, daemon=True)
+        self._listening.start()
+        general = {"positionEncodings": list(encodings)} if encodings else {}
+        folders = [{"uri": folder.as_uri(), "name": folder.name}] if folder else None
+        self.capabilities = self.ask(
+            "initialize",
+            {
+                "processId": None,
+                "rootUri": folder.as_uri() if folder else None,
+                "workspaceFolders": folders,
+                "capabilities": {"general": general, **capabilities},
+            },
+        )["capabilities"]
+        self.tell("initialized", {})
+
+    # --- messages -----------------------------------------------------------------------------
+
+    def tell(self, method: str, params: Any) -> None:
+        self._send({"method": method, "params": params})
+
+    def start(self, method: str, params: Any) -> int:
+        """Ask without waiting for the answer; the number of the request."""
+        self._number += 1
+        self._send({"id": self._number, "method": method, "params": params})
+        return self._number
+
+    def ask(self, method: str, params: Any) -> Any:
+        number = self.start(method, params)
+        answer = self._next(lambda message: message.get("id") == number and "method" not in message)
+        if "error" in answer:
+            raise Refused(answer["error"]["message"])
+        return answer["result"]
+
+    def diagnostics(self, uri: str, wanted: Callable[[list[Any]], bool] = lambda _: True) -> list[dict[str, Any]]:
+        """The next diagnostics of a document that are as wanted."""
+        message = self._next(
+            lambda message: (
+                message.get("method") == "textDocument/publishDiagnostics"
+                and message["params"]["uri"] == uri
+                and wanted(message["params"]["diagnostics"])
+            )
+        )
+        found: list[dict[str, Any]] = message["params"]["diagnostics"]
+        return found
+
+    def said_of(self, uri: str) -> list[list[dict[str, Any]]]:
+        """All diagnostics of a document so far, one list after another."""
+        told = [each["params"] for each in self.said if each.get("method") == "textDocument/publishDiagnostics"]
+        return [each["diagnostics"] for each in told if each["uri"] == uri]
+
+    def is_quiet(self, seconds: float) -> bool:
+        """Whether nothing more comes for a while."""
+        try:
+            self.said.append(self.messages.get(timeout=seconds))
+        except queue.Empty:
+            return True
+        return False
+
+    def message(self, method: str) -> Any:
+        """What was said by a method, already or soon."""
+        earlier = [message for message in self.said if message.get("method") == method]
+        return (earlier or [self._next(lambda message: message.get("method") == method)])[-1]["params"]
+
+    # --- documents ----------------------------------------------------------------------------
+
+    def open(self, path: Path | str, text: str) -> str:
+        uri = path.as_uri() if isinstance(path, Path) else path
+        item = {"uri": uri, "languageId": "tltl", "version": 1, "text": text}
+        self.tell("textDocument/didOpen", {"textDocument": item})
+        return uri
+
+    def change(self, uri: str, text: str, version: int = 2) -> None:
+        params = {"textDocument": {"uri": uri, "version": version}, "contentChanges": [{"text": text}]}
+        self.tell("textDocument/didChange", params)
+
+    def at(self, method: str, uri: str, text: str, mark: str, **more: Any) -> Any:
+        """Ask about the place of a mark in a text, which stands once in it."""
+        params = {"textDocument": {"uri": uri}, "position": place(text, text.index(mark)), **more}
+        return self.ask(f"textDocument/{method}", params)
+
+    def close(self) -> int:
+        self.ask("shutdown", None)
+        self.tell("exit", None)
+        return self.process.wait(WAIT_S)
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait(WAIT_S)
+
+    def stop_reading(self) -> None:
+        """Close the server's standard output, as an editor does that has crashed."""
+        assert self.process.stdout
+        os.dup2(os.open(os.devnull, os.O_RDONLY), self.process.stdout.fileno())
+
+    def leaves_nobody_behind(self, seconds: float) -> bool:
+        """Whether the processes that the server has started have ended, too: they share its standard error."""
+        self._listening.join(seconds)
+        return not self._listening.is_alive()
+
+    # --- underneath ---------------------------------------------------------------------------
+
+    def _send(self, message: dict[str, Any]) -> None:
+        data = json.dumps({"jsonrpc": "2.0", **message}).encode()
+        assert self.process.stdin
+        self.process.stdin.write(b"Content-Length: %d\r\n\r\n" % len(data) + data)
+        self.process.stdin.flush()
+
+    def _next(self, wanted: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
+        end = time.monotonic() + WAIT_S
+        while True:
+            left = end - time.monotonic()
+            assert left > 0, f"no such message came; the server said {self.errors}"
+            try:
+                message = self.messages.get(timeout=min(left, 1.0))
+            except queue.Empty:
+                assert self.process.poll() is None, f"the server has ended: {''.join(self.errors)}"
+                continue
+            if "id" in message and "method" in message:
+                self._send({"id": message["id"], "result": None})
+            self.said.append(message)
+            if wanted(message):
+                return message
+
+    def _read(self) -> None:
+        stream = self.process.stdout
+        assert stream
+        while True:
+            length = 0
+            while line := stream.readline().strip():
+                name, _, value = line.partition(b":")
+                if name.lower() == b"content-length":
+                    length = int(value)
+            if not length:
+                return
+            self.messages.put(json.loads(stream.read(length)))
+
+    def _read_errors(self) -> None:
+        assert self.process.stderr
+        for line in self.process.stderr:
+            self.errors.append(line.decode())
+
+
+def place(text: str, offset: int, encoding: str = "utf-16") -> dict[str, int]:
+    """The position of a character, as the protocol has it."""
+    before = text[:offset].replace("\r\n", "\n")
+    line = before.rpartition("\n")[2]
+    width = {"utf-8": 1, "utf-16": 2, "utf-32": 4}[encoding]
+    units = len(line.encode({"utf-8": "utf-8", "utf-16": "utf-16-le", "utf-32": "utf-32-le"}[encoding])) // width
+    return {"line": before.count("\n"), "character": units}

@@ -1,0 +1,93 @@
+"""Ways out that editors offer: those that the messages name, and the fixes of the linter's rules."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from lsprotocol import types
+
+from tests.lsp.texts import opened
+from tltlc.grammar.parser import parse
+from tltlc.lint.rule import Edit
+from tltlc.lsp.actions import actions
+from tltlc.lsp.document import Document
+from tltlc.lsp.edits import applied
+from tltlc.lsp.positions import offset
+from tltlc.lsp.remarks import label_in
+from tltlc.source import SourceFile, Span
+
+ERRORS = sorted((Path(__file__).parents[1] / "golden" / "error").glob("TLT0[123]*/input.tltl"))
+URI = "file:///x.tltl"
+
+
+def offered(document: Document, span: Span) -> dict[str, str]:
+    """The text after each action, by its title."""
+    found = {}
+    for action in actions(document, span, (), "utf-16", lambda _: URI, types.WorkspaceEdit):
+        assert action.edit is not None
+        assert action.edit.changes is not None
+        edits = [edit_of(document.source, edit) for edit in action.edit.changes[URI]]
+        found[action.title] = applied(document.source.text, edits)
+    return found
+
+
+def edit_of(source: SourceFile, edit: types.TextEdit) -> Edit:
+    return Edit(Span(offset(source, edit.range.start), offset(source, edit.range.end)), edit.new_text)
+
+
+@pytest.mark.parametrize(
+    ("text", "title", "after"),
+    [
+        ("import stealth\nspec a = G ali¦v", "Write `alive`", "import stealth\nspec a = G alive"),
+        ("entity s1\nspec a = F ne¦ar(s1)", "Add `import spatial`", "import spatial\nentity s1\nspec a = F near(s1)"),
+        (
+            "import core\nentity s1\nspec a = F ne¦ar(s1)",
+            "Add `import spatial`",
+            "import core\nimport spatial\nentity s1\nspec a = F near(s1)",
+        ),
+        (
+            "/// Words.\nspec a = G lo¦ud\r\n",
+            "Declare `signal loud: bool`",
+            "signal loud: bool\r\n/// Words.\nspec a = G loud\r\n",
+        ),
+        ("signal a: bool\nspc¦ s = G a", "Write `spec`", "signal a: bool\nspec s = G a"),
+        ("signal a: boool¦\nspec s = G a", "Write `bool`", "signal a: bool\nspec s = G a"),
+        ("signal a: bool\nspec s { kep¦ a }", "Write `keep`", "signal a: bool\nspec s { keep a }"),
+        (
+            'signal a: bool\nspec s = F a\ntest "t" for z¦s { step a expect holding }',
+            "Write `s`",
+            'signal a: bool\nspec s = F a\ntest "t" for s { step a expect holding }',
+        ),
+    ],
+)  # fmt: skip
+def test_a_way_out(text: str, title: str, after: str) -> None:
+    document, at, _ = opened(text)
+    found = offered(document, Span(at, at))
+    assert found.get(title) == after, found
+
+
+@pytest.mark.parametrize("path", ERRORS, ids=lambda path: path.parent.name)
+def test_every_way_out_leaves_less_to_be_mended(path: Path) -> None:
+    document, _, _ = opened(path.read_text(encoding="utf-8"), path.parent)
+    for each in document.said:
+        label = label_in(each, document)
+        if label is not None and each.severity == "error":
+            for text in offered(document, label.span).values():
+                after = Document(SourceFile(document.source.name, text), document.project, {})
+                assert wrong(after) < wrong(document)
+
+
+def wrong(document: Document) -> tuple[int, int]:
+    """How many errors of syntax there are, behind which others hide, and how many in all."""
+    return len(parse(document.source)[1]), sum(each.severity == "error" for each in document.said)
+
+
+def test_many_messages_have_a_way_out() -> None:
+    """Of all errors of syntax, names and types, a fair part can be mended at once."""
+    found = 0
+    for path in ERRORS:
+        document, _, _ = opened(path.read_text(encoding="utf-8"), path.parent)
+        labels = [label_in(each, document) for each in document.said]
+        found += any(offered(document, label.span) for label in labels if label is not None)
+    assert found >= len(ERRORS) // 5

@@ -1,0 +1,84 @@
+"""However texts and files came to be as they are, what is said of them is what would be said of them anew."""
+
+from __future__ import annotations
+
+import os
+from itertools import count
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.lsp.workspace import Workspace
+from tltlc.record import replace
+
+TEXTS = {
+    "common.tltl": (
+        "signal loud: bool\nsignal dark: ratio\nlet quiet = G not loud\n",
+        "signal loud: ratio\nlet quiet = G loud > 50 %\n",
+        "signal loud bool\n",
+    ),
+    "middle.tltl": (
+        'import "common.tltl"\nlet both = quiet and F loud\n',
+        'import "common.tltl"\nsignal on: bool\nlet both = F on\n',
+        "signal on: bool\nlet both = F on\n",
+    ),
+    "main.tltl": (
+        'import "middle.tltl"\nspec main = both and quiet\n',
+        'import "common.tltl" as c\nspec main = c.quiet or F c.dark > 10 %\n',
+        "import common\nspec main = quiet and F loud\n",
+    ),
+    "tltl.toml": ("", "libaries = []\n", 'libraries = ["shared"]\n'),
+    "shared/common.tltl": ("let quiet = true\n",),
+}
+STEPS = st.tuples(
+    st.sampled_from(["type", "type", "close", "write", "delete"]),
+    st.sampled_from([*TEXTS]),
+    st.integers(0, 2),
+)
+BEGINNING = [("write", "common.tltl", 0), ("write", "middle.tltl", 0), ("write", "shared/common.tltl", 0)]
+Said = tuple[Diagnostic, ...]
+
+
+def said_of(workspace: Workspace, uri: str) -> tuple[Said, Said]:
+    """What is said of a document and of its project, less the advice, for which whole folders are looked through."""
+    document = workspace.document(uri)
+    assert document is not None
+    said = tuple(replace(each, help=None) for each in document.said)
+    return said, workspace.project(document.source.name)[1]
+
+
+@given(st.integers(0, 2), st.lists(STEPS, min_size=1, max_size=12))
+@settings(max_examples=200)
+def test_every_history_ends_the_same(main: int, steps: list[tuple[str, str, int]]) -> None:
+    times = count(1)
+    with TemporaryDirectory() as place:
+        folder = Path(place)
+        (folder / "shared").mkdir()
+        workspace, shown, texts = Workspace(), {}, {}
+        for what, name, number in (*BEGINNING, ("type", "main.tltl", main), *steps):
+            file, text = folder / name, TEXTS[name][number % len(TEXTS[name])]
+            uri = file.as_uri()
+            if what == "type":
+                texts[uri] = text
+                touched = workspace.put(uri, None, text)
+            elif what == "close":
+                texts.pop(uri, None)
+                shown.pop(uri, None)
+                touched = workspace.close(uri)
+            else:
+                if what == "write":
+                    file.write_text(text, encoding="utf-8")
+                    # The clock of files is too slow for such a hand.
+                    os.utime(file, ns=(next(times), next(times)))
+                else:
+                    file.unlink(missing_ok=True)
+                touched = workspace.refresh()
+            for each in touched:
+                shown[each] = said_of(workspace, each)
+        anew = Workspace()
+        for uri, text in texts.items():
+            anew.put(uri, None, text)
+        assert shown == {uri: said_of(anew, uri) for uri in texts}

@@ -1,0 +1,36 @@
+"""Documents without an editor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tltlc.lsp.document import Document
+from tltlc.lsp.workspace import Workspace
+
+MARK = "¦"
+"""Where the cursor is in a text."""
+
+SLOW = "".join(f"signal a{i}: bool\nsignal b{i}: bool\n" for i in range(6))
+SLOW += "spec slow = " + " and ".join(f"G (a{i} implies eventually within 5 steps b{i})" for i in range(6)) + "\n"
+"""Its automaton takes more than a minute."""
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.tltl"))
+
+
+def opened(marked: str, folder: Path | None = None, **others: str) -> tuple[Document, int, Workspace]:
+    """A document, the place of the mark in it, and its workspace; other files by their names, open as well."""
+    text, at = marked.replace(MARK, ""), max(0, marked.find(MARK))
+    folder = folder or Path("/nowhere")
+    workspace = Workspace()
+    workspace.folders = [str(folder)]
+    for name, other in others.items():
+        workspace.put((folder / f"{name}.tltl").as_uri(), 1, other)
+    uri = (folder / "main.tltl").as_uri()
+    workspace.put(uri, 1, text)
+    document = workspace.document(uri)
+    assert document is not None
+    return document, at, workspace
+
+
+def span_text(document: Document, start: int, end: int) -> str:
+    return document.source.text[start:end]

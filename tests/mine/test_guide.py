@@ -1,0 +1,23 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.docs.blocks import DOCS
+from tests.docs.sessions import Shell, run_page
+from tltlc.mine.measure import PRICE
+from tltlc.mine.templates import LONGEST_BOUND
+
+GUIDE = (DOCS / "guides" / "mining.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the page speaks to a POSIX shell")
+def test_the_guide_runs(tmp_path: Path) -> None:
+    assert run_page(GUIDE, Shell(tmp_path)) == 9
+
+
+def test_the_guide_has_the_figures_of_the_code() -> None:
+    assert f"- {PRICE} * atoms" in GUIDE
+    assert f"at most {LONGEST_BOUND} |" in GUIDE

@@ -1,0 +1,142 @@
+"""``tltlc serve`` as a command."""
+
+from __future__ import annotations
+
+import http.client
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+
+from tests.cli.conftest import ROOT, inside, tltlc  # noqa: F401 (fixtures)
+from tltlc.playground.site import PYODIDE
+
+needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
+
+
+@contextmanager
+def served(*options: str, **environment: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
+    """A running ``tltlc serve``, and its port."""
+    running = subprocess.Popen(
+        [sys.executable, "-m", "tltlc", "serve", "--port", "0", *options],
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    try:
+        assert running.stderr is not None
+        said = running.stderr.readline()
+        found = re.fullmatch(r"the playground is at http://127\.0\.0\.1:(\d+)/, until Ctrl-C\n", said)
+        assert found, said
+        yield running, int(found[1])
+    finally:
+        running.kill()
+        running.communicate()
+
+
+@needs_signals
+def test_it_serves_until_it_is_interrupted() -> None:
+    with served() as (running, port):
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=30)
+        connection.request("GET", "/")
+        assert connection.getresponse().status == 200
+        connection.close()
+        running.send_signal(signal.SIGINT)
+        assert running.communicate(timeout=30)[1] == ""
+        assert running.returncode == 130
+
+
+BROWSER = """
+import sys, urllib.request
+sys.stderr.write(f"saw {len(urllib.request.urlopen(sys.argv[1], timeout=30).read()) > 100}\\n")
+"""
+
+
+@needs_signals
+def test_a_browser_that_stays_in_the_foreground_is_served(tmp_path: Path) -> None:
+    (tmp_path / "browser.py").write_text(BROWSER)
+    with served("--open", BROWSER=f"{sys.executable} {tmp_path / 'browser.py'} %s") as (running, _):
+        assert running.stderr is not None
+        assert running.stderr.readline() == "saw True\n"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system itself opens pages")
+def test_without_a_browser_the_page_is_still_there(tmp_path: Path) -> None:
+    with served("--open", BROWSER="", PATH=str(tmp_path), DISPLAY="") as (running, _):
+        assert running.stderr is not None
+        assert running.stderr.readline() == "no browser was found: open the address yourself\n"
+
+
+def pyodide(folder: Path) -> Path:
+    """A folder with files of the names that Pyodide's have."""
+    folder.mkdir()
+    for name in PYODIDE:
+        (folder / name).write_text(name)
+    return folder
+
+
+def test_the_site_holds_all_that_the_page_needs(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
+    done = tltlc("serve", "--static", "site", "--pyodide", pyodide(inside / "given"))
+    assert (done.status, done.out) == (0, "")
+    assert re.fullmatch(r"wrote \d+ files, \d+ MB, into site; any web server can show them\n", done.err)
+    site = inside / "site"
+    page = (site / "index.html").read_text()
+    assert 'data-compiler="browser"' in page
+    assert all((site / name).is_file() for name in re.findall(r'(?:src|href)="([^"]+)"', page))
+    assert (site / "pyodide" / "pyodide.mjs").read_text() == "pyodide.mjs"
+    before = (site / "tltlc.zip").read_bytes()
+    assert tltlc("serve", "--static", "site", "--pyodide", "given").status == 0
+    assert (site / "tltlc.zip").read_bytes() == before
+
+
+PROGRAM = """
+import json, sys
+sys.path.insert(0, "unpacked")
+from tltlc.playground.protocol import answer
+
+for example in json.loads(answer("{}"))["examples"]:
+    found = json.loads(answer(json.dumps({"text": example["text"]})))
+    assert found["spec"] and not found["diagnostics"], found
+
+# In a browser sympy is no file that is missing: what it alone can prove stays unproved.
+sys.platform = "emscripten"
+text = "signal a: ratio  signal b: ratio  predicate p in [0, 1] = a*a + b*b - 2*a*b  spec x { limit 9 steps reach p }"
+found = json.loads(answer(json.dumps({"text": text})))
+assert found["specs"] == ["x"]
+print(sys.modules["tltlc"].__file__, [said["code"] for said in found["diagnostics"]])
+"""
+
+
+def test_the_compiler_of_the_site_needs_nothing_but_python(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
+    tltlc("serve", "--static", "site", "--pyodide", pyodide(inside / "given"))
+    with ZipFile("site/tltlc.zip") as archive:
+        archive.extractall("unpacked")
+    # Without the packages that are installed, and without answers that are remembered.
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", PROGRAM],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "TLTLC_CACHE_DIR": ""},
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == f"{inside / 'unpacked' / 'tltlc' / '__init__.py'} ['TLT0401']\n"
+
+
+def test_without_pyodide_there_is_no_site(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]  # noqa: F811
+    done = tltlc("serve", "--static", "site")
+    assert (done.status, done.err) == (
+        4,
+        "error[TLT0730]: the site needs Pyodide, and `node_modules/pyodide` has no `pyodide.mjs`\n"
+        "  help: npm install pyodide, and name its folder: `--pyodide node_modules/pyodide`\n",
+    )
+    assert not (inside / "site").exists()
+    assert tltlc("serve", "--static", "site", "--open").status == 2

@@ -1,0 +1,79 @@
+"""Values of signals that give atoms their truth."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tltlc
+from tltlc.monitor import Monitor
+from tltlc.witness.samples import Obstacle, Realiser, Unrealised, csv_text, samples
+
+
+@pytest.mark.parametrize(
+    ("declared", "formula"),
+    [
+        ("import spatial  entity e", "F near(e) & G !near(e, close = 3 m) | F facing(e, 2 deg)"),
+        ("import spatial", "F inside_box(1 m, 2 m, 3 m, 4 m, 5 m, 5.5 m)"),
+        (
+            "import core  signal x: number  signal y: number",
+            "F above(x, 0.1, 2e-7) & F about(x, y, 0.001) & F less(x, y, 0.5)",
+        ),
+        ("signal x in [0, 1]", "F x > 0.9995"),
+        ("signal v in [0, 60]  signal w: bool", "F v * v > 35 * 35 & F v * w > 59 & F w"),
+        ("signal x in [0, 100]  predicate narrow = clamp(1 - 40 * abs(x - 37.123), -1, 1)", "F narrow"),
+        (
+            "signal x in [-1, 1]  signal y in [-1, 1]  predicate ring = clamp(0.01 - abs(x^2 + y^2 - 0.5), -1, 1)",
+            "F ring",
+        ),
+    ],
+)
+def test_each_atom_alone_is_made_true_and_false(declared: str, formula: str) -> None:
+    (fspa,) = tltlc.compile_text(f"{declared}\nspec s = {formula}")
+    realiser = Realiser(fspa)
+    for index, atom in enumerate(fspa.atoms):
+        for holds in (True, False):
+            sample = realiser.literals(((index, holds),))
+            assert isinstance(sample, dict), atom.name
+            assert (atom.name in realiser.letter_of(sample)) == holds
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(st.integers(1, 99), min_size=1, max_size=4, unique=True), st.data())
+def test_thresholds_of_one_signal(thresholds: list[int], data: st.DataObject) -> None:
+    formula = " & ".join(f"F x > {each / 100}" for each in thresholds)
+    (fspa,) = tltlc.compile_text(f"signal x in [0, 1]  spec s = {formula}")
+    wanted = tuple((index, data.draw(st.booleans())) for index in range(len(thresholds)))
+    above = [threshold for threshold, (_, holds) in zip(thresholds, wanted, strict=True) if holds]
+    below = [threshold for threshold, (_, holds) in zip(thresholds, wanted, strict=True) if not holds]
+    found = Realiser(fspa).literals(wanted)
+    if max(above, default=0) < min(below, default=100):
+        assert isinstance(found, dict)
+        monitor = Monitor(fspa)
+        monitor.step(found)
+        assert [value > 0 for value in monitor.values] == [holds for _, holds in wanted]
+    else:
+        assert isinstance(found, Obstacle)
+        (low, holds), (high, other) = sorted(found.literals, key=lambda literal: thresholds[literal[0]])
+        assert not holds and other and thresholds[low] < thresholds[high]
+
+
+def test_exclusive_atoms_do_not_hold_together() -> None:
+    text = "signal a: bool  signal b: bool  exclusive a, b  spec s = F a & F b"
+    (fspa,) = tltlc.compile_text(text)
+    realiser = Realiser(fspa)
+    assert isinstance(realiser.letter(frozenset({"a", "b"})), Obstacle)
+    assert realiser.letter(frozenset({"a"})) == {"a": 1.0, "b": 0.0}
+
+
+def test_a_trace_of_letters_becomes_csv_or_what_stands_in_the_way() -> None:
+    (fspa,) = tltlc.compile_text("signal x in [0, 1]  signal seen: bool  spec s = F x > 0.5 & F x > 0.25 & F seen")
+    low, high = frozenset({"x > 0.25"}), frozenset({"x > 0.5", "x > 0.25", "seen"})
+    found = samples(fspa, (low, high))
+    assert not isinstance(found, Unrealised)
+    assert csv_text(fspa, found).splitlines()[0] == "x,seen"
+    assert [line.split(",")[1] for line in csv_text(fspa, found).splitlines()[1:]] == ["false", "true"]
+    stuck = samples(fspa, (low, frozenset({"x > 0.5"})))
+    assert isinstance(stuck, Unrealised)
+    assert (stuck.step, stuck.obstacle.text(fspa)) == (2, "`x > 0.5` and not `x > 0.25`")

@@ -1,0 +1,278 @@
+"""``tltlc mine``: specs proposed from recorded traces."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from tltlc.cli import exits
+from tltlc.cli.report import Report
+from tltlc.cli.settings import Settings, check_libraries, compile_settings, source_options
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.source import SourceFile
+from tltlc.spec_file import STDIN, STDIN_NAME
+
+if TYPE_CHECKING:
+    from tltlc.mine.confirm import Proposal
+    from tltlc.mine.evidence import Evidence
+    from tltlc.mine.reading import TraceFile
+    from tltlc.mine.search import Search
+    from tltlc.mine.vocabulary import Words
+    from tltlc.pipeline import CompileOptions
+
+ENDINGS: Final = (".csv", ".jsonl")
+"""Of the traces in a folder."""
+_MOST_BYTES: Final = 1 << 28
+_TELL_EVERY_S: Final = 1.0
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc mine good/ --against bad/                         columns are atoms, true or false
+  tltlc mine good/ --against bad/ --predicates game.tltl  atoms are computed from signals
+  tltlc mine good/ --against bad/ --predicates stealth    the same by the library of that name
+  tltlc mine run_*.csv --predicates game.tltl -o mined.tltl --top 3
+  tltlc mine good/ --against bad/ --min-support 0.9 --time 10 --json
+"""
+)
+@click.argument("traces", metavar="TRACES...", nargs=-1, required=True)
+@click.option(
+    "--against",
+    "counterexamples",
+    metavar="TRACES",
+    multiple=True,
+    help="Failed or wrong play: a trace or a folder that must not satisfy what is proposed (repeatable).",
+)
+@click.option(
+    "--predicates",
+    metavar="LIB",
+    help="What atoms there are: predicates of signals, of a file or of a library such as `stealth`, for all entities "
+    "of the traces (default: the columns).",
+)
+@click.option("--top", metavar="N", type=click.IntRange(1, 100), default=5, help="Propose so many (default: 5).")
+@click.option(
+    "--min-support",
+    metavar="SHARE",
+    type=click.FloatRange(0.0, 1.0, min_open=True),
+    default=1.0,
+    help="The least share of the traces to satisfy a proposal (default: 1; less where some may be wrong).",
+)
+@click.option(
+    "--max-length",
+    metavar="ATOMS",
+    type=click.IntRange(min=1),
+    default=12,
+    help="How often a proposal may name an atom (default: 12).",
+)
+@click.option(
+    "--time",
+    "seconds",
+    metavar="S",
+    type=click.FloatRange(min=0.0),
+    help="Search for so many seconds at most, and propose the best so far; so does Ctrl-C.",
+)
+@click.option(
+    "--output", "-o", metavar="FILE.tltl", type=click.Path(path_type=Path), help="Write the proposals as a source file."
+)
+@click.option("--json", "as_json", is_flag=True, help="One JSON document, for programs.")
+@source_options
+def command(
+    traces: tuple[str, ...],
+    counterexamples: tuple[str, ...],
+    predicates: str | None,
+    top: int,
+    min_support: float,
+    max_length: int,
+    seconds: float | None,
+    output: Path | None,
+    as_json: bool,
+    settings: Settings,
+    format: str,  # noqa: A002
+) -> int:
+    """Propose specs that recorded TRACES satisfy and counterexamples violate: what a level asks for, from play.
+
+    TRACES are files as `tltlc monitor` takes them, CSV or JSON lines, or folders of them (*.csv, *.jsonl).  Proposals
+    are ranked by the share of the traces that satisfy them and of the counterexamples that violate them; each was
+    compiled, and its automaton has judged every trace.  The exit status is 1 where there is nothing to propose.
+    """
+    import json
+
+    from tltlc.mine.confirm import confirmed
+    from tltlc.mine.document import document
+    from tltlc.mine.gathering import gathered
+    from tltlc.mine.search import Options, Search
+    from tltlc.mine.shown import shown
+    from tltlc.resolve.options import ResolveOptions
+
+    if (*traces, *counterexamples).count(STDIN) > 1:
+        raise click.UsageError("standard input can be one trace", click.get_current_context())
+    interrupted = False
+    with Report(format, results=True) as report:
+        options = _compile_options(predicates, settings)
+        library = None if predicates is None else _library(predicates)
+        resolve = ResolveOptions(options.library_dirs, options.params)
+        words, evidence, found = gathered(
+            _files(traces), _files(counterexamples), library, resolve, _every_second(report)
+        )
+        if words.left_out:
+            way_out = "" if predicates else " (`--predicates LIB` computes atoms from numbers)"
+            report.say(f"columns left out, being no atoms: {', '.join(words.left_out)}{way_out}")
+        report.add(found)
+        search = Search(evidence, Options(min_support, max_length))
+        whole, interrupted = _searched(search, seconds, report)
+        proposals = confirmed(search.ranked(), evidence, words, options, top)
+        if not proposals:
+            report.add((_nothing(evidence, whole=whole),))
+        elif output is not None:
+            _write(output, proposals, evidence, search, words, predicates)
+            report.say(f"wrote {output}")
+        if as_json:
+            print(json.dumps(document(proposals, evidence, search, whole=whole), indent=2, ensure_ascii=False))
+        elif proposals:
+            print(shown(proposals, evidence, search.bits))
+    return exits.INTERRUPTED if interrupted else report.status
+
+
+# --- input ----------------------------------------------------------------------------------------
+
+
+def _files(arguments: Sequence[str]) -> list[TraceFile]:
+    """The traces of the command line, those of a folder in order of their names."""
+    from tltlc.files import is_dir, read_bytes
+    from tltlc.mine.reading import TraceFile
+
+    found = []
+    for argument in arguments:
+        if argument == STDIN:
+            found.append(TraceFile(STDIN_NAME, sys.stdin.buffer.read()))
+        else:
+            paths = _of_folder(argument) if is_dir(argument) else [argument]
+            found += [TraceFile(path, read_bytes(path, path, _MOST_BYTES)) for path in paths]
+    for file in found:
+        if len(file.data) > _MOST_BYTES:
+            title = f"`{file.name}` is larger than {_MOST_BYTES >> 20} MiB"
+            raise TltlError([Diagnostic("TLT0004", title, help="record fewer steps, or fewer signals")])
+    return found
+
+
+def _of_folder(folder: str) -> list[str]:
+    """The traces in a folder and those in it; error TLT0001 where there is none."""
+    place = Path(folder)
+    paths = sorted(path for path in place.rglob("*") if path.suffix in ENDINGS and path.is_file())
+    seen = [path for path in paths if not any(part.startswith(".") for part in path.relative_to(place).parts)]
+    if not seen:
+        title = f"the folder `{folder}` holds no trace"
+        raise TltlError([Diagnostic("TLT0001", title, help=f"traces in it end in {' or '.join(ENDINGS)}")])
+    return [str(path) for path in seen]
+
+
+def _library(predicates: str) -> SourceFile:
+    """The file, or where it is the name of a library, a text that imports that."""
+    from tltlc.cli.inputs import check_text
+    from tltlc.files import is_file, read_source
+
+    if _is_name(predicates) and not is_file(predicates):
+        return SourceFile(f"<{predicates}>", f"import {predicates}\n")
+    library = read_source(predicates)
+    check_text(library)
+    return library
+
+
+def _is_name(predicates: str) -> bool:
+    return re.fullmatch(r"[A-Za-z]\w*", predicates, re.ASCII) is not None
+
+
+def _compile_options(predicates: str | None, settings: Settings) -> CompileOptions:
+    """How specs about the atoms of a library are compiled."""
+    from tltlc.project import Project, project_for
+
+    check_libraries(settings.libraries)
+    return compile_settings(settings, project_for(predicates) if predicates else Project())
+
+
+# --- the search -----------------------------------------------------------------------------------
+
+
+def _searched(search: Search, seconds: float | None, report: Report) -> tuple[bool, bool]:
+    """Search until the end, until time is up, or until Ctrl-C: whether it came to its end, and whether by Ctrl-C."""
+    begun = monotonic()
+    tell = _every_second(report)
+    try:
+        for stage in search.run():
+            now = monotonic()
+            if seconds is not None and now - begun >= seconds:
+                report.say(f"time is up; candidates so far: {search.tried}")
+                return False, False
+            tell(f"{stage}; candidates so far: {search.tried}, in {now - begun:.0f} s")
+    except KeyboardInterrupt:
+        report.say(f"interrupted; candidates so far: {search.tried}")
+        return False, True
+    return True, False
+
+
+def _every_second(report: Report) -> Callable[[str], None]:
+    """Says what is being done, once a second."""
+    told = monotonic()
+
+    def tell(text: str) -> None:
+        nonlocal told
+        if monotonic() - told >= _TELL_EVERY_S:
+            told = monotonic()
+            report.say(text)
+
+    return tell
+
+
+def _nothing(evidence: Evidence, *, whole: bool) -> Diagnostic:
+    if not whole:
+        return Diagnostic("TLT0761", "no spec was found so far", help="give it more time, with --time")
+    title = "there is no spec to propose: what the traces have in common, the counterexamples have, too"
+    if evidence.made_up:
+        title = "there is no spec to propose: the traces have nothing in common"
+    way_out = "lower --min-support, or record signals of what makes the difference"
+    return Diagnostic("TLT0761", title, help=way_out)
+
+
+# --- output ---------------------------------------------------------------------------------------
+
+
+def _write(
+    path: Path,
+    proposals: Sequence[Proposal],
+    evidence: Evidence,
+    search: Search,
+    words: Words,
+    predicates: str | None,
+) -> None:
+    from tltlc.files import is_same
+    from tltlc.fmt import format_text
+    from tltlc.mine.written import declarations, source_text
+    from tltlc.writing import write_file
+
+    if predicates and is_same(path, predicates):
+        raise click.UsageError(f"`{predicates}` would be written over: give -o another name")
+    imported = None
+    if predicates is not None:
+        is_file = words.library.name == predicates
+        imported = _import(predicates, path) if is_file else f"import {predicates}\n"
+    preamble = declarations(proposals, words, imported)
+    write_file(path, format_text(source_text(proposals, evidence, search.bits, preamble)))
+
+
+def _import(library: str, path: Path) -> str:
+    """The line that imports a library from a file that is to be at ``path``."""
+    import os
+
+    try:
+        relative = os.path.relpath(library, path.parent)
+    except ValueError:
+        # Another drive of Windows.
+        relative = str(Path(library).absolute())
+    return f'import "{Path(relative).as_posix()}"\n'

@@ -1,0 +1,88 @@
+"""``tltlc serve``: the playground, on this machine or as a site."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from tltlc.cli import exits
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  tltlc serve --open               the playground in your browser
+  tltlc serve --port 8080
+  tltlc serve --static site        files for any web server, which need no tltlc there
+
+\b
+The page asks this machine and nobody else.  A spec may import what lies in the current folder, and in the libraries
+of its tltl.toml.
+"""
+)
+@click.option("--port", metavar="N", type=click.IntRange(0, 65535), default=8765, help="Serve there (default: 8765).")
+@click.option("--open", "opening", is_flag=True, help="Open the page in a browser.")
+@click.option(
+    "--static",
+    "folder",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Write the page there, with the compiler in it, and serve nothing.",
+)
+@click.option(
+    "--pyodide",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    default=Path("node_modules/pyodide"),
+    help="The npm package that --static puts in (default: node_modules/pyodide).",
+)
+def command(port: int, opening: bool, folder: Path | None, pyodide: Path) -> int:
+    """Show a page on which to try specs: errors as one types, the automaton, traces to click through.
+
+    It stays until Ctrl-C, and is seen from this machine alone.
+    """
+    from tltlc.cli.report import Report
+
+    with Report() as report:
+        if folder is not None:
+            if opening:
+                raise click.UsageError("--static writes files, which need a server to be opened: leave out --open")
+            _write(folder, pyodide)
+        else:
+            _serve(port, opening)
+    return report.status
+
+
+def _write(folder: Path, pyodide: Path) -> None:
+    from tltlc.playground.site import site_files
+    from tltlc.writing import write_files
+
+    files = site_files(pyodide)
+    write_files(folder, files, "name another folder with --static")
+    size = sum(map(len, files.values())) / 1e6
+    print(f"wrote {len(files)} files, {size:.0f} MB, into {folder}; any web server can show them", file=sys.stderr)
+
+
+def _serve(port: int, opening: bool) -> None:
+    from tltlc.playground.server import Server
+
+    with Server(port) as server:
+        print(f"the playground is at {server.address}, until Ctrl-C", file=sys.stderr, flush=True)
+        if opening:
+            from threading import Thread
+
+            # Some browsers return when they are closed, and all of them need an answer before.
+            Thread(target=_open, args=(server.address,), daemon=True).start()
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            raise exits.StopQuietlyError(exits.INTERRUPTED) from None
+
+
+def _open(address: str) -> None:
+    import webbrowser
+
+    if not webbrowser.open(address):
+        print("no browser was found: open the address yourself", file=sys.stderr, flush=True)

@@ -1,0 +1,60 @@
+"""The source files that arguments name: themselves, or those of a folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+if TYPE_CHECKING:
+    from tltlc.cli.report import Report
+
+
+def every_source(arguments: Iterable[str], report: Report) -> list[str]:
+    """The files that arguments name, each once, in order; a folder that has none is reported, and left out."""
+    found: dict[str, None] = {}
+    for argument in arguments:
+        try:
+            found.update(dict.fromkeys(sources(argument)))
+        except TltlError as error:
+            report.add(error.diagnostics)
+    return list(found)
+
+
+def in_folders(arguments: Iterable[str]) -> list[str]:
+    """The source files that are by now in those of the arguments that are folders."""
+    return [file for argument in arguments if _is_folder(argument) for file in _inside(argument)]
+
+
+def sources(argument: str) -> list[str]:
+    """The argument itself, or the ``.tltl`` files in a folder and below it, hidden ones left out, in order.
+
+    Error: TLT0722 where a folder has none.
+    """
+    if not _is_folder(argument):
+        return [argument]
+    inside = _inside(argument)
+    if not inside:
+        raise TltlError([Diagnostic("TLT0722", f"there is no .tltl file in `{argument}`", help="name another folder")])
+    return inside
+
+
+def below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
+    """The files of these endings in a folder and below it, relative to it, hidden ones left out, in order."""
+    found: list[Path] = []
+    for place, folders, files in os.walk(folder):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        inside = Path(place).relative_to(folder)
+        found += [inside / name for name in files if name.endswith(endings) and not name.startswith(".")]
+    return sorted(found)
+
+
+def _inside(folder: str) -> list[str]:
+    return [str(Path(folder, file)) for file in below(Path(folder))]
+
+
+def _is_folder(argument: str) -> bool:
+    return os.path.isdir(argument)  # noqa: PTH112 (pathlib raises where a name is too long)

@@ -1,0 +1,75 @@
+"""What is different from one file to another, as JSON: ``diff.schema.json`` beside this file says of what form."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from tltlc.comparison import Trace
+from tltlc.diff.traces import in_order
+from tltlc.expression_json import to_json
+from tltlc.resolve.spec import Atom, Param, Signal
+
+if TYPE_CHECKING:
+    from tltlc.diff.differences import Difference
+    from tltlc.diff.pairs import FileDiff, Pair
+
+
+def document(found: FileDiff) -> dict[str, Any]:
+    """The report as a JSON object."""
+    return {
+        "a": found.a,
+        "b": found.b,
+        "same": found.is_same,
+        "specs": [_pair(pair) for pair in found.pairs],
+        "only_in_a": list(found.only_a),
+        "only_in_b": list(found.only_b),
+    }
+
+
+def _pair(pair: Pair) -> dict[str, Any]:
+    comparison = pair.comparison
+    return {
+        "name_a": pair.a.name,
+        "name_b": pair.b.name,
+        "relation": comparison.relation,
+        "only_a": _trace(pair, comparison.only_a),
+        "only_b": _trace(pair, comparison.only_b),
+        "different_atoms": list(comparison.split),
+        "left_out": [[{"atom": name, "holds": holds} for name, holds in each] for each in comparison.impossible],
+        "differences": [_difference(each) for each in pair.differences],
+    }
+
+
+def _trace(pair: Pair, trace: Trace | None) -> Any:
+    """A finite trace as a list of samples, each the atoms that hold; an infinite one as its prefix and cycle."""
+    if trace is None:
+        return None
+    prefix, cycle = ([in_order(pair, letter) for letter in letters] for letters in (trace.prefix, trace.cycle))
+    return {"prefix": prefix, "cycle": cycle} if pair.a.semantics == "infinite" else prefix
+
+
+def _difference(difference: Difference) -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "what": difference.what,
+        "name": difference.name or None,
+        "a": _value(difference.a),
+        "b": _value(difference.b),
+    }
+    if difference.apart is not None:
+        first, second = difference.apart.values
+        found["sample"] = {"signals": dict(difference.apart.sample), "a": first, "b": second}
+    return found
+
+
+def _value(value: object) -> Any:
+    match value:
+        case Signal():
+            return {"type": value.type, "range": [value.low, value.high]}
+        case Param():
+            return {"type": value.type, "range": [value.low, value.high], "value": value.value}
+        case Atom():
+            return to_json(value.expression)
+        case tuple():
+            return list(value)
+        case _:
+            return value

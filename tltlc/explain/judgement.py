@@ -1,0 +1,36 @@
+"""When an episode ends and how it is judged, in sentences."""
+
+from __future__ import annotations
+
+from tltlc.automaton.fspa import Fspa
+
+
+def ending(fspa: Fspa) -> str:
+    """When an episode of the spec ends, and what is a success (semantics, section 4)."""
+    first, verdicts = fspa.states[0].verdict, {state.verdict for state in fspa.states}
+    if first in ("satisfied", "violated"):
+        return f"Every episode is a {'success' if first == 'satisfied' else 'failure'}."
+    breaks = "violated" in verdicts
+    if fspa.judge == "goal":
+        or_fails = ", and with failure as soon as it is broken for good" if breaks else ""
+        too = ", too" if breaks else ""
+        return (
+            f"An episode ends with success as soon as the spec is met{or_fails}. "
+            f"One that is over before the spec is met is a failure{too}."
+        )
+    until = "until the game ends it" if fspa.limit_steps is None else "to its limit"
+    met = "it is in a state with 0 to go" if fspa.semantics == "infinite" else "the spec is met"
+    early = [
+        *(["with success as soon as nothing can break the spec any more"] if "satisfied" in verdicts else []),
+        *(["with failure as soon as the spec is broken for good"] if breaks else []),
+    ]
+    sooner = f" It ends before that {', and '.join(early)}." if early else ""
+    return f"An episode goes on {until}, and is a success if {met} then.{sooner}"
+
+
+def limit_text(steps: int | None, seconds: float | None) -> str:
+    """The limit of an episode in words."""
+    if steps is None:
+        return "There is no limit."
+    time = "" if seconds is None else f", {seconds:g} s"
+    return f"The limit is {steps} step{'s' * (steps != 1)}{time}."

@@ -1,0 +1,29 @@
+"""What formatting changes, as a unified diff."""
+
+from __future__ import annotations
+
+from typing import Final
+
+_COLOURS: Final = {"---": "1", "+++": "1", "@@": "36", "-": "31", "+": "32"}
+
+
+def unified(name: str, before: str, after: str, *, color: bool = False) -> str:
+    """The diff between two texts of a file, empty where they are the same."""
+    from difflib import unified_diff
+
+    lines = unified_diff(_lines(before), _lines(after), name, name)
+    return "".join(_shown(line, color) for line in lines)
+
+
+def _lines(text: str) -> list[str]:
+    """The lines of a text with their ends."""
+    *whole, last = text.split("\n")
+    return [f"{line}\n" for line in whole] + ([last] if last else [])
+
+
+def _shown(line: str, color: bool) -> str:
+    text = line.removesuffix("\n")
+    if color:
+        colour = next((code for start, code in _COLOURS.items() if line.startswith(start)), None)
+        text = f"\x1b[{colour}m{text}\x1b[0m" if colour else text
+    return f"{text}\n" if line.endswith("\n") else f"{text}\n\\ No newline at end of file\n"

@@ -1,0 +1,201 @@
+"""What is wrong with a clause as a whole: an unknown keyword, one inside a formula, a limit in other words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.english import conditional
+from tltlc.grammar.lexer import BAD, END, Token
+from tltlc.grammar.place import INFIX, KEYWORDS, NOUNS, OPENING, Place, shown
+from tltlc.grammar.rewording import formula_start, formula_stop, operand, reworded, span_of, written
+from tltlc.grammar.tables import load
+from tltlc.grammar.words import CLAUSES, DECLARATIONS, JUDGE, OPERATORS, SYNONYMS, TEST_ITEMS, UNITS_ELSEWHERE, closest
+
+_OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
+"""The clauses that operators at the beginning of a line stand for."""
+
+
+def unknown_keyword(place: Place) -> Diagnostic | None:
+    """A piece that begins with no keyword of its kind."""
+    keywords, token = KEYWORDS.get(place.start), place.found
+    if place.stop.index or not keywords or place.at_end or token.type in OPENING.values():
+        return None
+    title = f"no {NOUNS[place.start]} begins with {shown(token)}"
+    if place.start == "declaration" and token.text in {**CLAUSES, **TEST_ITEMS}:
+        return _outside(place)
+    found = _no_clause(place, title) if place.start == "clause" else None
+    if found:
+        return found
+    near = SYNONYMS[place.start].get(token.text.lower())
+    if near is None and token.type == "NAME":
+        near = closest(token.text, tuple(keywords))
+    message = f"did you mean `{near}`?" if near else ""
+    listed = ", ".join(f"`{word}`" for word in keywords)
+    return place.error("TLT0107", title, None if near else f"one of {listed}", message)
+
+
+def clause_outside(place: Place) -> Diagnostic | None:
+    """A clause behind a whole declaration."""
+    whole = place.start == "declaration" and END in place.allowed
+    return _outside(place) if whole and place.found.text in CLAUSES and not place.open_brackets else None
+
+
+def clause_inside(place: Place) -> Diagnostic | None:
+    """``keep p implies reach q``, ``reach a then avoid b``, ``spec s = keep p``."""
+    word, before, at = place.found.text, place.before, place.stop.index
+    if word not in OPERATORS or before is None or not place.wants_operand or place.found.type == "NAME":
+        return None
+    title = f"{shown(place.found)} begins a clause, and stands in no formula"
+    start, stop = formula_start(place), formula_stop(place)
+    found = None
+    if before.type == "EQUAL" and place.tokens[0].type == "SPEC":
+        text = f"{{ {written(place, at, stop)} }}"
+        found = reworded(place, at - 1, stop, text, title, ": clauses stand in braces", "TLT0107")
+    elif before.type == "THEN" and word == "reach":
+        found = reworded(place, at - 1, at + 1, before.text, title, ", which says it already", "TLT0107")
+    elif before.type == "THEN":
+        found = reworded(place, at, stop, f"({operand(place, at, stop)})", title, code="TLT0107")
+    elif before.type == "OR" and start == 1 and not place.open_brackets and place.tokens[0].text in OPERATORS:
+        # Of clauses that are joined by `or`, each one is a formula of its own.
+        either, other = operand(place, start - 1, at - 1), operand(place, at, stop)
+        found = reworded(place, 0, stop, f"require ({either}) {before.text} ({other})", title, code="TLT0107")
+    found = found or reworded(place, at, stop, operand(place, at, stop), title, code="TLT0107")
+    inside = f"{OPERATORS[word]} a".strip()
+    return found or place.error("TLT0107", title, f"inside a formula, `{word} a` is `{inside}`")
+
+
+def synonym_inside(place: Place) -> Diagnostic | None:
+    """``reach a then never b``."""
+    before, at = place.before, place.stop.index - 1
+    meant = SYNONYMS["clause"].get(before.text) if before and before.type == "NAME" and place.wants_operator else None
+    if meant is None or at < 1:
+        return None
+    text = f"{OPERATORS[meant]} {operand(place, at + 1, formula_stop(place))}".strip()
+    text = f"({text})" if place.tokens[at - 1].type == "THEN" else text
+    return reworded(place, at, formula_stop(place), text, f"{shown(before)} is no operator")
+
+
+def joined_clauses(place: Place) -> Diagnostic | None:
+    """``keep a and keep b``."""
+    word, before = place.found.text, place.before
+    if place.start != "clause" or word not in CLAUSES or before is None or before.type != "AND" or place.open_brackets:
+        return None
+    span = span_of([before, place.found])
+    return place.error(
+        "TLT0101", f"clauses are not joined by {shown(before)}", f"write `{word}` alone: all clauses count", span=span
+    )
+
+
+def limit_in_other_words(place: Place) -> Diagnostic | None:
+    """``limit of 400 steps``, ``limit: 20 seconds``."""
+    return _limit(place, "a limit is a number of steps or a time") if place.tokens[0].type == "LIMIT" else None
+
+
+def judge(place: Place) -> Diagnostic | None:
+    """``judge goal``."""
+    if place.before is None or place.before.type != "JUDGE" or place.found.text not in JUDGE:
+        return None
+    return place.error("TLT0101", place.expectation(), f"write `at {place.found.text}`")
+
+
+def without_braces(place: Place) -> Diagnostic | None:
+    """``spec s: keep a``, ``spec s ( keep a )`` and ``spec s = { keep a }``."""
+    before, found = place.before, place.found
+    if before is None or place.tokens[0].type != "SPEC":
+        return None
+    title = "the clauses of a spec stand in braces"
+    if before.type == "EQUAL" and found.type == "LBRACE":
+        return place.error("TLT0101", f"{title}, without `=`", "write `{` alone", span=span_of([before, found]))
+    if "LBRACE" not in place.allowed or not (found.text in CLAUSES or found.text in (":", "(", "[")):
+        return None
+    return place.error("TLT0101", title, "put `{` before the first one and `}` behind the last")
+
+
+def sign_behind_keyword(place: Place) -> Diagnostic | None:
+    """``reach: a``."""
+    if place.start != "clause" or place.stop.index != 1 or place.found.text not in (":", "="):
+        return None
+    word = place.tokens[0].text
+    title = f"no {shown(place.found)} stands behind `{word}`"
+    return place.error("TLT0104", title, f"write `{word}` alone", span=span_of(place.tokens[:2]))
+
+
+def _outside(place: Place) -> Diagnostic:
+    word = place.found.text
+    if word in CLAUSES:
+        help_ = f"put it into one: `spec NAME {{ {word} … }}`"
+        return place.error("TLT0107", f"`{word}` stands only inside a spec", help_)
+    return place.error("TLT0107", f"`{word}` stands only inside a test", f"put it into one: {DECLARATIONS['test']}")
+
+
+def _no_clause(place: Place, title: str) -> Diagnostic | None:
+    """What was meant by a line of a spec that begins with no keyword."""
+    tokens, token = place.tokens, place.found
+    found = _limit(place, title)
+    if found:
+        return found
+    mark = next((index for index in (1, 2) if tokens[index:] and tokens[index].text in CLAUSES), None)
+    if mark and not any(_is_word(each) for each in tokens[:mark]):
+        word, signs = tokens[mark].text, written(place, 0, mark)
+        return place.error(
+            "TLT0107", f"no clause begins with `{signs}`", f"write `{word}` alone", span=span_of(tokens[: mark + 1])
+        )
+    if not any(_is_word(each) for each in tokens[:-1]):
+        return place.error("TLT0107", title, "leave it out: a clause begins with its keyword")
+    found = conditional(place)
+    if found:
+        return found
+    if token.type in _OF_OPERATOR:
+        # A clause has no bound of its own.
+        bound = len(tokens) > 2 and tokens[1].text in ("within", "for", "[")
+        meant = f"require {token.text}" if bound else _OF_OPERATOR[token.type]
+        return place.error("TLT0107", title, None, f"did you mean `{meant}`?")
+    if token.type in INFIX:
+        return place.error("TLT0107", title, f"it stands between two formulas, and there is none before `{token.text}`")
+    if token.text.lower() in ("allow", "permit", "may", "can"):
+        return place.error("TLT0107", title, "leave it out: whatever no clause forbids is allowed")
+    follows = place.source.text[tokens[-1].end :].partition("\n")[0].split()
+    if len(tokens) == 2 and follows and follows[0] in CLAUSES:
+        return place.error("TLT0107", title, f"leave it out: `{follows[0]}` says by itself that it counts")
+    if token.text.lower() in SYNONYMS["clause"]:
+        return None
+    text = written(place, 0, len(tokens) - 1)
+    return reworded(place, 0, len(tokens) - 1, f"reach {text}", title, f", or `keep {text}` for every step", "TLT0107")
+
+
+def _limit(place: Place, title: str) -> Diagnostic | None:
+    """A piece that is a number and its unit, and at most two words beside them, as the limit that it means."""
+    tokens = [token for token in place.tokens[:-1] if token.text not in (":", "=", ",")]
+    if len(tokens) > 4:
+        return None
+    numbers = [token for token in tokens if token.type == "NUMBER"]
+    units = [token for token in tokens if token.type == "UNIT" or token.text in load().units]
+    units = units or [token for token in tokens if token.text.lower() in UNITS_ELSEWHERE]
+    others = [token for token in tokens if token not in (*numbers, *units)]
+    if len(numbers) != 1 or len(units) > 1 or len(others) > 2 or not all(map(_is_word, others)):
+        return None
+    named = [token.type == "LIMIT" for token in others if token.text in CLAUSES]
+    if not all(named) or not (named or units):
+        return None
+    unit = UNITS_ELSEWHERE.get(units[0].text.lower(), units[0].text) if units else "steps"
+    code = "TLT0101" if place.stop.index else "TLT0107"
+    return reworded(place, 0, len(place.tokens) - 1, f"limit {numbers[0].text} {unit}", title, code=code)
+
+
+def _is_word(token: Token) -> bool:
+    return token.text[:1].isalpha() and token.type != BAD
+
+
+CLAUSE_RULES: Final[tuple[Callable[[Place], Diagnostic | None], ...]] = (
+    unknown_keyword,
+    without_braces,
+    clause_outside,
+    joined_clauses,
+    clause_inside,
+    synonym_inside,
+    limit_in_other_words,
+    sign_behind_keyword,
+    judge,
+)

@@ -1,0 +1,197 @@
+"""Commas, brackets, quotes and names that are written in another way elsewhere."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.lexer import END
+from tltlc.grammar.pieces import is_first_on_line
+from tltlc.grammar.place import INFIX, OPENING, Place, outside, touch
+from tltlc.grammar.rewording import formula_start, formula_stop, operand, reworded, span_of, written
+from tltlc.grammar.words import TEST_ITEMS
+
+NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
+_COMMA: Final = {
+    "reach": ("then", " for the one after the other; `and` asks for both at one step"),
+    "avoid": ("or", ""),
+}
+"""What joins the formulas of a clause, where it is not `and`."""
+
+
+def comma(place: Place) -> Diagnostic | None:
+    """``reach a, b``, ``keep a,`` and ``3,5 m``."""
+    before, at = place.before, place.stop.index
+    if place.found.type != "COMMA" or before is None or not place.wants_operator or place.open_brackets:
+        return None
+    after = place.tokens[at + 1]
+    if before.type == after.type == "NUMBER" and touch(before, place.found) and touch(place.found, after):
+        text = f"{before.text}.{after.text}"
+        return place.error(
+            "TLT0104", "a number has a point, no comma", f"write `{text}`", span=span_of([before, after])
+        )
+    if after.type == END:
+        return place.error("TLT0104", "`,` means nothing here", left_out(place))
+    word, reason = _COMMA.get(place.tokens[0].text, ("and", ""))
+    title = "`,` joins no formulas"
+    start, stop = formula_start(place), formula_stop(place)
+    found = reworded(place, start, stop, _joined(place, start, stop, word), title, reason, "TLT0104")
+    return found or place.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
+
+
+def _joined(place: Place, start: int, stop: int, word: str) -> str:
+    """Tokens with a word in place of each comma outside brackets, or with none where an operator follows anyway."""
+    text = ""
+    for end in [*(index for index in outside(place.tokens, start, stop) if place.tokens[index].type == "COMMA"), stop]:
+        part = written(place, start, end) if word == "then" else operand(place, start, end)
+        if start == end:
+            continue
+        if text and place.tokens[start].type in INFIX:
+            text += f" {written(place, start, end)}"
+        else:
+            text += f" {word} {part}" if text else part
+        start = end + 1
+    return text
+
+
+def missing_comma(place: Place) -> Diagnostic | None:
+    """``entity a b``, ``in [0 50]``, ``near(s1 close = 3 m)``."""
+    before, found = place.before, place.found
+    if before is None or "COMMA" not in place.allowed or found.type not in ("NAME", "NUMBER"):
+        return None
+    if is_first_on_line(place.source, place.tokens, place.stop.index):
+        return None
+    if before.text in TEST_ITEMS and place.tokens[place.stop.index - 2].type == "COMMA":
+        span = place.tokens[place.stop.index - 2].span
+        return place.error("TLT0104", "`,` means nothing here", left_out(place), span=span)
+    if before.type not in ("NAME", "NUMBER", "UNIT", "RPAR") or before.text in TEST_ITEMS:
+        return None
+    number = before.type == "UNIT"
+    text = f"{written(place, place.stop.index - 1 - number, place.stop.index)}, {found.text}"
+    span = span_of(place.tokens[place.stop.index - 1 - number : place.stop.index + 1])
+    return place.error("TLT0101", place.expectation(), f"write `{text}`", span=span)
+
+
+def argument(place: Place) -> Diagnostic | None:
+    """``near(s1, close: 3 m)`` and ``near(s1, close 3 m)``."""
+    before = place.before
+    if before is None or before.type != "NAME" or "EQUAL" not in place.allowed or not place.open_brackets:
+        return None
+    title = "an argument by name has `=` before its value"
+    if place.found.type == "COLON":
+        return place.error("TLT0101", title, f"write `{before.text} =`", span=span_of([before, place.found]))
+    if place.found.type != "NUMBER":
+        return None
+    return place.error(
+        "TLT0101", title, f"write `{before.text} = {place.found.text}`", span=span_of([before, place.found])
+    )
+
+
+def no_arguments(place: Place) -> Diagnostic | None:
+    """``alive()``."""
+    at = place.stop.index
+    kinds = [token.type for token in place.tokens[max(0, at - 2) : at + 1]]
+    if kinds != ["NAME", "LPAR", "RPAR"]:
+        return None
+    name = place.tokens[at - 2].text
+    title = "there is nothing in these brackets"
+    help_ = f"write `{name}` alone, or what it is said of between them"
+    return place.error("TLT0101", title, help_, span=span_of(place.tokens[at - 2 : at + 1]))
+
+
+def brackets(place: Place) -> Diagnostic | None:
+    """``near[s1]``, ``keep {seen}`` and ``in (0, 50)``: brackets of another kind."""
+    at, found = place.stop.index, place.found
+    called = place.wants_operator and place.before is not None and touch(place.before, found)
+    kind = "arguments" if called else "formulas" if place.wants_operand else "ranges"
+    opening, closing = "[]" if kind == "ranges" else "()"
+    end = next((index for index in outside(place.tokens, at, len(place.tokens)) if index > at), None)
+    if found.type not in OPENING or end is None or (kind == "ranges" and "LSQB" not in place.allowed):
+        return None
+    text = f"{place.tokens[at - 1].text if called else ''}{opening}{written(place, at + 1, end)}{closing}"
+    title = f"{kind} stand in `{opening} {closing}`, not in `{found.text} {place.tokens[end].text}`"
+    return reworded(place, at - called, end + 1, text, title)
+
+
+def quoted(place: Place) -> Diagnostic | None:
+    """``near("door")`` and ``reach "near(door)"``."""
+    text, at = place.found.text.strip('"'), place.stop.index
+    if place.found.type != "STRING" or not ("NAME" in place.allowed or place.wants_operand):
+        return None
+    name = text if NAME.fullmatch(text) else re.sub("[^A-Za-z0-9_]+", "_", text)
+    if not name.strip("_"):
+        help_ = "names are ASCII letters, digits and `_`, without quotes"
+        return place.error("TLT0101", place.expectation(), help_)
+    for written_ in dict.fromkeys((text, name)):
+        found = reworded(place, at, at + 1, written_, place.expectation(), ": no quotes around names and formulas")
+        if found:
+            return found
+    return place.error("TLT0101", place.expectation(), f"write `{name}`: no quotes around names and formulas")
+
+
+def no_name(place: Place) -> Diagnostic | None:
+    """``my-door``, where no difference can stand, and ``2nd_door``."""
+    before, found, after = place.before, place.found, place.tokens[place.stop.index + 1 :][:1]
+    if before is None or not after:
+        return None
+    joined = touch(found, after[0]) and (NAME.fullmatch(after[0].text) or after[0].type == "NUMBER")
+    rule = "names are ASCII letters, digits and `_`"
+    if found.type == "NUMBER" and "NUMBER" not in place.allowed and "NAME" in place.allowed:
+        text = f"_{found.text}{after[0].text}" if joined else f"{before.text}_{found.text}"
+        span, rule = span_of([found, after[0]] if joined else [found]), "a name begins with a letter or `_`"
+    elif found.text == "-" and before.type == "NAME" and touch(before, found) and joined:
+        span, text = span_of([before, after[0]]), f"{before.text}_{after[0].text}"
+    else:
+        return None
+    return place.error("TLT0104", f"`{place.source.slice(span)}` is no name", f"{rule}: write `{text}`", span=span)
+
+
+def value_of_signal(place: Place) -> Diagnostic | None:
+    """``signal seen: bool = false``."""
+    if place.tokens[0].type != "SIGNAL" or place.found.type != "EQUAL" or place.open_brackets or place.stop.index < 3:
+        return None
+    return place.error("TLT0101", "a signal has no value here", "leave it out: the game supplies it at each step")
+
+
+def type_alone(place: Place) -> Diagnostic | None:
+    """``signal at(entity): bool``."""
+    if place.found.type != "ENTITY" or "NAME" not in place.allowed or not place.open_brackets:
+        return None
+    return place.error("TLT0101", "a parameter has a name", "write `x: entity`")
+
+
+def several(place: Place) -> Diagnostic | None:
+    """``signal a, b: bool``."""
+    word = place.tokens[0].text
+    if place.found.type != "COMMA" or place.start != "declaration" or place.stop.index != 2:
+        return None
+    return place.error("TLT0101", place.expectation(), f"each one has a `{word}` of its own; {place.form()}")
+
+
+def range_word(place: Place) -> Diagnostic | None:
+    """``signal coins [0, 50]``."""
+    if place.found.type != "LSQB" or "IN" not in place.allowed or place.before is None or place.before.text == "in":
+        return None
+    return place.error("TLT0101", place.expectation(), "write `in [`")
+
+
+def left_out(place: Place) -> str:
+    """The help for a sign that ends lines elsewhere."""
+    between = {"clause": "clauses", "declaration": "declarations"}.get(place.start)
+    return "leave it out" + (f": nothing is needed between {between}" if between else "")
+
+
+PUNCTUATION: Final[tuple[Callable[[Place], Diagnostic | None], ...]] = (
+    comma,
+    argument,
+    no_arguments,
+    quoted,
+    no_name,
+    value_of_signal,
+    type_alone,
+    several,
+    range_word,
+    brackets,
+)

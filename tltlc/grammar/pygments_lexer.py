@@ -1,0 +1,117 @@
+"""The language for Pygments, which colours it in documentation: ``pygmentize -l tltl FILE``.
+
+The tokens are those of :mod:`tltlc.grammar.lexer`; each terminal of the grammar has its class here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Any, ClassVar, Final, TypeAlias
+
+from pygments import token as pygments
+from pygments.lexer import Lexer
+
+from tltlc.grammar.lexer import Token, tokenize
+from tltlc.grammar.tables import load
+
+__all__ = ["TltlLexer"]
+
+Class: TypeAlias = Any
+"""A class of Pygments, which has no types."""
+
+_DECLARATIONS: Final = "IMPORT SIGNAL ENTITY PARAM CLOCK PREDICATE LET EXCLUSIVE SPEC TEST".split()
+_CLAUSES: Final = "REACH KEEP AVOID REQUIRE LEVEL LIMIT JUDGE SEMANTICS TAG".split()
+_SMALL: Final = "AS IN AT FOR WITHIN AFTER STEP EXPECT TIMES ALL ANY WHEN OTHERWISE".split()
+_LOGIC: Final = "NOT AND OR IMPLIES IFF THEN EVENTUALLY ALWAYS NEXT WEAK_NEXT".split()
+_UNTIL: Final = "UNTIL WEAK_UNTIL RELEASE STRONG_RELEASE".split()
+_ARITHMETIC: Final = "LESS AT_MOST MORE AT_LEAST PLUS MINUS TIMES_SIGN DIVIDE POWER".split()
+_BRACKETS: Final = "LPAR RPAR LBRACE RBRACE LSQB RSQB COLON COMMA EQUAL".split()
+
+CLASSES: Final[dict[str, Class]] = {
+    **dict.fromkeys(_DECLARATIONS, pygments.Keyword.Declaration),
+    **dict.fromkeys([*_CLAUSES, *_SMALL], pygments.Keyword),
+    **dict.fromkeys([*_LOGIC, *_UNTIL, *_ARITHMETIC], pygments.Operator),
+    **dict.fromkeys(_BRACKETS, pygments.Punctuation),
+    "TRUE": pygments.Keyword.Constant,
+    "FALSE": pygments.Keyword.Constant,
+    "NAME": pygments.Name,
+    "NUMBER": pygments.Number,
+    "UNIT": pygments.Keyword.Type,
+    "STRING": pygments.String,
+    "COMMENT": pygments.Comment.Single,
+    "BAD": pygments.Error,
+}
+"""The class of each terminal; words among the operators, and names, are told apart further."""
+
+_HEADS: Final = frozenset({"SIGNAL", "PARAM", "PREDICATE", "LET"})
+"""In the head of these, a colon stands before a type."""
+_CHOOSING: Final = frozenset({"EXPECT", "SEMANTICS", "AT"})
+"""A name behind these is one of a few: a verdict, `infinite`, `goal`."""
+
+# A word that is not reserved is a keyword where one of these stands before it, or behind it.
+_KEYWORD_AFTER: Final = {"AT": {"JUDGE"}, "FOR": {"STRING"}, "TIMES": {"NUMBER"}, "AS": {"NAME", "STRING"}}
+_KEYWORD_BEFORE: Final = {"FOR": {"NUMBER"}, "WITHIN": {"NUMBER"}, "AFTER": {"NUMBER"}, "IN": {"LPAR", "LSQB"}}
+
+
+class TltlLexer(Lexer):  # type: ignore[misc]
+    """Specifications in truncated linear temporal logic."""
+
+    name = "TLTL"
+    aliases: ClassVar = ["tltl"]
+    filenames: ClassVar = ["*.tltl"]
+    mimetypes: ClassVar = ["text/x-tltl"]
+
+    def get_tokens_unprocessed(self, text: str) -> Iterator[tuple[int, Class, str]]:
+        """Offset, class and text of each piece, without a gap."""
+        lexed = tokenize(text)
+        pieces = [*_classified(lexed.tokens)]
+        for comment in lexed.comments:
+            kind = pygments.String.Doc if comment.text.startswith("///") else CLASSES["COMMENT"]
+            pieces.append((comment.span.start, kind, comment.text))
+        end = 0
+        for start, kind, piece in sorted(pieces):
+            if start > end:
+                yield end, pygments.Whitespace, text[end:start]
+            yield start, kind, piece
+            end = start + len(piece)
+        # Beyond the most tokens that are read, a text has no colours.
+        if end < len(text):
+            yield end, pygments.Text, text[end:]
+
+
+def _classified(tokens: Sequence[Token]) -> Iterator[tuple[int, Class, str]]:
+    """The tokens with their classes, which depend on what stands around them."""
+    soft = load().soft
+    declaration, depth, in_head = "", 0, False
+    before = ""
+    for token, following in pairwise(tokens):
+        kind = token.type
+        if kind == "NAME" and _is_keyword(wanted := soft.get(token.text, ""), before, following.type, declaration):
+            kind = wanted
+        if kind in _DECLARATIONS and before != "COLON":
+            declaration, depth, in_head = kind, 0, kind in _HEADS
+        depth += (kind in ("LPAR", "LSQB")) - (kind in ("RPAR", "RSQB"))
+        in_head &= not (kind == "EQUAL" and depth == 0)
+        is_type = before == "COLON" and in_head and kind in ("NAME", "ENTITY")
+        yield token.start, pygments.Keyword.Type if is_type else _class(token.text, kind, before, following), token.text
+        before = kind
+
+
+def _is_keyword(soft: str, before: str, after: str, declaration: str) -> bool:
+    if soft in ("STEP", "EXPECT"):
+        return declaration == "TEST"
+    return before in _KEYWORD_AFTER.get(soft, ()) or after in _KEYWORD_BEFORE.get(soft, ())
+
+
+def _class(text: str, kind: str, before: str, following: Token) -> Class:
+    found = CLASSES[kind]
+    if found is pygments.Operator and text.isascii() and text[0].isalpha():
+        return pygments.Operator.Word
+    if kind != "NAME":
+        return found
+    if before in _CHOOSING:
+        return pygments.Name.Constant
+    if before == "SPEC":
+        return pygments.Name.Class
+    return pygments.Name.Function if before in _HEADS or following.type == "LPAR" else found

@@ -1,0 +1,48 @@
+"""The spans that go where a declaration, a clause or an item of a list is removed, so that no odd gap is left."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tltlc.grammar.tree import Comment
+from tltlc.source import SourceFile, Span
+
+
+def without(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:
+    """The span of what stands there, with its documentation and the end of its line where nothing else is on it."""
+    text = source.text
+    start, end = _documented(source, span.start, comments), span.end
+    line = text.rfind("\n", 0, start) + 1
+    after = text.find("\n", end)
+    after = len(text) if after < 0 else after
+    if text[end:after].strip() and not _is_comment(text, end, after):
+        # Something else follows on the line: it moves up.
+        return Span(start, end + len(text[end:after]) - len(text[end:after].lstrip()))
+    if text[line:start].strip():
+        return Span(line + len(text[line:start].rstrip()), end if text[end:after].strip() else after)
+    end = min(after + 1, len(text))
+    below = text.find("\n", end) + 1
+    if below and not text[end:below].strip() and not text[text.rfind("\n", 0, max(0, line - 1)) + 1 : line].strip():
+        # Of the empty lines above and below, one is enough.
+        end = below
+    return Span(line, end)
+
+
+def item(spans: Sequence[Span], index: int) -> Span:
+    """The span of an item of a list, of two at least, with one of its commas."""
+    if index:
+        return Span(spans[index - 1].end, spans[index].end)
+    return Span(spans[0].start, spans[1].start)
+
+
+def _is_comment(text: str, start: int, end: int) -> bool:
+    return text[start:end].lstrip().startswith("//")
+
+
+def _documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
+    """Where the documentation right before a place begins, the place itself where there is none."""
+    for comment in reversed(comments):
+        between = source.text[comment.span.end : start]
+        if comment.span.end <= start and comment.text.startswith("///") and not between.strip():
+            start = comment.span.start
+    return start

@@ -1,0 +1,75 @@
+"""TLT0413: a clause that the others imply."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tltlc.automaton.contradiction import contradiction
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.lint.relations import relations
+from tltlc.lint.rule import Remark, Rule
+from tltlc.lint.view import SpecView, View
+from tltlc.logic.formula import Formula, not_
+from tltlc.record import replace
+from tltlc.resolve.spec import Part, Spec
+
+_MOST_PARTS = 24
+"""With more clauses than this they are not compared: each costs an automaton of the others."""
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each clause that the others of its spec imply, and which of them do."""
+    for spec in view.specs:
+        # Of what stands twice another rule speaks.
+        first: dict[Formula, Part] = {}
+        for part in spec.spec.parts:
+            first.setdefault(part.formula, part)
+        parts = list(first.values())
+        if 1 < len(parts) <= _MOST_PARTS and spec.fspa.states[0].verdict != "violated":
+            yield from _remarks(spec, parts)
+
+
+def _remarks(spec: SpecView, parts: Sequence[Part]) -> Iterator[Remark]:
+    left = list(parts)
+    # The later of two that imply each other goes, and nothing is implied by what has gone.
+    for part in reversed(parts):
+        others = [other for other in left if other is not part]
+        reasons = _reasons(part, others, _known(part, spec), spec)
+        if reasons:
+            left = others
+            labels = (
+                Label(part.source, part.span, "nothing is lost without this"),
+                *(Label(other.source, other.span, "because of this") for other in reasons),
+            )
+            title = f"{'another clause asks' if len(reasons) == 1 else 'other clauses ask'} for this already"
+            yield Remark(title, labels, "leave it out, or say what more it should ask for")
+
+
+def _known(part: Part, spec: SpecView) -> list[Part]:
+    """What is known of the atoms of a part and of others, by the ranges of what they compare."""
+    own = set(part.formula.atoms())
+    return [each for each in relations(spec, spec.spec.formula.atoms()) if own.intersection(each.formula.atoms())]
+
+
+def _reasons(part: Part, others: Sequence[Part], known: Sequence[Part], spec: SpecView) -> tuple[Part, ...]:
+    """Of the other parts some that imply a part together, none of which could be left out; none where they do not."""
+    if not _share_atoms(part, others, known, spec.spec):
+        return ()
+    negated = replace(part, formula=not_(part.formula))
+    together = (*others, *known, negated)
+    if not spec.decision(together, spec.spec):
+        return ()
+    needed = contradiction(replace(spec.spec, parts=together), spec.decision)
+    return tuple(each for each in needed if each in others)
+
+
+def _share_atoms(part: Part, others: Sequence[Part], known: Sequence[Part], spec: Spec) -> bool:
+    """Whether the others speak of an atom of the part, or of one that excludes it: if not, they say nothing of it."""
+    own = set(part.formula.atoms()).union(*(each.formula.atoms() for each in known))
+    for group in spec.exclusive:
+        names = {spec.atoms[index].name for index in group}
+        own |= names if own & names else set()
+    return any(own.intersection(other.formula.atoms()) for other in others)
+
+
+RULE = Rule("TLT0413", "warning", check)

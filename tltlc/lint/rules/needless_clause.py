@@ -1,0 +1,36 @@
+"""TLT0430: a clause that every trace satisfies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.lint.relations import relations
+from tltlc.lint.rule import Remark, Rule
+from tltlc.lint.view import SpecView, View
+from tltlc.logic.formula import not_
+from tltlc.record import replace
+from tltlc.resolve.spec import Part
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each clause that no trace breaks, whatever the other clauses ask."""
+    for spec in view.specs:
+        # Where all of it is so, the compiler says it.
+        if spec.fspa.states[0].verdict == "satisfied":
+            continue
+        for part in spec.spec.parts:
+            if _is_always_met(part, spec):
+                label = Label(part.source, part.span, "every trace satisfies this")
+                yield Remark("this clause asks nothing of the game", (label,), _WAY_OUT)
+
+
+def _is_always_met(part: Part, spec: SpecView) -> bool:
+    negated = replace(part, formula=not_(part.formula))
+    return spec.decision((negated, *relations(spec, part.formula.atoms())), spec.spec)
+
+
+_WAY_OUT: Final = "leave it out, or say what it is to ask for: was `and` meant where `or` stands, or the other way?"
+
+RULE = Rule("TLT0430", "warning", check, supersedes=("TLT0429",))

@@ -1,0 +1,62 @@
+"""TLT0432: `p implies q` where q never holds at the step of p, so that p is forbidden."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tltlc.automaton.contradiction import unsatisfiable
+from tltlc.diagnostics.diagnostic import Label
+from tltlc.grammar.tree import Binary, Unary
+from tltlc.lint.relations import relations
+from tltlc.lint.rule import Remark, Rule
+from tltlc.lint.view import Expression, SpecView, View, operand
+from tltlc.logic.formula import Formula, and_
+from tltlc.logic.phrases import is_state
+from tltlc.resolve.spec import Part
+
+
+def check(view: View) -> Iterator[Remark]:
+    """A remark for each implication of a rule whose two sides never hold at one step, and each of them does at some."""
+    for spec in view.specs:
+        for _, clause in spec.clauses("keep", "require"):
+            for part in _implications(clause):
+                if _never_together(part, spec):
+                    yield _remark(part)
+
+
+def _implications(value: Expression) -> Iterator[Expression]:
+    """Those that are to hold as rules: not as a goal, negated or in a condition."""
+    waiting = [value]
+    while waiting:
+        part = waiting.pop()
+        if isinstance(part.tree, (Unary, Binary)) and part.tree.op in ("not", "F", "then"):
+            continue
+        found = part.children()
+        if isinstance(part.tree, Binary) and part.tree.op == "implies":
+            yield part
+            found = found[1:]
+        waiting += reversed(found)
+
+
+def _never_together(implication: Expression, spec: SpecView) -> bool:
+    formula = implication.formula()
+    if formula is None or formula.op != "implies" or not is_state(formula):
+        return False
+    known = relations(spec, formula.atoms())
+
+    def can_be(state: Formula) -> bool:
+        return not unsatisfiable((Part(state, implication.source, implication.tree.span), *known), spec.spec)
+
+    condition, result = formula.args
+    return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
+
+
+def _remark(implication: Expression) -> Remark:
+    assert isinstance(implication.tree, Binary)
+    condition, result = implication.at(implication.tree.left), implication.at(implication.tree.right)
+    label = Label(implication.source, implication.tree.span, f"so this only forbids `{condition.text}`")
+    way_out = f"where it comes later, write `{operand(condition)} implies eventually {operand(result)}`"
+    return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), way_out)
+
+
+RULE = Rule("TLT0432", "warning", check, supersedes=("TLT0410",))

@@ -1,0 +1,52 @@
+"""Ways out that can be taken at once, as actions of the protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from lsprotocol import types
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.lint.rule import Finding
+from tltlc.lint.ways_out import of_findings, of_messages
+from tltlc.lsp.document import Document
+from tltlc.lsp.edits import text_edit
+from tltlc.lsp.remarks import remark
+from tltlc.source import SourceFile, Span
+
+
+def actions(
+    document: Document,
+    span: Span,
+    findings: tuple[Finding, ...],
+    encoding: str,
+    uri_of: Callable[[str], str],
+    edit_of: Callable[[dict[str, list[types.TextEdit]]], types.WorkspaceEdit],
+) -> list[types.CodeAction]:
+    """What can be done about what is said of a place."""
+    uri = uri_of(document.source.name)
+
+    def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
+        if source == document.source:
+            return document.said
+        return Document(source, document.project, {**document.texts, source.name: source.text}).said
+
+    near = [each for each in findings if _touches(each.diagnostic, document, span)]
+    told = [each for each in document.said if _touches(each, document, span)]
+    return [
+        types.CodeAction(
+            way_out.title,
+            kind=types.CodeActionKind.QuickFix,
+            diagnostics=[remark(way_out.diagnostic, document, encoding, uri_of)],
+            edit=edit_of({uri: [text_edit(document.source, edit, encoding) for edit in way_out.edits]}),
+            is_preferred=True,
+        )
+        for way_out in (*of_findings(near), *of_messages(told, document.module, errors))
+    ]
+
+
+def _touches(diagnostic: Diagnostic, document: Document, span: Span) -> bool:
+    return any(
+        label.source.name == document.source.name and label.span.start <= span.end and span.start <= label.span.end
+        for label in diagnostic.labels
+    )

@@ -1,0 +1,19 @@
+"""The layout of ``tltlc fmt`` for a document."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.fmt import format_source
+from tltlc.lsp.document import Document
+from tltlc.lsp.edits import difference, text_edit
+
+
+def formatting(document: Document, encoding: str) -> list[types.TextEdit] | None:
+    """The edit that lays a document out in the style of its project; None where its syntax is broken."""
+    try:
+        after = format_source(document.source, document.project.formatting)
+    except TltlError:
+        return None
+    return [text_edit(document.source, edit, encoding) for edit in difference(document.source, after)]

@@ -1,0 +1,34 @@
+"""Documents of an editor, by their URIs, and files, by the names that messages have for them."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from pygls import uris
+
+from tltlc.resolve.imports import STANDARD_LIBRARY_NAME, standard_library
+
+
+def name_of(uri: str) -> str:
+    """What a document is called: its absolute path, or ``<URI>`` where it is no file."""
+    path = uris.to_fs_path(uri) if uri.startswith("file:") else None
+    return os.path.abspath(path) if path else f"<{uri}>"  # noqa: PTH100 (keeps links as they are)
+
+
+def path_of(name: str) -> str:
+    """The absolute path of the file that messages call so; a document that is no file keeps its name."""
+    if name.startswith(STANDARD_LIBRARY_NAME):
+        return str(standard_library().absolute() / name[len(STANDARD_LIBRARY_NAME) + 1 :])
+    return name if name.startswith("<") else os.path.abspath(name)  # noqa: PTH100
+
+
+def uri_of(name: str) -> str:
+    """The URI of what messages call so."""
+    path = path_of(name)
+    return path[1:-1] if path.startswith("<") else uris.from_fs_path(path) or ""
+
+
+def is_below(path: str, folder: str) -> bool:
+    """Whether a path lies in a folder."""
+    return Path(path).is_relative_to(folder)

@@ -1,0 +1,187 @@
+"""Where else a name stands, in all files of the workspace, and giving it another one."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.grammar.parser import parse
+from tltlc.grammar.tables import load
+from tltlc.lint.rule import Edit
+from tltlc.lsp.document import Document
+from tltlc.lsp.edits import applied
+from tltlc.lsp.names import MERGED, Occurrence, Symbol
+from tltlc.lsp.paths import path_of
+from tltlc.lsp.workspace import Workspace
+from tltlc.resolve.scope import FUNCTIONS
+from tltlc.source import SourceFile
+
+_LOCAL: Final = ("parameter", "variable")
+_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*\Z")
+_PLAIN: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+
+Found = list[tuple[Document, list[Occurrence]]]
+"""Documents, each with places in it."""
+
+
+def references(symbol: Symbol, workspace: Workspace) -> Found:
+    """Every place that stands for what a symbol does, file by file."""
+    documents = _documents(symbol, workspace)
+    programs = _programs(symbol, documents)
+    found = []
+    for document in documents:
+        if path_of(document.source.name) in programs:
+            places = [each for each in document.names if each.symbol.is_same(symbol)]
+            if places:
+                found.append((document, places))
+    return found
+
+
+def rename(symbol: Symbol, name: str, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
+    """The edits that give what a symbol stands for another name, everywhere.
+
+    Errors: TLT0770 where it is declared outside of the workspace, TLT0771 where the new name cannot be used.
+    """
+    check_renamable(symbol, workspace)
+    if name == symbol.name:
+        return []
+    _check_form(symbol, name)
+    found = references(symbol, workspace)
+    for document, _ in found:
+        if path_of(document.source.name) not in workspace.texts() and not workspace.is_own(document.source.name):
+            raise _elsewhere(symbol, document.source.name)
+    changed = [(document, [Edit(each.span, name) for each in _distinct(places)]) for document, places in found]
+    _check_free(symbol, name, changed, workspace)
+    return changed
+
+
+def check_renamable(symbol: Symbol, workspace: Workspace) -> None:
+    """Error TLT0770 where a name is not ours to change."""
+    if not workspace.is_own(symbol.source.name):
+        raise _elsewhere(symbol, symbol.source.name)
+    if symbol.kind in MERGED:
+        for document in _documents(symbol, workspace):
+            for loaded in document.resolution.modules:
+                source = loaded.module.source
+                if workspace.is_own(source.name) or not _declares(document, symbol, source):
+                    continue
+                raise _elsewhere(symbol, source.name)
+
+
+def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
+    """Whether a library declares the same signal, param or entity, in a program that has the symbol's file."""
+    if path_of(symbol.source.name) not in document.reads:
+        return False
+    modules = document.resolution.modules
+    return any(
+        (type(each), getattr(each, "name", None)) == (type(symbol.declaration), symbol.name)
+        for loaded in modules
+        if loaded.module.source is source
+        for each in loaded.module.declarations
+    )
+
+
+def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
+    """The documents in which a symbol may stand, its own first."""
+    own = workspace.named(path_of(symbol.source.name))
+    # What is local to a formula, and specs, stand in one file.
+    others = [] if symbol.kind in ("variable", "spec") else [*workspace.all()]
+    if symbol.kind not in MERGED:
+        # Which files are parts of one program with it is seen only in those that say its name.
+        others = [each for each in others if symbol.name in each.source.text]
+    found = {each.source.name: each for each in others}
+    if own is not None:
+        found = {own.source.name: own, **found}
+    return list(found.values())
+
+
+def _programs(symbol: Symbol, documents: list[Document]) -> set[str]:
+    """The paths of the files that are parts of one program with the symbol's file."""
+    known = {path_of(symbol.source.name)}
+    if symbol.kind not in MERGED:
+        return known | {path_of(each.source.name) for each in documents if each.reads & known}
+    while True:
+        # A signal that two files declare is one where a third one imports both.
+        more = set().union(*(each.reads for each in documents if each.reads & known))
+        if more <= known:
+            return known
+        known |= more
+
+
+def _distinct(places: list[Occurrence]) -> list[Occurrence]:
+    return list({each.span: each for each in places}.values())
+
+
+# --- refusals -----------------------------------------------------------------------------------
+
+
+def _check_form(symbol: Symbol, name: str) -> None:
+    pattern = _NAME if symbol.kind in ("signal", "param", "predicate", "let", "entity") else _PLAIN
+    if not pattern.match(name):
+        raise _refused(f"`{name}` is no name", "a name has letters, digits and `_`, and begins with no digit")
+    if any(part in load().words for part in name.split(".")[:1]) and name in load().words:
+        raise _refused(f"`{name}` is a reserved word", f"choose another one, e.g. `{name}_`")
+    if name in FUNCTIONS:
+        raise _refused(f"`{name}` is a function of the language", f"choose another one, e.g. `{name}_of`")
+
+
+def _check_free(symbol: Symbol, name: str, changed: list[tuple[Document, list[Edit]]], workspace: Workspace) -> None:
+    """Error TLT0771 where the new name would stand for something else, or something else for it."""
+    texts = workspace.texts()
+    for document, edits in changed:
+        texts[path_of(document.source.name)] = applied(document.source.text, edits)
+    for document, edits in changed:
+        after = Document(
+            SourceFile(document.source.name, texts[path_of(document.source.name)]), document.project, texts
+        )
+        if _shape(document, edits) != _shape(after, edits, shift=True) or _errors(after) > _errors(document):
+            where = document.source.name
+            raise _refused(f"`{name}` means something else in `{where}` already", "choose a name that is not taken")
+    importing = [each for each in workspace.all() if symbol.kind not in _LOCAL]
+    for document in importing:
+        if any(path_of(other.source.name) in document.reads for other, _ in changed) and not any(
+            other.source.name == document.source.name for other, _ in changed
+        ):
+            after = Document(document.source, document.project, texts)
+            if _errors(after) > _errors(document):
+                title = f"`{name}` means something else in `{document.source.name}` already"
+                raise _refused(title, "choose a name that is not taken")
+
+
+def _shape(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
+    """Where the names of a text lead to, in terms of the text before an edit: the same before and after a rename."""
+    own = document.source.name
+    found = []
+    for each in document.names:
+        symbol, moved = each.symbol, edits if shift else []
+        # Another file may be edited as well: what counts there is the kind alone.
+        target = _before(symbol.span.start, moved) if symbol.source.name == own else 0
+        found.append((_before(each.span.start, moved), f"{symbol.kind} {symbol.source.name}", target))
+    return found
+
+
+def _before(offset: int, edits: list[Edit]) -> int:
+    """Where the character at an offset stood before the edits."""
+    moved = 0
+    for edit in sorted(edits, key=lambda each: each.span.start):
+        if edit.span.start + moved >= offset:
+            break
+        moved += len(edit.text) - (edit.span.end - edit.span.start)
+    return offset - moved
+
+
+def _errors(document: Document) -> int:
+    _, syntax = parse(document.source)
+    return sum(each.severity == "error" for each in (*syntax, *document.resolution.diagnostics))
+
+
+def _elsewhere(symbol: Symbol, name: str) -> TltlError:
+    title = f"`{symbol.name}` is declared in `{name}`, outside of this workspace"
+    own = "a `let` of yours may give it another name"
+    way_out = own if symbol.kind in ("predicate", "let") else "change it there, in an editor that shows its folder"
+    return TltlError([Diagnostic("TLT0770", title, help=way_out)])
+
+
+def _refused(title: str, way_out: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0771", title, help=way_out)])

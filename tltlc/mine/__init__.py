@@ -1,0 +1,1 @@
+"""Specs proposed from recorded traces: templates and sequences, counted by bit masks, confirmed by automata."""

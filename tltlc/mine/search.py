@@ -1,0 +1,88 @@
+"""The search: templates, sequences, conjunctions; it can be left at any moment with what is best so far."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import ceil
+
+from tltlc.mine.bits import Bits, Verdicts, count
+from tltlc.mine.clause import Clause, Conjunction, accepted_by, atoms_of
+from tltlc.mine.conjunctions import best, conjunctions
+from tltlc.mine.evidence import Evidence
+from tltlc.mine.measure import figures
+from tltlc.mine.sequences import sequences
+from tltlc.mine.templates import clauses
+from tltlc.record import record
+
+
+@record
+class Options:
+    """``min_support``: the least share of the traces that a proposal is to be satisfied by, in (0, 1].
+
+    ``max_length``: how many atoms a proposal may name, a bound counting as one.
+    """
+
+    min_support: float = 1.0
+    max_length: int = 12
+
+
+class Search:
+    """Looks for specs that the traces satisfy and the counterexamples violate."""
+
+    def __init__(self, evidence: Evidence, options: Options) -> None:
+        self.bits = Bits(evidence)
+        self._backwards = Bits(evidence, backwards=True)
+        # Atoms that come and go by chance do so in some order, which made-up counterexamples are sure to break.
+        self._again = not evidence.made_up
+        # Rounding must not ask for one trace more than the share says.
+        self._least = max(1, ceil(round(options.min_support * len(evidence.traces), 9)))
+        self._most_atoms = options.max_length
+        self._found: dict[Conjunction, Verdicts] = {}
+        self.tried = 0
+
+    def run(self) -> Iterator[str]:
+        """Search on; what is being done, many times a second, so that whoever asks may leave off."""
+        events = self._events()
+        for number, each in enumerate(clauses(self.bits, self._backwards, events, self._least)):
+            if each.atoms <= self._most_atoms:
+                self._add(each)
+            if number % 200 == 0:
+                yield "templates"
+        for portion in sequences(self.bits, events, self._least, self._most_atoms, again=self._again):
+            for each in portion:
+                self._add(each)
+            yield "sequences"
+        singles = [conjunction[0] for conjunction, _ in best(self._found.items(), self.bits)]
+        for wholes in conjunctions(singles, self.bits, self._least, self._most_atoms):
+            self.tried += len(wholes)
+            for conjunction in wholes:
+                self._found[conjunction] = accepted_by(conjunction, self.bits)
+            yield "conjunctions"
+
+    def ranked(self) -> list[Conjunction]:
+        """What was found so far, the best first: each is the best of all that are not longer.
+
+        What no counterexample violates is left out, and what is longer than something better.
+        """
+        found: list[tuple[float, int, Conjunction]] = []
+        for conjunction, accepts in best(self._found.items(), self.bits):
+            size = atoms_of(conjunction)
+            said = figures(self.bits, accepts)
+            place = (said.score(size), size)
+            if said.rejected and (not found or size < found[-1][1] or place == found[-1][:2]):
+                found.append((*place, conjunction))
+        return [conjunction for _, _, conjunction in found]
+
+    def _events(self) -> list[str]:
+        """The atoms that do not hold throughout as many traces as have to satisfy a proposal."""
+        bits = self.bits
+        return [
+            name
+            for name, samples in bits.holds.items()
+            if count(bits.none(bits.complement(samples)) & bits.traces) < self._least
+        ]
+
+    def _add(self, each: Clause) -> None:
+        self.tried += 1
+        if count(each.accepts & self.bits.traces) >= self._least and self.bits.counterexamples & ~each.accepts:
+            self._found[(each,)] = each.accepts

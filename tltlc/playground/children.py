@@ -1,0 +1,123 @@
+"""Children that answer requests, each one of them, and are ended where that takes too long or nobody waits any more."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from threading import BoundedSemaphore, Lock
+from time import monotonic
+from typing import Final
+
+from tltlc.playground.child import NO_REQUEST
+from tltlc.playground.protocol import TOO_LARGE, gave_up
+
+LIMIT_S: Final = 10.0
+MOST_AT_ONCE: Final = 4
+_LOOK_S: Final = 0.1
+"""Between two looks at whether somebody still waits."""
+
+
+class AbandonedError(Exception):
+    """Nobody waits for the answer any more."""
+
+
+class Children:
+    """Answers requests, at most :data:`MOST_AT_ONCE` at a time; one child is always loaded already."""
+
+    def __init__(self, limit_s: float = LIMIT_S) -> None:
+        self._limit_s = limit_s
+        self._room = BoundedSemaphore(MOST_AT_ONCE)
+        self._lock = Lock()
+        self._ready: subprocess.Popen[bytes] | None = _started()
+        self._running: set[subprocess.Popen[bytes]] = set()
+        self._closed = False
+
+    def answer(self, request: bytes, is_abandoned: Callable[[], bool] = lambda: False) -> str | None:
+        """The answer of :func:`tltlc.playground.protocol.answer`, or None for what is no request.
+
+        Raises AbandonedError as soon as nobody waits any more.
+        """
+        if not request:
+            return None
+        while not self._room.acquire(timeout=_LOOK_S):
+            _check(is_abandoned)
+        try:
+            child = self._taken()
+            try:
+                said = _answer(child, request, self._limit_s, is_abandoned)
+            finally:
+                self._put_back(child)
+        except subprocess.TimeoutExpired:
+            return gave_up(f"this takes longer than {self._limit_s:g} s, and was given up")
+        finally:
+            self._room.release()
+        if child.returncode == NO_REQUEST:
+            return None
+        # What the system ended, it ended for want of memory.
+        return gave_up(TOO_LARGE) if child.returncode else said.decode("utf-8")
+
+    def close(self) -> None:
+        """End the child that waits, and those that work: their requests are abandoned."""
+        with self._lock:
+            self._closed = True
+            for child in self._running:
+                child.kill()
+            if self._ready is not None:
+                _end(self._ready)
+                self._ready = None
+
+    def _taken(self) -> subprocess.Popen[bytes]:
+        with self._lock:
+            if self._closed:
+                raise AbandonedError
+            child, self._ready = self._ready or _started(), None
+            self._running.add(child)
+            return child
+
+    def _put_back(self, child: subprocess.Popen[bytes]) -> None:
+        """End a child, and have another one ready."""
+        _end(child)
+        with self._lock:
+            self._running.discard(child)
+            if not self._closed:
+                self._ready = self._ready or _started()
+
+
+def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_abandoned: Callable[[], bool]) -> bytes:
+    """What a child says; raises AbandonedError, and TimeoutExpired after so many seconds."""
+    end = monotonic() + limit_s
+    asked: bytes | None = request
+    while True:
+        _check(is_abandoned)
+        try:
+            return child.communicate(asked, timeout=min(_LOOK_S, limit_s))[0]
+        except subprocess.TimeoutExpired:
+            if monotonic() >= end:
+                raise
+            # It has the request by now, or the rest is kept.
+            asked = None
+
+
+def _check(is_abandoned: Callable[[], bool]) -> None:
+    if is_abandoned():
+        raise AbandonedError
+
+
+def _started() -> subprocess.Popen[bytes]:
+    # It finds modules where this process does, and never in a folder that specs happen to lie in.
+    program = f"import sys; sys.path[:] = {sys.path!r}; from tltlc.playground.child import main; main()"
+    return subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+    )
+
+
+def _end(child: subprocess.Popen[bytes]) -> None:
+    child.kill()
+    for stream in (child.stdin, child.stdout):
+        if stream is not None:
+            stream.close()
+    child.wait()

@@ -1,0 +1,50 @@
+"""Paths of Bézier curves, drawn on piece by piece."""
+
+from __future__ import annotations
+
+from math import dist
+from typing import Final
+
+Point = tuple[float, float]
+Curve = tuple[Point, ...]
+"""A start, and three points for each cubic piece: two that it is drawn towards, and its end."""
+
+_SHORT: Final = 0.05
+"""Not to be seen, and without a direction."""
+
+
+def straight(curve: Curve, end: Point) -> Curve:
+    """On in a straight line."""
+    return (*curve, curve[-1], end, end) if dist(curve[-1], end) > _SHORT else curve
+
+
+def bent(curve: Curve, end: Point) -> Curve:
+    """On to another level: it leaves and arrives level."""
+    x, y = curve[-1]
+    half = (end[0] - x) / 2
+    return (*curve, (x + half, y), (end[0] - half, end[1]), end)
+
+
+def fallen(curve: Curve, end: Point) -> Curve:
+    """On to a place below: it leaves and arrives upright."""
+    x, y = curve[-1]
+    half = (end[1] - y) / 2
+    return (*curve, (x, y + half), (end[0], end[1] - half), end)
+
+
+def drawn(curve: Curve) -> str:
+    """The path in SVG, with an arrow at its end."""
+    start, *rest = curve
+    pieces = "".join(
+        "C{:.1f} {:.1f} {:.1f} {:.1f} {:.1f} {:.1f}".format(*rest[i], *rest[i + 1], *rest[i + 2])
+        for i in range(0, len(rest), 3)
+    )
+    before = next((point for point in reversed(curve) if dist(point, curve[-1]) > _SHORT), start)
+    return f'<path d="M{start[0]:.1f} {start[1]:.1f}{pieces}"/>{_arrow(before, curve[-1])}'
+
+
+def _arrow(before: Point, tip: Point) -> str:
+    length = dist(before, tip) or 1.0
+    x, y = (tip[0] - before[0]) / length, (tip[1] - before[1]) / length
+    corners = [tip, (tip[0] - 9 * x + 4 * y, tip[1] - 9 * y - 4 * x), (tip[0] - 9 * x - 4 * y, tip[1] - 9 * y + 4 * x)]
+    return '<polygon points="{}"/>'.format(" ".join(f"{a:.1f},{b:.1f}" for a, b in corners))

@@ -1,0 +1,30 @@
+"""Ways out of errors that the page offers: what the messages name, tried before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.parser import parse
+from tltlc.lint.ways_out import WayOut, of_messages
+from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
+
+_LONGEST: Final = 20_000
+"""Characters of a text that is soon read again for each way out."""
+
+
+def of_errors(source: SourceFile, told: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[WayOut]:
+    """The ways out of errors of a text that imports from these folders; none of a long text."""
+    if len(source.text) > _LONGEST:
+        return []
+
+    def errors(text: SourceFile) -> tuple[Diagnostic, ...]:
+        module, found = parse(text)
+        _, more = resolve(module, ResolveOptions(library_dirs=libraries, proofs=False))
+        return (*found, *more)
+
+    return list(of_messages(told, parse(source)[0], errors))

@@ -1,0 +1,118 @@
+"""Columns for a graph from left to right, and an order in each of them with few crossings.
+
+The method is that of Sugiyama, Tagawa and Toda (1981): edges that close a cycle are turned round, each state stands one
+column behind the last that leads to it, and the nodes of a column are ordered by the mean place of their neighbours.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right, insort
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
+from typing import Final
+
+_SWEEPS: Final = 12
+
+Ends = tuple[int, int]
+"""The source and the target of an edge."""
+Node = tuple[int, ...]
+"""A state by its number, or ``(source, target, column)`` where an edge passes a column."""
+
+
+def columns_of(states: Sequence[int], edges: Iterable[Ends]) -> dict[int, int]:
+    """The column of each state: the longest way to it, along edges that close no cycle."""
+    after: dict[int, list[int]] = {state: [] for state in states}
+    for a, b in edges:
+        after[a].append(b)
+    finished, ways = _without_cycles(after)
+    column = dict.fromkeys(states, 0)
+    for state in reversed(finished):
+        for target in ways[state]:
+            column[target] = max(column[target], column[state] + 1)
+    return column
+
+
+def chain(ends: Ends, column: Mapping[int, int]) -> list[Node]:
+    """An edge as nodes, from column to column."""
+    source, target = ends
+    a, b = column[source], column[target]
+    way = range(a + 1, b) if a < b else range(a - 1, b, -1)
+    return [(source,), *((source, target, number) for number in way), (target,)]
+
+
+def ordered(column: Mapping[int, int], chains: Iterable[Sequence[Node]]) -> list[list[Node]]:
+    """The nodes of each column from top to bottom, with few crossings."""
+    columns: list[list[Node]] = [[] for _ in range(max(column.values()) + 1)]
+    for state, number in column.items():
+        columns[number].append((state,))
+    links = [link for each in chains for link in pairwise(each)]
+    for node in dict.fromkeys(node for link in links for node in link):
+        if len(node) > 1:
+            columns[node[2]].append(node)
+    beside = neighbours(links)
+    best, least = [list(nodes) for nodes in columns], _crossings(columns, links)
+    for sweep in range(_SWEEPS):
+        place = {node: float(index) for nodes in columns for index, node in enumerate(nodes)}
+        for nodes in columns if sweep % 2 else reversed(columns):
+            wanted = {node: mean([place[other] for other in beside.get(node, ())], place[node]) for node in nodes}
+            nodes.sort(key=lambda node, wanted=wanted: wanted[node])  # type: ignore[misc]
+            place.update({node: float(index) for index, node in enumerate(nodes)})
+        crossings = _crossings(columns, links)
+        if crossings < least:
+            best, least = [list(nodes) for nodes in columns], crossings
+    return best
+
+
+def neighbours(links: Iterable[tuple[Node, Node]]) -> dict[Node, list[Node]]:
+    """The nodes that each is linked with."""
+    beside: dict[Node, list[Node]] = {}
+    for one, other in links:
+        beside.setdefault(one, []).append(other)
+        beside.setdefault(other, []).append(one)
+    return beside
+
+
+def mean(values: Sequence[float], default: float) -> float:
+    """The mean, or the default of nothing."""
+    return sum(values) / len(values) if values else default
+
+
+def _without_cycles(after: Mapping[int, Sequence[int]]) -> tuple[list[int], dict[int, list[int]]]:
+    """The states, those that a search in depth leaves first before the others, and the edges that close no cycle."""
+    finished: list[int] = []
+    entered: set[int] = set()
+    open_: set[int] = set()
+    ways: dict[int, list[int]] = {state: [] for state in after}
+    for root in after:
+        stack = [] if root in entered else [(root, iter(after[root]))]
+        while stack:
+            state, rest = stack[-1]
+            entered.add(state)
+            open_.add(state)
+            target = next(rest, None)
+            if target is None:
+                stack.pop()
+                open_.discard(state)
+                finished.append(state)
+                continue
+            if target not in open_:
+                ways[state].append(target)
+            if target not in entered:
+                stack.append((target, iter(after[target])))
+    return finished, ways
+
+
+def _crossings(columns: Sequence[Sequence[Node]], links: Iterable[tuple[Node, Node]]) -> int:
+    place = {node: (number, index) for number, nodes in enumerate(columns) for index, node in enumerate(nodes)}
+    between: dict[int, list[tuple[int, int]]] = {}
+    for link in links:
+        (left, a), (_, b) = sorted(place[node] for node in link)
+        between.setdefault(left, []).append((a, b))
+    found = 0
+    for pairs in between.values():
+        before: list[tuple[int, int]] = []
+        for a, b in sorted(pairs):
+            # Those that begin above, and end below.
+            found += len(before) - bisect_right(before, (b, a))
+            insort(before, (b, a))
+    return found

@@ -1,0 +1,296 @@
+// The page: one state, which everything on it shows.
+
+import { compiler } from "./compiler.js";
+import { byId } from "./dom.js";
+import * as editor from "./editor.js";
+import * as meaning from "./meaning.js";
+import { packed, unpacked } from "./share.js";
+import * as trace from "./trace.js";
+
+const TYPING_MS = 250;
+const MOST_STEPS = 1000;
+const LONG_LINK = 4000;
+/** Characters; browsers take two million at most. */
+const MOST_IN_LINK = 500_000;
+
+const asking = compiler();
+const page = { notation: kept("notation") === "unicode" ? "unicode" : "english", spec: "", mode: "atoms", letters: [], current: 0, picked: null, view: null, rows: [] };
+let begun = null;
+let timer = 0;
+let asked = 0;
+let remembering = 0;
+let written = "";
+
+async function begin() {
+  theme();
+  begun = await asking.ask({});
+  editor.begin(begun, () => {
+    named();
+    later(TYPING_MS);
+  });
+  trace.begin({ changed: () => later(20), go, remove });
+  begun.examples.forEach(({ title }, index) => byId("examples").append(new Option(title, index)));
+  byId("examples").addEventListener("change", ({ target }) => {
+    if (target.value !== "") example(Number(target.value));
+  });
+  byId("share").addEventListener("click", share);
+  byId("add").addEventListener("click", add);
+  byId("clear").addEventListener("click", () => replace([]));
+  byId("back").addEventListener("click", () => go(page.current - 1));
+  byId("forth").addEventListener("click", () => go(page.current + 1));
+  for (const id of ["succeed", "fail"]) byId(id).addEventListener("click", () => replace(structuredClone(page.view[id])));
+  for (const input of document.getElementsByName("mode")) input.addEventListener("change", () => choose(input.value));
+  for (const input of document.getElementsByName("notation")) input.addEventListener("change", () => write(input.value));
+  byId("steps").addEventListener("keydown", arrows);
+  window.addEventListener("hashchange", () => location.hash !== written && restore());
+  if (!(await restore())) example(0);
+}
+
+/** Ask in a while, unless something else changes before; an answer that is still to come is out of date. */
+function later(milliseconds) {
+  clearTimeout(timer);
+  asked += 1;
+  timer = setTimeout(ask, milliseconds);
+}
+
+async function ask() {
+  const mine = ++asked;
+  const busy = setTimeout(() => mine === asked && say("Compiling…"), 400);
+  try {
+    const letters = page.letters.map((letter) => (page.mode === "atoms" ? letter.atoms : (letter.signals ?? {})));
+    const answer = await asking.ask({ text: editor.text(), spec: page.spec, letters, notation: page.notation });
+    if (mine === asked) take(answer);
+  } catch (error) {
+    if (mine === asked) say(`No answer: ${error.message}`);
+  } finally {
+    clearTimeout(busy);
+  }
+}
+
+/** Take an answer into the page. */
+function take({ diagnostics, more, specs, tests, spec }) {
+  editor.show(diagnostics);
+  say(summary(diagnostics, more, specs, tests));
+  meaning.stale(!spec);
+  if (spec) {
+    const isNew = page.view?.name !== spec.name;
+    if (isNew || !spec.states[page.picked]) page.picked = null;
+    page.view = spec;
+    page.spec = spec.name;
+    page.rows = spec.rows;
+    meaning.show(spec, specs, (name) => pickSpec(name), (state) => pick(state));
+    if (complete(spec)) return ask();
+    follow(spec);
+    byId("succeed").disabled = !spec.succeed;
+    byId("fail").disabled = !spec.fail;
+    byId("add").disabled = !spec.atoms.length || page.letters.length >= MOST_STEPS;
+  }
+  render();
+  remember();
+}
+
+/** Whether letters lacked values that this spec needs; they have them now. */
+function complete({ signals, idle }) {
+  if (page.mode !== "signals") return false;
+  let changed = false;
+  for (const letter of page.letters) {
+    letter.signals ??= {};
+    for (const { name, slider } of signals) {
+      if (name in letter.signals) continue;
+      letter.signals[name] = idle.signals?.[name] ?? slider[0];
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+/** Letters of one mode follow those of the other. */
+function follow({ atoms, rows }) {
+  rows.forEach((row, index) => {
+    const letter = page.letters[index];
+    if (!letter || row.error) return;
+    if (page.mode === "signals") letter.atoms = atoms.filter((_, atom) => row.values[atom] > 0).map(({ name }) => name);
+    else letter.signals = row.signals ?? letter.signals;
+  });
+}
+
+function render() {
+  const { view: spec, letters, mode, notation, current, rows, picked } = page;
+  for (const input of document.getElementsByName("mode")) input.checked = input.value === mode;
+  for (const input of document.getElementsByName("notation")) input.checked = input.value === notation;
+  trace.show({ spec, letters, mode, current, rows });
+  byId("back").disabled = current <= 0;
+  byId("forth").disabled = current >= letters.length - 1;
+  if (!spec) return;
+  const row = rows[current];
+  const state = row ? (row.error ? null : row.state) : 0;
+  meaning.light(state, row && !row.error ? [row.from, row.state] : null, picked);
+  meaning.tell(spec.states[picked ?? state], notation);
+}
+
+function summary(diagnostics, more, specs, tests) {
+  const count = (severity, word) => {
+    const found = diagnostics.filter((each) => each.severity === severity).length;
+    return found ? [`${found} ${word}${found === 1 ? "" : "s"}`] : [];
+  };
+  const said = [...count("error", "error"), ...count("warning", "warning"), ...count("note", "note")];
+  if (more) said.push(`${more} more messages`);
+  if (tests.length) said.push(`${tests.filter((test) => test.passed).length} of ${tests.length} tests passed`);
+  if (!specs.length && !said.length) return "There is no spec yet: spec NAME { reach … keep … }";
+  if (specs.length) return ["It compiles", ...said].join("; ");
+  return `${said.join("; ")}${page.view ? "; what is shown is of an earlier text" : ""}`;
+}
+
+function say(text) {
+  if (byId("summary").textContent !== text) byId("summary").textContent = text;
+}
+
+function example(index) {
+  editor.setText(begun.examples[index].text);
+  named();
+  Object.assign(page, { spec: "", letters: [], current: 0, picked: null, mode: "atoms" });
+  later(0);
+}
+
+/** Say which example the text is, if it is one. */
+function named() {
+  const open = begun.examples.findIndex((example) => example.text === editor.text());
+  byId("examples").value = open < 0 ? "" : open;
+}
+
+function pickSpec(name) {
+  Object.assign(page, { spec: name, letters: [], current: 0, picked: null });
+  later(0);
+}
+
+/** Show what remains in a state; a second click, and the current one is shown again. */
+function pick(state) {
+  page.picked = page.picked === state ? null : state;
+  render();
+}
+
+function go(index) {
+  if (index === page.current || index < 0 || index >= page.letters.length) return;
+  Object.assign(page, { current: index, picked: null });
+  render();
+  remember();
+}
+
+function arrows(event) {
+  const move = { ArrowUp: -1, ArrowDown: 1 }[event.key];
+  if (!move || !event.target.matches("button, input[type=checkbox]")) return;
+  event.preventDefault();
+  const rows = [...byId("steps").querySelectorAll("tbody tr")];
+  const row = event.target.closest("tr");
+  const place = [...row.querySelectorAll("button, input")].indexOf(event.target);
+  rows[rows.indexOf(row) + move]?.querySelectorAll("button, input")[place]?.focus();
+}
+
+function add() {
+  const before = page.letters.at(-1);
+  const copied = page.mode === "signals" && before ? before : page.view.idle;
+  page.letters.push(structuredClone(copied));
+  page.current = page.letters.length - 1;
+  page.picked = null;
+  render();
+  later(0);
+}
+
+function remove(index) {
+  page.letters.splice(index, 1);
+  page.rows = page.rows.slice(0, index);
+  page.current = Math.max(0, Math.min(page.current, page.letters.length - 1));
+  render();
+  byId("add").focus();
+  later(0);
+}
+
+function replace(letters) {
+  Object.assign(page, { letters, rows: [], current: 0, picked: null });
+  render();
+  later(0);
+}
+
+function choose(mode) {
+  page.mode = mode;
+  later(0);
+}
+
+/** Write the picture in words or in symbols, from now on. */
+function write(notation) {
+  page.notation = kept("notation", notation);
+  later(0);
+}
+
+/** Keep the fragment of the address up to date, in a while: browsers allow few changes of it a second. */
+function remember() {
+  clearTimeout(remembering);
+  remembering = setTimeout(keep, 300);
+}
+
+/** Put all of this into the fragment, so that a reload or a copy of the address brings it back; whether it fits. */
+async function keep() {
+  clearTimeout(remembering);
+  const letters = page.letters.map((letter) => letter[page.mode]);
+  const fragment = await packed({ text: editor.text(), spec: page.spec, mode: page.mode, letters, current: page.current });
+  const fits = fragment.length <= MOST_IN_LINK;
+  written = fits ? fragment : "";
+  history.replaceState(null, "", written || location.pathname);
+  return fits;
+}
+
+/** Take what a link has, which anybody may have written. */
+async function restore() {
+  const found = await unpacked(location.hash);
+  if (typeof found?.text !== "string") return false;
+  const mode = found.mode === "signals" ? "signals" : "atoms";
+  const given = Array.isArray(found.letters) ? found.letters.filter((letter) => letter && typeof letter === "object") : [];
+  const letters = given.slice(0, MOST_STEPS).map((letter) => ({ atoms: [], signals: null, [mode]: LETTERS[mode](letter) }));
+  const current = Math.min(Math.max(Math.trunc(Number(found.current)) || 0, 0), Math.max(letters.length - 1, 0));
+  editor.setText(found.text);
+  named();
+  Object.assign(page, { mode, spec: String(found.spec ?? ""), letters, current, picked: null });
+  later(0);
+  return true;
+}
+
+const LETTERS = {
+  atoms: (letter) => Object.values(letter).filter((name) => typeof name === "string"),
+  signals: (letter) => Object.fromEntries(Object.entries(letter).filter(([, value]) => typeof value === "number")),
+};
+
+async function share() {
+  if (!(await keep())) return say("The text is too long for a link: keep it as a file.");
+  const { length } = location.href;
+  const long = length > LONG_LINK ? ` It has ${length} characters, and some programs cut long links.` : "";
+  try {
+    await navigator.clipboard.writeText(location.href);
+    say(`The link is in the clipboard; the text is in it.${long}`);
+  } catch {
+    say(`Copy the address of this page: the text is in it.${long}`);
+  }
+}
+
+function theme() {
+  const root = document.documentElement;
+  const chosen = kept("theme");
+  if (chosen) root.dataset.theme = chosen;
+  byId("theme").addEventListener("click", () => {
+    const isDark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+    root.dataset.theme = isDark ? "light" : "dark";
+    kept("theme", root.dataset.theme);
+  });
+}
+
+/** What the reader chose before, or chooses now. */
+function kept(name, value) {
+  // Storage may be forbidden.
+  try {
+    if (value) localStorage.setItem(name, value);
+    return localStorage.getItem(name);
+  } catch {
+    return value;
+  }
+}
+
+begin().catch((error) => say(`It could not begin: ${error.message}`));

@@ -1,0 +1,138 @@
+// The table of a trace: a row per step, a column per atom to toggle or per signal to set, and what became of it.
+
+import { byId, element, prose, shown } from "./dom.js";
+
+const MOST_NAMES = 4;
+
+let built = "";
+let handlers = {};
+
+/** `changed()` after a letter has changed, `go(index)` to make a step the current one, `remove(index)`. */
+export function begin(given) {
+  handlers = given;
+}
+
+/** Show the steps; the table is made anew only where it must be, so that a slider that is being moved stays. */
+export function show({ spec, letters, mode, current, rows }) {
+  byId("trace").hidden = !spec;
+  if (!spec) return;
+  const columns = mode === "atoms" ? spec.atoms : spec.signals;
+  const shape = JSON.stringify([mode, columns, letters.length]);
+  if (shape !== built) {
+    build(mode, columns, letters);
+    built = shape;
+  }
+  [...byId("steps").querySelectorAll("tbody tr")].forEach((row, index) => {
+    row.classList.toggle("current", index === current);
+    row.querySelector(".go").setAttribute("aria-current", index === current ? "step" : "false");
+    fill(row, letters[index], rows[index], mode, columns);
+  });
+  tell(rows[current], letters.length);
+  warn(strangers(spec, letters, mode), mode);
+}
+
+function build(mode, columns, letters) {
+  const heads = columns.map((column) =>
+    element("th", { scope: "col", class: "column", title: column.doc || null }, column.name, column.unit ? ` (${column.unit})` : ""),
+  );
+  const titles = ["state", "verdict", "progress", "reward"].map((name) => element("th", { scope: "col" }, name));
+  const head = element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "step"), heads, titles, element("th", { scope: "col", "aria-label": "remove" })));
+  const body = element("tbody", {}, letters.map((letter, index) => rowOf(mode, columns, letter, index)));
+  byId("steps").replaceChildren(head, body);
+}
+
+function rowOf(mode, columns, letter, index) {
+  const go = element("button", { type: "button", class: "go", click: () => handlers.go(index) }, String(index + 1));
+  const cells = columns.map((column) => element("td", { class: "input" }, mode === "atoms" ? toggle(column, letter, index) : setter(column, letter, index)));
+  const remove = element("button", { type: "button", class: "remove", "aria-label": `Remove step ${index + 1}`, click: () => handlers.remove(index) }, "×");
+  return element(
+    "tr",
+    {
+      click: (event) => event.target.closest("button, input") || handlers.go(index),
+      focusin: () => handlers.go(index),
+    },
+    element("th", { scope: "row" }, go),
+    cells,
+    element("td", { class: "at" }),
+    element("td", { class: "said" }),
+    element("td", { class: "progress" }, element("meter", { min: 0, max: 1, "aria-hidden": "true" }), element("span")),
+    element("td", { class: "reward" }),
+    element("td", {}, remove),
+  );
+}
+
+function toggle({ name }, letter, index) {
+  return element("input", {
+    type: "checkbox",
+    "aria-label": `${name} at step ${index + 1}`,
+    change: (event) => {
+      letter.atoms = letter.atoms.filter((other) => other !== name).concat(event.target.checked ? [name] : []);
+      handlers.changed();
+    },
+  });
+}
+
+function setter({ name, type, slider, low, high }, letter, index) {
+  const label = `${name} at step ${index + 1}`;
+  const set = (value) => {
+    letter.signals[name] = value;
+    handlers.changed();
+  };
+  if (type === "bool") return element("input", { type: "checkbox", "aria-label": label, change: (event) => set(Number(event.target.checked)) });
+  const read = (event) => event.target.value !== "" && Number.isFinite(event.target.valueAsNumber) && set(event.target.valueAsNumber);
+  const step = (slider[1] - slider[0]) / 200;
+  return [
+    element("input", { type: "range", min: slider[0], max: slider[1], step, "aria-label": label, input: read }),
+    element("input", { type: "number", min: low, max: high, step: "any", "aria-label": `${label}, as a number`, input: read }),
+  ];
+}
+
+function fill(row, letter, said, mode, columns) {
+  row.querySelectorAll("td.input").forEach((cell, index) => {
+    const { name } = columns[index];
+    const value = mode === "atoms" ? letter.atoms.includes(name) : (letter.signals?.[name] ?? 0);
+    for (const input of cell.querySelectorAll("input")) {
+      if (input.type === "checkbox") input.checked = Boolean(value);
+      else if (input !== document.activeElement) input.value = input.type === "number" ? shown(value) : value;
+    }
+  });
+  const known = said && !said.error;
+  row.classList.toggle("wrong", Boolean(said?.error));
+  row.querySelector(".at").textContent = known ? said.state : "";
+  const verdict = known ? element("span", { class: `verdict ${said.verdict}` }, said.verdict) : "";
+  row.querySelector(".said").replaceChildren(said?.error ? element("span", { class: "refused" }, "refused") : verdict);
+  row.querySelector("meter").hidden = !known;
+  row.querySelector("meter").value = known ? said.progress : 0;
+  row.querySelector(".progress span").textContent = known ? shown(said.progress) : "";
+  row.querySelector(".reward").textContent = known ? shown(said.reward) : "";
+}
+
+/** What the letters say that this spec knows nothing of. */
+function strangers(spec, letters, mode) {
+  const known = new Set(spec[mode].map(({ name }) => name));
+  const said = letters.flatMap((letter) => (mode === "atoms" ? letter.atoms : Object.keys(letter.signals ?? {})));
+  return [...new Set(said)].filter((name) => !known.has(name));
+}
+
+/** Say so where the trace is one of an earlier text. */
+function warn(names, mode) {
+  const place = byId("strange");
+  place.hidden = !names.length;
+  const shown = names.slice(0, MOST_NAMES).map((name) => `\`${name}\``);
+  const more = names.length > shown.length ? ", …" : "";
+  const text = `These steps were made for another text: what they say of ${shown.join(", ")}${more} counts for nothing, since the spec has no such ${mode}. Set the boxes anew, or begin with \`Clear\`.`;
+  if (names.length && place.dataset.said !== text) place.replaceChildren(...prose(text));
+  place.dataset.said = text;
+}
+
+function tell(said, length) {
+  const place = byId("moment");
+  if (!length) place.textContent = "No step yet: add one, and say what holds at it.";
+  else if (!said) place.textContent = "";
+  else if (said.error) place.replaceChildren(...prose(`${said.error}: ${said.help}`));
+  else {
+    const end = said.done ? (said.accepting ? "  An episode ends here, in success." : "  An episode ends here, in failure.") : "";
+    const near = said.limiting ? `  Nearest to what leads on: ${said.limiting}.` : "";
+    place.textContent = `${said.label}${near}${end}`;
+  }
+}

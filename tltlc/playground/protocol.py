@@ -1,0 +1,65 @@
+"""What the page asks and is answered, as JSON: the same by the server and in the browser alone."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Final, get_args
+
+from tltlc.backends import Notation
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.playground.document import diagnostic, view
+from tltlc.playground.start import start
+
+MOST_LETTERS: Final = 1_000
+TOO_LARGE: Final = "this takes more memory than the playground has"
+
+
+class RequestError(ValueError):
+    """What was asked is no request."""
+
+
+def answer(request: str) -> str:
+    """The answer to a request: what :func:`start` or :func:`view` returns, by its keys ``text``, ``spec``, ``letters``,
+    ``notation``.
+
+    Without a ``text`` it asks how to start.  Raises RequestError for anything else than such a request.
+    """
+    try:
+        asked = json.loads(request)
+    except (ValueError, RecursionError) as error:
+        raise RequestError("a request is JSON") from error
+    if asked == {}:
+        return _json(start())
+    if not isinstance(asked, dict) or not isinstance(asked.get("text"), str):
+        raise RequestError("a request has a `text`")
+    spec, letters = asked.get("spec", ""), asked.get("letters", [])
+    if not isinstance(spec, str) or not isinstance(letters, list) or len(letters) > MOST_LETTERS:
+        raise RequestError(f"`spec` is a name, and `letters` a list of at most {MOST_LETTERS}")
+    notation = asked.get("notation", "english")
+    if notation not in get_args(Notation):
+        raise RequestError(f"`notation` is one of {', '.join(get_args(Notation))}")
+    if not all(map(_is_letter, letters)):
+        raise RequestError("a letter is a list of atoms, or an object of numbers by the names of signals")
+    try:
+        return _json(view(asked["text"], spec, letters, notation))
+    except (MemoryError, RecursionError):
+        return gave_up(TOO_LARGE)
+    except Exception:
+        # Whoever types has no use for a traceback, and can go on typing.
+        return gave_up("a bug in tltlc stopped this", "please report it, with the text")
+
+
+def gave_up(why: str, way_out: str = "make the spec smaller: bounds and large conjunctions cost most") -> str:
+    """The answer where nothing can be said of a text: TLT0775, and why."""
+    said = Diagnostic("TLT0775", why, help=way_out)
+    return _json({"diagnostics": [diagnostic(said)], "more": 0, "specs": [], "tests": [], "spec": None})
+
+
+def _is_letter(letter: Any) -> bool:
+    if isinstance(letter, dict):
+        return all(isinstance(value, (int, float)) for value in letter.values())
+    return isinstance(letter, list) and all(isinstance(name, str) for name in letter)
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, allow_nan=False)

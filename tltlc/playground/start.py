@@ -1,0 +1,24 @@
+"""What the page needs before anything is typed: examples, and the words of the language."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+from tltlc.grammar.tables import load
+
+EXAMPLES: Final = Path(__file__).with_name("examples")
+
+
+def start() -> dict[str, Any]:
+    """The examples, each with the title that its first line says, and words and units to be coloured."""
+    tables = load()
+    # A word that is a name in most places keeps the colour of a name.
+    words = sorted(word for word in tables.words if word.isascii() and word not in tables.soft)
+    return {"examples": examples(), "words": words, "units": sorted(tables.units)}
+
+
+def examples() -> list[dict[str, str]]:
+    """The examples in order, ``title`` and ``text``."""
+    texts = [path.read_text(encoding="utf-8") for path in sorted(EXAMPLES.glob("*.tltl"))]
+    return [{"title": text.partition("\n")[0].removeprefix("// "), "text": text} for text in texts]

@@ -1,0 +1,1 @@
+"""Traces that show what a spec means: as ``test`` blocks, as samples of signals, shortest or covering every edge."""
