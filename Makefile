@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: demo test test-slow lint format generate docs vscode bench checkers clean
+.PHONY: demo test test-slow fuzz lint format generate docs vscode bench checkers clean
 
 # Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
 demo: $(VENV)/.installed-rl
@@ -35,6 +35,10 @@ test: lint
 # Trainings that are killed and go on, the shipped suite, large formulas: some minutes more.
 test-slow: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest -q -rs -n 2 -m slow
+
+# The property tests with other examples in every run; a failure prints how to see it again.
+fuzz: $(VENV)/.installed-dev
+	$(BIN)/python -m pytest -q -n 2 -m hypothesis --hypothesis-profile=fuzz
 
 lint: $(VENV)/.installed-dev
 	$(BIN)/ruff check .

@@ -227,7 +227,9 @@ class _Places:
             sources = sorted((a for a, b in self.falls if b == target), key=lambda a: (foot[a][-1][0], a))
             for index, a in enumerate(sources):
                 share = (index + 1) / (len(sources) + 1) - 0.5
-                found[a, target] = fallen(foot[a], (x + box.width * share, y - box.height / 2))
+                port = x + box.width * share, y - box.height / 2
+                # Others of the row may reach as far up as what stands over this one.
+                found[a, target] = straight(fallen(foot[a], (port[0], port[1] - box.over)), port)
         return found
 
     def _foot(self, state: int) -> Curve:
