@@ -265,23 +265,19 @@ class _Source:
 
     def _read(self) -> list[str]:
         """Signals in their range, and params, in variables of their own."""
-        used = self._program.used
-        signals = list(enumerate(zip(self._fspa.signals, self._program.signals, strict=True)))
-        lines: list[str] = []
-        for _, (signal, name) in signals:
-            if signal.type != "bool":
-                lines.append(f"double {name} = sample->{name};")
-            elif name in used:
-                lines.append(f"const double {name} = sample->{name} ? 1.0 : 0.0;")
-        # A spec whose signals are bools that nothing reads.
-        lines = lines or ["(void)sample;"]
+        made = self._program
+        signals = enumerate(zip(self._fspa.signals, made.signals, strict=True))
         numbers = [(place, signal, name) for place, (signal, name) in signals if signal.type != "bool"]
-        if numbers:
-            lines += self._corrected(numbers)
-        return [
-            *lines,
-            *(f"const double {name} = monitor->params.{name};" for name in self._program.params if name in used),
-        ]
+        lines = [f"double {name} = sample->{name};" for _, _, name in numbers]
+        lines += self._corrected(numbers) if numbers else []
+        lines += self._bools(None)
+        lines += [] if made.reads_sample else ["(void)sample;"]
+        used = made.used
+        return [*lines, *(f"const double {name} = monitor->params.{name};" for name in made.params if name in used)]
+
+    def _bools(self, state: int | None) -> list[str]:
+        """Bools as numbers, where atoms are computed from them."""
+        return [f"const double {name} = sample->{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _corrected(self, numbers: Sequence[tuple[int, Signal, str]]) -> list[str]:
         """Where not all signals are as they should be, one after the other is looked at."""
@@ -363,8 +359,8 @@ class _Source:
             # A brace, since declarations may follow.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
             lines.append(f"{_INDENT}case {state.id}: {{")
-            for place in self._program.computed_in(state.id):
-                lines += [f"{_INDENT * 2}{line}" for line in self._value(place)]
+            alone = [line for place in self._program.computed_in(state.id) for line in self._value(place)]
+            lines += [f"{_INDENT * 2}{line}" for line in (*self._bools(state.id), *alone)]
             lines += self._printer.lines(statements, depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]

@@ -168,7 +168,6 @@ class _Source:
         lines: list[str] = []
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
-                lines += [f"double {name} = sample.{name} ? 1.0 : 0.0;"] if name in used else []
                 continue
             low, high = (
                 pieces.number(signal.low, "double.NegativeInfinity"),
@@ -180,7 +179,12 @@ class _Source:
             lines += _checked(
                 f"{name} {above} {low} && {name} {below} {high}", f"{name} = Read({place}, {name}, {low}, {high});"
             )
+        lines += self._bools(None)
         return [*lines, *(f"double {name} = _params.{name};" for name in self._program.params if name in used)]
+
+    def _bools(self, state: int | None) -> list[str]:
+        """Bools as numbers, where atoms are computed from them."""
+        return [f"double {name} = sample.{name} ? 1.0 : 0.0;" for name in self._program.bools_read_in(state)]
 
     def _compute(self) -> list[str]:
         """The atoms' values."""
@@ -221,6 +225,7 @@ class _Source:
             # Braces, since declarations may follow.
             lines += [f"{_INDENT}{line}" for line in self._printer.comment(state.label.ascii)]
             lines += [f"{_INDENT}case {state.id}:", f"{_INDENT}{{"]
+            lines += [f"{_INDENT * 2}{line}" for line in self._bools(state.id)]
             lines += self._printer.lines((*self._alone(state.id), *statements), depth=2)
             lines += [f"{_INDENT * 2}break;", f"{_INDENT}}}"]
         return [*lines, "}"]

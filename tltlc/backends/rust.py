@@ -105,7 +105,6 @@ class _Source:
         present += ["number"] if any(signal.type != "bool" for signal in fspa.signals) else []
         with recursion_room():
             step = _Rust.block(self._step(), 2)
-            reads_sample = any("sample." in line for line in self._read())
         give = self._give()
         places = {
             "p": fspa.name,
@@ -128,7 +127,7 @@ class _Source:
             "param_defaults": _Rust.block([f"{name}: {pieces.number(param.value)}," for param, name in params], 3),
             "param_checks": _Rust.block([line for param, name in params for line in _param_check(param, name)], 2),
             "states": _Rust.block(self._states(), 1),
-            "sample": "sample" if reads_sample else "_",
+            "sample": "sample" if made.reads_sample else "_",
             "step": step,
             "given": "sample" if give else "_",
             "give": _Rust.block(give or ["signal < SIGNAL_NAMES.len() && value.is_finite()"], 2),
@@ -183,12 +182,17 @@ class _Source:
         lines: list[str] = []
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._program.signals, strict=True)):
             if signal.type == "bool":
-                lines += [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};"] if name in used else []
                 continue
             low, high = pieces.number(signal.low, "f64::NEG_INFINITY"), pieces.number(signal.high, "f64::INFINITY")
             head = f"let {name} = " if name in used else ""
             lines.append(f"{head}self.read({place}, sample.{name}, {low}, {high})?;")
+        lines += self._bools(None)
         return [*lines, *(f"let {name} = self.params.{name};" for name in self._program.params if name in used)]
+
+    def _bools(self, state: int | None) -> list[str]:
+        """Bools as numbers, where atoms are computed from them."""
+        names = self._program.bools_read_in(state)
+        return [f"let {name} = if sample.{name} {{ 1.0 }} else {{ 0.0 }};" for name in names]
 
     def _compute(self) -> list[str]:
         """The atoms' values."""
@@ -211,8 +215,9 @@ class _Source:
         return self._printer.lines((Comment(made.remarks[place]), *statements), depth)
 
     def _alone(self, state: int) -> list[str]:
-        """The values of the atoms that nothing but this state needs."""
-        return [line for place in self._program.computed_in(state) for line in self._value(place, depth=2)]
+        """The values of the atoms that nothing but this state needs, and the bools that they read."""
+        lines = [f"{_INDENT * 2}{line}" for line in self._bools(state)]
+        return [*lines, *(line for place in self._program.computed_in(state) for line in self._value(place, depth=2))]
 
     def _check(self) -> list[str]:
         """Exclusive atoms."""

@@ -159,6 +159,28 @@ def test_where_atoms_are_computed() -> None:
         assert {name: made.only_in[numbers[name]] for name in "abc"} == {**dict.fromkeys("abc"), **left}
 
 
+def test_where_bools_are_read() -> None:
+    """Where one state's atoms alone are computed from them, there: no other state spends time on that."""
+    a, b = f.atom("a"), f.atom("b")
+    then, together = f.eventually(f.and_(a, f.next_(f.eventually(b)))), f.eventually(f.and_(a, b))
+    for formula, of_a, of_b, read_in in (
+        (then, "x", "y", (0, 1, -1)),
+        (then, "x", "x", (None, -1, -1)),
+        (together, "x", "x", (0, -1, -1)),
+    ):
+        fspa = build(spec_from_formula(formula))
+        signals = tuple(spec.Signal(name, "bool", None, None) for name in "xyz")
+        atoms = (spec.Atom("a", Signal(of_a)), spec.Atom("b", Signal(of_b)))
+        made = program(replace(fspa, signals=signals, atoms=atoms), [])
+        assert made.read_in == read_in
+        assert made.reads_sample
+        for place in (None, 0, 1):
+            expected = [name for name, only in zip("xyz", read_in, strict=True) if only == place]
+            assert made.bools_read_in(place) == expected
+    unread = replace(fspa, signals=signals, atoms=(spec.Atom("a", Const(0.5)), spec.Atom("b", Const(0.5))))
+    assert not program(unread, []).reads_sample
+
+
 def test_what_no_state_reads_is_not_computed() -> None:
     fspa = build(spec_from_formula(f.eventually(f.atom("a"))))
     unread = replace(fspa, atoms=(*fspa.atoms, spec.Atom("more", Const(0.5))))

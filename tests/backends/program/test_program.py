@@ -16,8 +16,9 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends.program.arithmetic import Arithmetic, defined
 from tltlc.backends.program.build import program
 from tltlc.backends.program.printer import Printer
-from tltlc.backends.program.tree import Declare, If, Statement
-from tltlc.backends.program.uses import read
+from tltlc.backends.program.states import ROBUSTNESS
+from tltlc.backends.program.tree import Assign, Declare, If, Statement, Variable
+from tltlc.backends.program.uses import parts, read
 from tltlc.expression import Condition, Const, Expression, Op, Signal, When
 from tltlc.expression_eval import evaluate
 from tltlc.logic import formula as f
@@ -112,6 +113,21 @@ def test_steps_are_those_of_the_monitor(fspa: Fspa, data: st.DataObject) -> None
         state, best, done = int(found["target"]), float(found["best"]), bool(found["done"])
         assert (state, best, done) == (row.state, row.progress, row.done)
         assert (found["reward"], found["robustness"], limiting) == (row.reward, row.robustness, row.limiting)
+
+
+@given(st.lists(st.floats(-1, 1) | st.sampled_from([0.0, -0.0, 0.5]), min_size=4, max_size=4))
+def test_robustness_is_written_with_as_few_literals_as_possible(sample: list[float]) -> None:
+    """Staying takes four primes of two literals, or two clauses of two."""
+    a, b, c, d = map(f.atom, "abcd")
+    fspa = build(spec_from_formula(f.eventually(f.or_(f.and_(a, b), f.and_(c, d)))))
+    made = program(fspa, ())
+    (branch,) = made.states[0]
+    assert isinstance(branch, If)
+    for body in (branch.cases[0][1], branch.otherwise):
+        (robustness,) = (line.value for line in body if isinstance(line, Assign) and line.name == ROBUSTNESS)
+        assert sum(isinstance(part, Variable) for part in parts([robustness])) == 4
+    found = step(made, 0, 1, 0.0, False, dict(zip(made.atoms, sample, strict=True)))
+    assert found["robustness"] == Monitor(fspa).step_atoms(sample).robustness
 
 
 def test_no_name_of_a_specification_is_a_temporary() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Implicant
+from tltlc.backends.code.clauses import shorter
 from tltlc.backends.code.names import call, comment, literal, visible
 
 INDENT = "    "
@@ -78,20 +79,26 @@ class StateWriter:
         return " or ".join(tests)
 
     def _robustness(self, primes: Sequence[Implicant]) -> str:
-        """The greatest of the primes' least literals; literals that all primes share are taken out."""
+        """The greatest of the primes' least literals, or what is the same with fewer literals, but for -0.
+
+        Literals that all primes share are taken out.
+        """
         shared = [literal_ for literal_ in primes[0] if all(literal_ in prime for prime in primes)]
         rest = [[literal_ for literal_ in prime if literal_ not in shared] for prime in primes]
         terms = [self._value(*literal_) for literal_ in shared]
-        if all(rest):
-            terms.append(_call("max", [_call("min", [self._value(*literal_) for literal_ in prime]) for prime in rest]))
-        return _call("min", terms)
+        if not all(rest):
+            return _call("min", terms)
+        clauses = shorter(rest)
+        if clauses is None:
+            return _call("min", [*terms, _call("max", [self._fold("min", prime) for prime in rest])])
+        return _call("min", [*terms, *(self._fold("max", clause) for clause in clauses)])
 
     def _nearest(self, primes: Sequence[Implicant]) -> list[str]:
         """Lines that find the most robust of the primes, the first of equals, and the first atom that bounds it."""
         lines: list[str] = []
         for position, prime in enumerate(primes):
             value = "other" if position else "nearest"
-            least = _call("min", [self._value(*literal_) for literal_ in prime])
+            least = self._fold("min", prime)
             found = self._bounding(prime, value)
             lines.append(f"{value} = {least}")
             if position:
@@ -107,6 +114,9 @@ class StateWriter:
             for atom, polarity in prime[:-1]
         ]
         return "".join(tests) + literal(self._fspa.atoms[prime[-1][0]].name)
+
+    def _fold(self, function: str, literals: Sequence[tuple[int, bool]]) -> str:
+        return _call(function, [self._value(*literal_) for literal_ in literals])
 
     def _value(self, atom: int, polarity: bool) -> str:
         return self._atoms[atom] if polarity else f"-{self._atoms[atom]}"

@@ -105,7 +105,6 @@ class _Source:
         present += ["params"] if fspa.params else []
         with recursion_room():
             step = Gd.block(self._step())
-            reads_sample = any("sample." in line for line in self._read())
         present += [name for name in ("min", "max") if f"_{name}(" in step]
         first = fspa.states[0]
         places = {
@@ -135,7 +134,7 @@ class _Source:
             "param_fields": self._param_fields(),
             "param_checks": Gd.block(line for place in range(len(fspa.params)) for line in self._param_check(place)),
             "param_copies": Gd.block([f"_params.{name} = given.{name}" for name in self._params]),
-            "sample": "sample" if reads_sample else "_sample",
+            "sample": "sample" if made.reads_sample else "_sample",
             "step": step,
         }
         return filled("monitor.gd.txt", places, present)
@@ -185,22 +184,27 @@ class _Source:
         lines: list[str] = []
         checked = False
         for place, (signal, name) in enumerate(zip(self._fspa.signals, self._signals, strict=True)):
-            is_used = self._program.signals[place] in used
             if signal.type == "bool":
-                lines += [f"var {name}: float = 1.0 if sample.{name} else 0.0"] if is_used else []
                 continue
+            is_used = self._program.signals[place] in used
             value = name if is_used else f"sample.{name}"
             low, high = _ends(signal)
             call = f"_read({place}, {value}, {low}, {high})"
             lines += [f"var {name}: float = sample.{name}"] if is_used else []
             lines += [f"if not ({_within(value, signal)}):", f"\t{f'{name} = ' if is_used else ''}{call}"]
             checked = True
+        lines += self._bools(None)
         lines += [
             f"var {name}: float = _params.{name}"
             for name, own in zip(self._params, self._program.params, strict=True)
             if own in used
         ]
         return [*lines, *self._stop()] if checked else lines
+
+    def _bools(self, state: int | None) -> list[str]:
+        """Bools as numbers, where atoms are computed from them."""
+        names = map(self._printer.name, self._program.bools_read_in(state))
+        return [f"var {name}: float = 1.0 if sample.{name} else 0.0" for name in names]
 
     def _stop(self) -> list[str]:
         return ["if problem != Problem.NONE:", "\treturn false"]
@@ -242,7 +246,7 @@ class _Source:
         for state, statements in zip(self._fspa.states, self._program.states, strict=True):
             lines.append(self._printer.head(f"state == {state.id}", first=state.id == 0))
             lines += [f"\t{line}" for line in self._printer.comment(state.label.ascii)]
-            lines += [f"\t{line}" for line in self._values(state.id)]
+            lines += [f"\t{line}" for line in (*self._bools(state.id), *self._values(state.id))]
             lines += self._printer.lines(statements, depth=1)
         return lines
 

@@ -32,7 +32,8 @@ class Program:
 
     ``values`` give each atom its value, which is declared, and may be outside [-1, 1] or no number unless the atom is
     ``sure``.  ``only_in`` is the one state in which an atom need be computed, -1 where no state does, and None where
-    it is computed at each step.  ``remarks`` say what each atom is, and of a predicate only once what it means.
+    it is computed at each step; ``read_in`` says the same of the signals that atoms are computed from.  ``remarks`` say
+    what each atom is, and of a predicate only once what it means.
     ``exclusive`` are the groups of atoms that can hold at once, with their numbers in the automaton.  ``states`` assign
     what :mod:`tltlc.backends.program.states` names, ``judged`` what :mod:`tltlc.backends.program.judge` does.  Where a
     state ``ends``, an episode is over on entry.
@@ -45,6 +46,7 @@ class Program:
     values: tuple[tuple[Statement, ...], ...]
     sure: tuple[bool, ...]
     only_in: tuple[int | None, ...]
+    read_in: tuple[int | None, ...]
     remarks: tuple[str, ...]
     exclusive: tuple[tuple[int, tuple[int, ...]], ...]
     states: tuple[tuple[Statement, ...], ...]
@@ -54,6 +56,17 @@ class Program:
     def computed_in(self, state: int | None) -> list[int]:
         """The numbers of the atoms that are computed in a state alone, or at each step."""
         return [place for place, only in enumerate(self.only_in) if only == state]
+
+    def bools_read_in(self, state: int | None) -> list[str]:
+        """The variables of the bool signals that atoms are computed from in a state alone, or at each step."""
+        signals = zip(self.fspa.signals, self.signals, self.read_in, strict=True)
+        return [name for signal, name, only in signals if signal.type == "bool" and only == state]
+
+    @property
+    def reads_sample(self) -> bool:
+        """Whether any signal is looked at: numbers are checked, bools may be read by no atom."""
+        signals = zip(self.fspa.signals, self.read_in, strict=True)
+        return any(signal.type != "bool" or only != -1 for signal, only in signals)
 
     @property
     def used(self) -> frozenset[str]:
@@ -95,14 +108,16 @@ def _program(fspa: Fspa, names: Names) -> Program:
     exclusive = tuple((number, group) for number, group in enumerate(fspa.exclusive) if len(group) > 1)
     compared = {atom for _, group in exclusive for atom in group}
     only_in = _only_in(atoms, [is_sure and place not in compared for place, is_sure in enumerate(sure)], moves)
+    written = tuple(() if only == -1 else statements for only, (statements, _) in zip(only_in, values, strict=True))
     return Program(
         fspa=fspa,
         signals=tuple(signals.values()),
         params=tuple(params.values()),
         atoms=atoms,
-        values=tuple(() if only == -1 else statements for only, (statements, _) in zip(only_in, values, strict=True)),
+        values=written,
         sure=sure,
         only_in=only_in,
+        read_in=_read_in(tuple(signals.values()), only_in, written),
         remarks=_remarks(fspa, only_in),
         exclusive=exclusive,
         states=moves,
@@ -124,6 +139,17 @@ def _only_in(
         reading = [state for state, names in enumerate(used) if name in names]
         found.append((reading or [-1])[0] if is_unseen and len(reading) < 2 else None)
     return tuple(found)
+
+
+def _read_in(
+    signals: Sequence[str], only_in: Sequence[int | None], values: Sequence[Sequence[Statement]]
+) -> tuple[int | None, ...]:
+    """For each signal the one place where the atoms are computed that read it: a state, or at each step."""
+    places: dict[str, set[int | None]] = {name: set() for name in signals}
+    for only, statements in zip(only_in, values, strict=True):
+        for name in read(statements) & places.keys():
+            places[name].add(only)
+    return tuple((*found, -1)[0] if len(found) < 2 else None for found in places.values())
 
 
 def _remarks(fspa: Fspa, only_in: Sequence[int | None]) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from functools import reduce
 from typing import Final
 
 from tltlc.automaton.fspa import Edge, Guard, Implicant
+from tltlc.backends.code.clauses import shorter
 from tltlc.backends.program.tree import (
     All,
     Any,
@@ -85,13 +86,19 @@ class _State:
         return tests[0] if len(tests) == 1 else Any(tuple(tests))
 
     def _robustness(self, primes: Sequence[Implicant]) -> Expression:
-        """The greatest of the primes' least literals; literals that all primes share are taken out."""
+        """The greatest of the primes' least literals, or what is the same with fewer literals, but for -0.
+
+        Literals that all primes share are taken out.
+        """
         shared = _shared(primes)
         rest = [[literal for literal in prime if literal not in shared] for prime in primes]
         terms = [self._value(*literal) for literal in shared]
-        if all(rest):
-            terms.append(_fold("max", [self._least(prime) for prime in rest]))
-        return _fold("min", terms)
+        if not all(rest):
+            return _fold("min", terms)
+        clauses = shorter(rest)
+        if clauses is None:
+            return _fold("min", [*terms, _fold("max", [self._least(prime) for prime in rest])])
+        return _fold("min", [*terms, *(self._greatest(clause) for clause in clauses)])
 
     def _nearest(self, primes: Sequence[Sequence[tuple[int, bool]]]) -> list[Statement]:
         """The most robust of the primes, the first of equals, and the first atom that bounds it."""
@@ -122,6 +129,9 @@ class _State:
 
     def _least(self, prime: Sequence[tuple[int, bool]]) -> Expression:
         return _fold("min", [self._value(*literal) for literal in prime])
+
+    def _greatest(self, clause: Sequence[tuple[int, bool]]) -> Expression:
+        return _fold("max", [self._value(*literal) for literal in clause])
 
     def _value(self, atom: int, polarity: bool) -> Expression:
         value = Variable(self._atoms[atom])
