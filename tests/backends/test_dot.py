@@ -10,10 +10,11 @@ from hypothesis import given, settings
 from tests.backends.strategies import automata, hostile_automata, infinite_automata
 from tests.fixtures import cover_and_hide
 from tltlc import backends, compile_text
-from tltlc.automaton.fspa import Fspa, Pair, Text
+from tltlc.automaton.fspa import Fspa, Guard, Pair, Text
 from tltlc.backends import Options
-from tltlc.backends.dot import FILLS, LINES, graph
-from tltlc.backends.drawing.texts import Guards, visible, wrapped
+from tltlc.backends.dot import FILLS, LINES, MOST_GUARDS, graph
+from tltlc.backends.drawing.folding import marked
+from tltlc.backends.drawing.texts import Guards, arrows, visible, wrapped
 from tltlc.record import replace
 
 
@@ -73,11 +74,16 @@ def test_notations(notation: backends.Notation, label: str, guard: str) -> None:
 
 @settings(max_examples=30, deadline=None)
 @given(automata() | infinite_automata())
-def test_every_state_and_edge_is_drawn_once(fspa: Fspa) -> None:
+def test_every_state_and_guard_is_drawn_once(fspa: Fspa) -> None:
     drawn = parsed(emitted(fspa))
-    expected = sorted((str(edge.source), str(edge.target)) for edge in fspa.edges)
-    assert sorted(pair for pair in drawn.edges() if pair[0] != "start") == expected
     assert len(drawn.nodes()) == len(fspa.states) + 1
+    expected = arrows(fspa, marked(fspa).edges, "unicode")
+    assert sum(map(len, expected.values())) == len(fspa.edges)
+    shown = {tuple(map(int, edge)): words_of(edge.attr["label"]) for edge in drawn.edges() if edge[0] != "start"}
+    assert len(drawn.edges()) == len(shown) + 1
+    assert {ends: text.split() for ends, text in shown.items()} == {
+        ends: " ".join(guards).split() for ends, guards in expected.items()
+    }
 
 
 @settings(max_examples=80, deadline=None)
@@ -85,7 +91,8 @@ def test_every_state_and_edge_is_drawn_once(fspa: Fspa) -> None:
 def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
     drawn = parsed(emitted(fspa))
     assert sorted(drawn.nodes()) == sorted(["start", *(str(state.id) for state in fspa.states)])
-    assert len(drawn.edges()) == len(fspa.edges) + 1
+    ends = {(str(edge.source), str(edge.target)) for edge in fspa.edges}
+    assert sorted(map(tuple, drawn.edges())) == sorted([("start", "0"), *ends])
     for state in fspa.states:
         attributes = drawn.get_node(str(state.id)).attr
         shown = words_of(attributes["label"]).split()[1:]
@@ -93,12 +100,61 @@ def test_hostile_texts_stay_texts(fspa: Fspa) -> None:
         assert attributes["color"] == LINES[state.verdict]
 
 
-def test_edges_that_pairs_tell_apart_are_both_drawn_with_the_pairs() -> None:
+def test_edges_that_pairs_tell_apart_share_an_arrow_with_the_pairs() -> None:
+    """Labels of two loops of a state would cross."""
     (fspa,) = compile_text("signal a: bool spec s { semantics infinite require G F a }")
     drawn = parsed(emitted(replace(fspa, acceptance=(Pair((0,), (1,)), Pair((), (0,))))))
-    loops = [edge for edge in drawn.edges() if tuple(edge) == ("0", "0")]
-    assert sorted(edge.attr["tooltip"] for edge in loops) == ["a [inf 0]", "¬a [fin 0] [inf 1]"]
-    assert all(words_of(edge.attr["label"]).split() == edge.attr["tooltip"].split() for edge in loops)
+    (loop,) = (edge for edge in drawn.edges() if edge[0] == edge[1])
+    assert loop.attr["tooltip"] == "¬a [fin 0] [inf 1]; a [inf 0]"
+    assert words_of(loop.attr["label"]).split() == "¬a [fin 0] [inf 1] a [inf 0]".split()
+
+
+def test_of_very_many_guards_some_are_counted() -> None:
+    fspa = cover_and_hide()
+    edges = tuple(replace(fspa.edges[0], guard=Guard(f"p{index}", ())) for index in range(MOST_GUARDS + 3))
+    drawn = parsed(emitted(replace(fspa, edges=edges)))
+    loop = drawn.get_edge("0", "0")
+    shown = words_of(loop.attr["label"]).split()
+    assert shown == [*(f"p{index}" for index in range(MOST_GUARDS)), "and", "3", "more"]
+    assert loop.attr["tooltip"].endswith(f"; p{MOST_GUARDS + 2}")
+
+
+@pytest.mark.parametrize(
+    ("formula", "legend"),
+    [
+        ("G F a", "A trace is accepted if its steps are marked [inf 0] again and again for ever."),
+        (
+            "F G a",
+            "A trace is accepted if its steps are marked [inf 0] again and again for ever, and [fin 0] only finitely"
+            " often.",
+        ),
+        (
+            "G F a | F G b",
+            "A trace is accepted if, for some n, its steps are marked [inf n] again and again for ever,"
+            " and [fin n] only finitely often.",
+        ),
+        ("F (a & !a)", ""),
+    ],
+)
+def test_the_legend_says_what_pairs_mean(formula: str, legend: str) -> None:
+    (fspa,) = compile_text(f"signal a: bool signal b: bool spec s {{ semantics infinite require {formula} }}")
+    drawn = parsed(emitted(fspa))
+    title = " ".join(words_of(drawn.graph_attr["label"]).split())
+    assert (legend in title) if legend else ("accepted" not in title)
+
+
+@pytest.mark.parametrize(
+    ("formula", "legend"),
+    [
+        ("F a", "Corner: distance to a goal (double outline). Bold arrows come nearer."),
+        ("G a", "Corner: distance to a goal (double outline), ∞ if none can be reached."),
+        ("a & !a", "Corner: distance to a goal, ∞ if none can be reached."),
+    ],
+)
+def test_the_legend_says_what_is_there(formula: str, legend: str) -> None:
+    (fspa,) = compile_text(f"signal a: bool spec s = {formula}")
+    drawn = parsed(emitted(fspa))
+    assert " ".join(words_of(drawn.graph_attr["label"]).split()) == f"s {legend}"
 
 
 def test_a_sketch_has_no_guards() -> None:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+from html import unescape
 
 from hypothesis import given, settings
 
@@ -8,10 +9,12 @@ from tests.backends.strategies import automata, hostile_automata, infinite_autom
 from tests.fixtures import cover_and_hide
 from tltlc import backends, compile_text
 from tltlc.automaton.fspa import Fspa
-from tltlc.backends.drawing.folding import folded
+from tltlc.backends.drawing.shown import shown
+from tltlc.backends.drawing.texts import arrows, visible
 
 STATE = re.compile(r'    state "([^"]*)" as s(\d+)')
 EDGE = re.compile(r"    s(\d+) --> s(\d+): ([^:;]*(?:#\d+;[^:;]*)*)")
+LEGEND = re.compile(r'    state "([^"]*)" as legend')
 CLASS = re.compile(r"    class s(\d+) (satisfied|holding|pending|violated)")
 FOLDED = re.compile(r"    class s(\d+) folded")
 
@@ -22,24 +25,37 @@ def emitted(fspa: Fspa) -> str:
     return text
 
 
+def words(text: str) -> list[str]:
+    """What Mermaid makes of a text, whose lines may be broken anywhere between words."""
+    return unescape(re.sub(r"#(\d+);", r"&#\1;", text.replace("<br/>", " "))).split()
+
+
 def check(fspa: Fspa) -> None:
-    """Every line is one of the few forms that may occur, and each state and edge drawn stands in exactly one."""
-    drawing = folded(fspa)
+    """Every line is one of the few forms that may occur, and each state and arrow drawn stands in exactly one."""
+    drawing = shown(fspa)
     lines = emitted(fspa).splitlines()
     assert lines[:2] == ["stateDiagram-v2", "    direction LR"]
-    rest = [line for line in lines[2:] if not line.startswith("    classDef ")]
+    assert words(lines[2]) == visible(f"accTitle: The automaton of {fspa.name}").split()
+    assert lines[-1] == "    class legend legend"
+    (legend,) = (match[1] for line in lines if (match := LEGEND.fullmatch(line)))
+    rest = [line for line in lines[3:-1] if not line.startswith("    classDef ") and not LEGEND.fullmatch(line)]
     states = [match for line in rest if (match := STATE.fullmatch(line))]
     edges = [match for line in rest if (match := EDGE.fullmatch(line))]
     classes = [match for line in rest if (match := CLASS.fullmatch(line))]
     dashed = [int(match[1]) for line in rest if (match := FOLDED.fullmatch(line))]
     assert [int(match[2]) for match in states] == [state.id for state in drawing.states]
-    assert [(int(match[1]), int(match[2])) for match in edges] == [(edge.source, edge.target) for edge in drawing.edges]
+    expected = arrows(fspa, drawing.edges, "unicode")
+    assert [(int(match[1]), int(match[2])) for match in edges] == list(expected)
+    assert all(
+        words(match[3]) == visible(" ".join("; ".join(guards).split())).split() or words(match[3])[-1] == "…"
+        for match, guards in zip(edges, expected.values(), strict=True)
+    )
     assert [(int(match[1]), match[2]) for match in classes] == [(state.id, state.verdict) for state in drawing.states]
     assert dashed == list(drawing.folded)
     assert len(states) + len(edges) + len(classes) + len(dashed) + 1 == len(rest)
     assert sum("direction" in line.lower() for line in lines) == 1
-    for match in [*states, *edges]:
-        text = (match[1] if match.re is STATE else match[3]).replace("<br/>", "")
+    for text in [legend, *(match[1] for match in states), *(match[3] for match in edges)]:
+        text = text.replace("<br/>", "")
         assert not re.search(r"""[<>"'`{}\[\]%\\&|:]|(?<!\d);|#(?!\d+;)|-""", text)
 
 
@@ -52,12 +68,13 @@ def test_the_diagram_of_cover_and_hide() -> None:
     assert "    class s4 holding\n" in text
 
 
-def test_edges_that_pairs_tell_apart_are_both_drawn_with_the_pairs() -> None:
+def test_edges_that_pairs_tell_apart_share_an_arrow_with_the_pairs() -> None:
+    """Of two loops of a state, Mermaid draws one."""
     (fspa,) = compile_text("signal a: bool spec s { semantics infinite require G F a }")
     assert [line for line in emitted(fspa).splitlines() if EDGE.fullmatch(line)] == [
-        "    s0 --> s0: ¬a",
-        "    s0 --> s0: a #91;inf 0#93;",
+        "    s0 --> s0: ¬a#59;<br/>a #91;inf 0#93;",
     ]
+    assert "its steps are marked [inf 0] again" in " ".join(words(emitted(fspa)))
     check(fspa)
 
 
@@ -65,6 +82,7 @@ def test_runs_are_folded() -> None:
     (fspa,) = compile_text("signal fast: bool spec quick = eventually within 40 steps fast")
     text = emitted(fspa)
     assert len([line for line in text.splitlines() if STATE.fullmatch(line)]) == 5
+    assert "Dashed#58; 39 of the 43<br/>states, folded." in text
     assert 'state "39 more like these#58;<br/>◇' in text
     assert "    classDef folded stroke-dasharray:6 4\n" in text
     check(fspa)

@@ -12,6 +12,7 @@ from tests.fixtures import cover_and_hide
 from tltlc.automaton.fspa import Edge, Fspa, Guard
 from tltlc.backends.drawing.folding import LEAST_FOLDED, folded, marked
 from tltlc.backends.drawing.rungs import folded_in_step
+from tltlc.backends.drawing.shown import notes, shown
 from tltlc.record import replace
 
 IN_STEP = (
@@ -75,15 +76,15 @@ def test_every_edge_is_drawn_or_is_one_along_a_run(fspa: Fspa) -> None:
         targets.setdefault((edge.source, edge.guard), set()).add(edge.target)
     for edge in fspa.edges:
         source, target = first.get(edge.source, edge.source), first.get(edge.target, edge.target)
-        for shown in targets[source, edge.guard]:
-            if shown == target:
+        for end in targets[source, edge.guard]:
+            if end == target:
                 break
             if source == target:  # along a run, which leads to its end
-                assert shown not in drawing.folded
+                assert end not in drawing.folded
                 break
             # From the last inner rung to the one behind it.
-            if shown in drawing.folded and edge.target in {
-                each.target for each in fspa.edges if each.source == drawing.folded[shown][-1].id
+            if end in drawing.folded and edge.target in {
+                each.target for each in fspa.edges if each.source == drawing.folded[end][-1].id
             }:
                 break
         else:
@@ -110,6 +111,18 @@ def test_ladders_of_the_tests_are_folded() -> None:
 @given(counting() | in_step())
 def test_at_least_what_a_run_alone_would_fold_is_folded(fspa: Fspa) -> None:
     assert len(folded_in_step(fspa).states) <= len(folded(fspa).states)
+
+
+@given(ANY)
+def test_pictures_show_what_leaves_fewer_states_and_say_how_many_are_folded(fspa: Fspa) -> None:
+    drawing = shown(fspa)
+    ways = [folded(fspa), folded_in_step(fspa)]
+    assert drawing in ways
+    assert len(drawing.states) == min(len(each.states) for each in ways)
+    hidden = len(fspa.states) - len(drawing.states)
+    said = [note for note in notes(fspa, drawing) if note.startswith("Dashed")]
+    inside = hidden + len(drawing.folded)
+    assert said == ([f"Dashed: {inside} of the {len(fspa.states)} states, folded."] if hidden else [])
 
 
 @pytest.mark.parametrize(

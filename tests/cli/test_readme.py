@@ -49,9 +49,8 @@ def test_its_picture_is_up_to_date(tltlc, inside: Path) -> None:  # type: ignore
 
 
 def said(picture: str) -> list[tuple[str, ...]]:
-    """Each text and tooltip of an SVG with its colour: where they stand depends on the fonts of a machine."""
-    link = "{http://www.w3.org/1999/xlink}title"
+    """Each text and title of an SVG with its colour: where they stand depends on the fonts of a machine."""
     return [
-        (each.tag, each.text or "", each.get(link, ""), each.get("fill", ""), each.get("stroke", ""))
+        (each.tag, each.text or "", each.get("fill", ""), each.get("stroke", ""))
         for each in ElementTree.fromstring(picture).iter()
     ]

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
-from tltlc.automaton.fspa import Edge, Fspa, State, Verdict
+from tltlc.automaton.fspa import Fspa, State, Verdict
 from tltlc.backends import Files, Options, Target
 from tltlc.backends.drawing.folding import Drawing, span, whole
-from tltlc.backends.drawing.texts import Guards, label, visible, wrapped
+from tltlc.backends.drawing.html_like import BACKED, LEFT, escaped, plain, table
+from tltlc.backends.drawing.shown import notes, on_distances
+from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
 
 if TYPE_CHECKING:
     from graphviz import Digraph
@@ -32,12 +35,25 @@ FILLS: dict[Verdict, str] = {
 Detail = Literal["full", "labels", "sketch"]
 """What the drawing shows: everything; no guards; states by their number alone, for a layout by forces."""
 
-LABEL_WIDTH, GUARD_WIDTH = 30, 22
-LONGEST_TOOLTIP = 2000
-"""In characters: Graphviz reads no string of more than 16 KiB, in which one may take seven."""
+LABEL_WIDTH, GUARD_WIDTH, WIDE_GUARD_WIDTH = 30, 22, 32
+MOST_GUARDS = 24
+"""At one arrow; the others are counted."""
+TITLE_WIDTH = 100
 
 FONT = "Helvetica,Arial,sans-serif"
-GRAPH = {"rankdir": "LR", "bgcolor": "white", "pad": "0.2", "nodesep": "0.45", "ranksep": "0.7", "tooltip": " "}
+GRAPH = {
+    "rankdir": "LR",
+    "bgcolor": "white",
+    "pad": "0.2",
+    "nodesep": "0.45",
+    "ranksep": "0.7",
+    "tooltip": " ",
+    "labelloc": "t",
+    "labeljust": "l",
+    "fontname": FONT,
+    "fontsize": "13",
+    "fontcolor": "#0f172a",
+}
 DENSE_FROM = 30
 """Edges, each with a guard to be placed, from which on the layers get twice as tall as need be."""
 DENSE = {"nodesep": "0.2"}
@@ -62,18 +78,16 @@ def emit(fspa: Fspa, options: Options) -> Files:
 def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: Detail = "full") -> str:
     """The DOT text of a drawing, that of everything if none is given.
 
-    Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting
-    states are green with a double outline, traps red, and folded ones dashed.  Over infinite traces, the pairs that
-    name an edge stand behind its guard: ``a [inf 0]``.
+    Each state shows its label and, as a mark in its upper right corner, its distance.  Accepting states are green with
+    a double outline, traps red, and folded ones dashed.  From one state to another there is one arrow; over infinite
+    traces it may have several guards, each with the pairs that name it behind: ``a [inf 0]``.
     """
     from graphviz import Digraph
 
     drawing = drawing or whole(fspa)
-    texts = Guards(fspa, options.notation)
-    title = {"label": _title(fspa, drawing), "labelloc": "t", "labeljust": "l"}
     dense = DENSE if len(drawing.edges) > DENSE_FROM else {}
     sketch = SKETCH if detail == "sketch" else {}
-    drawn = Digraph(visible(fspa.name), graph_attr={**GRAPH, **title, **dense, **sketch})
+    drawn = Digraph(visible(fspa.name), graph_attr={**GRAPH, "label": _title(fspa, drawing), **dense, **sketch})
     drawn.attr("node", **NODE)
     drawn.attr("edge", **EDGE)
     drawn.node("start", shape="point", style="filled", width="0.09", color="#475569", tooltip="start")
@@ -83,21 +97,25 @@ def graph(fspa: Fspa, options: Options, drawing: Drawing | None = None, detail: 
             drawn, run, span(*(label(end.label, options.notation) for end in (run[0], run[-1]))), detail != "sketch"
         )
     drawn.edge("start", "0")
-    for edge in drawing.edges:
-        _draw_edge(drawn, fspa, edge, texts.text(edge.guard.text), detail == "full")
+    for (source, target), guards in arrows(fspa, drawing.edges, options.notation).items():
+        _draw_arrow(drawn, fspa.states[source], fspa.states[target], guards, detail == "full")
     return str(drawn.source)
 
 
 def _title(fspa: Fspa, drawing: Drawing) -> str:
-    lines = [f"<B>{_html(fspa.name)}</B>"]
+    """The name, what it is for, and what the marks mean that the drawing has."""
+    legend = [line for note in (_legend(fspa, drawing), *notes(fspa, drawing)) for line in wrapped(note, TITLE_WIDTH)]
+    lines = [f"<B>{escaped(fspa.name)}</B>"]
     if fspa.doc.strip():
-        lines += map(_html, wrapped(fspa.doc, 100, 3))
-    if drawing.folded:
-        inside = sum(map(len, drawing.folded.values()))
-        note = f"Dashed: {inside} of the {len(fspa.states)} states, folded."
-        lines.append(f'<FONT COLOR="#64748b">{note}</FONT>')
-    text = "".join(f'{line}<BR ALIGN="LEFT"/>' for line in lines)
-    return f'<<FONT FACE="{FONT}" POINT-SIZE="13" COLOR="#0f172a">{text}</FONT>>'
+        lines += map(escaped, wrapped(fspa.doc, TITLE_WIDTH, 3))
+    lines += (f'<FONT COLOR="#64748b" POINT-SIZE="11">{escaped(line)}</FONT>' for line in legend)
+    lines.append('<FONT POINT-SIZE="6">&#160;</FONT>')  # away from the states
+    return f"<{table(lines, LEFT, spacing=2)}>"
+
+
+def _legend(fspa: Fspa, drawing: Drawing) -> str:
+    nearer = any(_is_nearer(fspa.states[edge.source], fspa.states[edge.target]) for edge in drawing.edges)
+    return on_distances(drawing, "Corner", "double outline") + " Bold arrows come nearer." * nearer
 
 
 def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -> None:
@@ -106,12 +124,11 @@ def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -
     line, fill = LINES[state.verdict], FILLS[state.verdict]
     distance = span(*("∞" if end.distance is None else str(end.distance) for end in (state, last)))
     name = f"state {state.id}" if state is last else f"{len(run)} states, {state.id} to {last.id}"
-    lines = list(map(_html, wrapped(text, LABEL_WIDTH))) if full else [f"<B>{state.id}</B>"]
+    body = "<BR/>".join(map(escaped, wrapped(text, LABEL_WIDTH))) if full else f"<B>{state.id}</B>"
     manner = {"peripheries": "2"} if state.accepting else {}
     if state is not last:
-        lines = [f"<I>{len(run)} more like these</I>", *lines] if full else [f"<B>{state.id}…{last.id}</B>"]
+        body = table([f"<I>{len(run)} more like these</I>", body]) if full else f"<B>{state.id}…{last.id}</B>"
         manner["style"] = f"{NODE['style']},dashed"
-    body = "<BR/>".join(lines)
     mark = f'<FONT COLOR="white" POINT-SIZE="10"><B> {distance} </B></FONT>'
     # A cell gets its share of the width that the label asks for: one column of twelve keeps the mark small.
     html = (
@@ -119,16 +136,19 @@ def _draw_state(drawn: Digraph, run: tuple[State, ...], text: str, full: bool) -
         f'<TD BGCOLOR="{line}" STYLE="ROUNDED">{mark}</TD></TR>'
         f'<TR><TD COLSPAN="12" CELLPADDING="6">{body}</TD></TR></TABLE>>'
     )
-    tip = _plain(f"{name}, {state.verdict}, distance {distance}: {text}")
+    tip = plain(f"{name}, {state.verdict}, distance {distance}: {text}")
     drawn.node(str(state.id), label=html, color=line, fillcolor=fill, tooltip=tip, **manner)
 
 
-def _draw_edge(drawn: Digraph, fspa: Fspa, edge: Edge, text: str, full: bool) -> None:
-    attributes = {"tooltip": _plain(text), **_manner(fspa.states[edge.source], fspa.states[edge.target])}
+def _draw_arrow(drawn: Digraph, source: State, target: State, guards: Sequence[str], full: bool) -> None:
+    attributes = {"tooltip": plain("; ".join(guards)), **_manner(source, target)}
     if full:
-        lines = "<BR/>".join(map(_html, wrapped(text, GUARD_WIDTH)))
-        attributes["label"] = f'<<TABLE BORDER="0" CELLBORDER="0" CELLPADDING="3"><TR><TD>{lines}</TD></TR></TABLE>>'
-    drawn.edge(str(edge.source), str(edge.target), **attributes)
+        width = GUARD_WIDTH if len(guards) == 1 else WIDE_GUARD_WIDTH
+        rows = ["<BR/>".join(map(escaped, wrapped(guard, width))) for guard in guards[:MOST_GUARDS]]
+        rest = len(guards) - len(rows)
+        rows += [f"and {rest} more"] if rest else []
+        attributes["label"] = f"<{table(rows, BACKED, spacing=4)}>"
+    drawn.edge(str(source.id), str(target.id), **attributes)
 
 
 def _manner(source: State, target: State) -> dict[str, str]:
@@ -136,24 +156,10 @@ def _manner(source: State, target: State) -> dict[str, str]:
     if source.id == target.id:
         # Nothing leaves a state that is final: its loop is out of the way on the right, where no edge arrives.
         return {"headport": "e", "tailport": "e"} if source.verdict in ("satisfied", "violated") else {}
-    if source.distance is None:
-        return {}
-    if target.distance is None:
+    if source.distance is not None and target.distance is None:
         return {"color": "#f87171", "weight": "0"}
-    return {"color": "#0f172a", "penwidth": "1.5", "weight": "8"} if target.distance < source.distance else {}
+    return {"color": "#0f172a", "penwidth": "1.5", "weight": "8"} if _is_nearer(source, target) else {}
 
 
-def _plain(text: str) -> str:
-    """A text that means itself: no escapes, and no markup though it may look like it."""
-    from graphviz import escape
-
-    # A subclass of str says so: made a bare str again, "<b>" would be markup.
-    text = visible(text)
-    plain: str = escape(text if len(text) <= LONGEST_TOOLTIP else f"{text[:LONGEST_TOOLTIP]} …")
-    return plain
-
-
-def _html(text: str) -> str:
-    """Text inside an HTML-like label."""
-    escaped = visible(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
-    return escaped.replace('"', "&quot;").replace("[", "&#91;").replace("]", "&#93;")
+def _is_nearer(source: State, target: State) -> bool:
+    return source.distance is not None and target.distance is not None and target.distance < source.distance

@@ -1,19 +1,23 @@
-"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place: in pictures, runs of
-states that count are folded.  Over infinite traces, the pairs that name an edge stand behind its guard.
+"""The automaton as a Mermaid state diagram, which many wikis and code hosts draw in place; what counts is folded.
+
+From one state to another there is one arrow: of several loops of a state Mermaid would draw the last one alone.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
-from tltlc.automaton.fspa import Edge, Fspa, State
+from tltlc.automaton.fspa import Fspa, State
 from tltlc.backends import Files, Options, Target
-from tltlc.backends.drawing.folding import folded, span
-from tltlc.backends.drawing.texts import Guards, label, visible, wrapped
+from tltlc.backends.drawing.folding import span
+from tltlc.backends.drawing.shown import notes, on_distances, shown
+from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
 
 TARGET = Target("mermaid", "a state diagram for Mermaid", (".mmd",))
 
-LABEL_WIDTH = 40
+WIDTH, MOST_LINES = 22, 16
+"""Of a text: Mermaid breaks longer lines itself, anywhere between words."""
 
 CLASSES = """\
     classDef satisfied fill:#dcfce7,stroke:#15803d,stroke-width:4px,color:#0f172a
@@ -21,20 +25,28 @@ CLASSES = """\
     classDef pending fill:#f8fafc,stroke:#475569,color:#0f172a
     classDef violated fill:#fef2f2,stroke:#dc2626,color:#0f172a"""
 DASHED = "    classDef folded stroke-dasharray:6 4"
+LEGEND = "    classDef legend fill:none,stroke:none"
 
 _PLAIN = frozenset(" (),.∞¬∧∨⇒⇔⊤⊥◇□○𝒰")
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.mmd``: labels with their distances, guards, and a class for each verdict; folded states are dashed."""
-    guards, drawing = Guards(fspa, options.notation), folded(fspa)
-    lines = ["stateDiagram-v2", "    direction LR"]
+    """``NAME.mmd``: labels with their distances, guards, a class for each verdict, a legend; folded states are dashed.
+
+    Over infinite traces, the pairs that name an edge stand behind its guard.
+    """
+    drawing = shown(fspa)
+    lines = ["stateDiagram-v2", "    direction LR", f"    accTitle: The automaton of {_escaped(fspa.name)}"]
     lines += [_state(drawing.folded.get(state.id, (state,)), options) for state in drawing.states]
     lines.append("    [*] --> s0")
-    lines += [_edge(edge, guards.text(edge.guard.text)) for edge in drawing.edges]
-    lines += [CLASSES, DASHED] if drawing.folded else [CLASSES]
+    for (source, target), guards in arrows(fspa, drawing.edges, options.notation).items():
+        lines.append(f"    s{source} --> s{target}: {_lines([*(f'{guard};' for guard in guards[:-1]), guards[-1]])}")
+    legend = (on_distances(drawing, "In brackets", "thick outline"), *notes(fspa, drawing))
+    lines.append(f'    state "{_lines(legend)}" as legend')
+    lines += [CLASSES, DASHED, LEGEND] if drawing.folded else [CLASSES, LEGEND]
     lines += [f"    class s{state.id} {state.verdict}" for state in drawing.states]
     lines += [f"    class s{state} folded" for state in drawing.folded]
+    lines.append("    class legend legend")
     return {f"{fspa.name}.mmd": "\n".join([*lines, ""])}
 
 
@@ -42,15 +54,13 @@ def _state(run: tuple[State, ...], options: Options) -> str:
     """A state, or the inner states of a run in one."""
     ends = run[0], run[-1]
     distance = span(*("∞" if state.distance is None else str(state.distance) for state in ends))
-    lines = wrapped(span(*(label(state.label, options.notation) for state in ends)), LABEL_WIDTH)
-    if len(run) > 1:
-        lines = [f"{len(run)} more like these:", *lines]
-    body = "<br/>".join(map(_escaped, lines))
-    return f'    state "{body}<br/>{_escaped(f"[{distance}]")}" as s{run[0].id}'
+    more = [f"{len(run)} more like these:"] if len(run) > 1 else []
+    texts = [*more, span(*(label(state.label, options.notation) for state in ends)), f"[{distance}]"]
+    return f'    state "{_lines(texts)}" as s{run[0].id}'
 
 
-def _edge(edge: Edge, text: str) -> str:
-    return f"    s{edge.source} --> s{edge.target}: {'<br/>'.join(map(_escaped, wrapped(text, LABEL_WIDTH)))}"
+def _lines(texts: Sequence[str]) -> str:
+    return "<br/>".join(_escaped(line) for text in texts for line in wrapped(text, WIDTH, MOST_LINES))
 
 
 def _escaped(text: str) -> str:

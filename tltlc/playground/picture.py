@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from html import escape
 from typing import Final
 
-from tltlc.automaton.fspa import Edge, Fspa, State
+from tltlc.automaton.fspa import Fspa, State
 from tltlc.backends import Notation
-from tltlc.backends.drawing.folding import Drawing, folded, span
-from tltlc.backends.drawing.rungs import folded_in_step
-from tltlc.backends.drawing.texts import Guards, label, visible, wrapped
+from tltlc.backends.drawing.folding import Drawing, span
+from tltlc.backends.drawing.shown import notes, shown
+from tltlc.backends.drawing.texts import arrows, label, visible, wrapped
 from tltlc.diagnostics.formats.text import columns
 from tltlc.playground.curves import Point, bent, drawn
 from tltlc.playground.layout import Box, Size, layout
@@ -30,24 +29,21 @@ _MOST_LINES: Final = 6
 _LOOP: Final = 26.0
 """Height of a loop beside its state."""
 _MARGIN: Final = 20.0
-_one_step: Final = re.compile(r"\b1 step\b")
 _START: Final = 26.0
 """Length of the arrow into the first state."""
 
 
 def picture(fspa: Fspa, notation: Notation = "english") -> tuple[str | None, str]:
-    """The picture, and a note on what it leaves out; of an automaton too large to look at the note alone.
+    """The picture, and notes on it and what it leaves out; of an automaton too large to look at the note alone.
 
     States are groups of the class ``state`` and of their verdict, with ``data-states``, the numbers of the states that
     they stand for; edges are groups of the class ``edge`` with ``data-source`` and ``data-target``.  Both have their
     whole text in words as title: of a long one the beginning is drawn.
     """
-    drawing = min(folded(fspa), folded_in_step(fspa), key=lambda each: len(each.states))
+    drawing = shown(fspa)
     if len(drawing.states) > MOST_STATES or len(drawing.edges) > MOST_EDGES:
         return None, f"The automaton has {len(fspa.states)} states and {len(fspa.edges)} edges, too many for a picture."
-    inside = sum(map(len, drawing.folded.values()))
-    note = f"Dashed: {inside} of the {len(fspa.states)} states, folded." if inside else ""
-    return _Picture(fspa, drawing, notation).svg(), note
+    return _Picture(fspa, drawing, notation).svg(), " ".join(notes(fspa, drawing))
 
 
 class _Picture:
@@ -56,8 +52,8 @@ class _Picture:
     def __init__(self, fspa: Fspa, drawing: Drawing, notation: Notation) -> None:
         self.fspa, self.drawing = fspa, drawing
         self.trap = _trap(drawing)
-        self.guards = _guards(fspa, drawing.edges, notation)
-        self.titles = _guards(fspa, drawing.edges, "english")
+        self.guards = arrows(fspa, drawing.edges, notation)
+        self.titles = arrows(fspa, drawing.edges, "english")
         self.lines = {ends: self._lines(ends) for ends in self.guards}
         self.runs = {state.id: drawing.folded.get(state.id, (state,)) for state in drawing.states}
         self.labels = {state: _label_lines(run, notation) for state, run in self.runs.items()}
@@ -158,21 +154,10 @@ def _trap(drawing: Drawing) -> int | None:
     return next((state for state in traps if state), None)
 
 
-def _guards(fspa: Fspa, edges: Sequence[Edge], notation: Notation) -> Mapping[Ends, list[str]]:
-    """The guards from state to state; over infinite traces there are several, which differ by their pairs."""
-    guards = Guards(fspa, notation)
-    found: dict[Ends, list[str]] = {}
-    for edge in edges:
-        found.setdefault((edge.source, edge.target), []).append(guards.text(edge.guard.text))
-    return found
-
-
 def _label_lines(run: Sequence[State], notation: Notation) -> list[str]:
     first, last = (label(end.label, notation) for end in (run[0], run[-1]))
     if len(run) == 1:
         return _shortened([first], _LABEL)
-    # So that the count is all that differs.
-    last = _one_step.sub("1 steps", last) if notation == "english" else last
     return [f"{len(run)} more like these", *_shortened([span(first, last)], _LABEL)]
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Files, Options
 from tltlc.backends.dot import Detail, graph
-from tltlc.backends.drawing.folding import folded
+from tltlc.backends.drawing.shown import shown
+from tltlc.backends.drawing.worded import worded
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 CHILD = Path(__file__).with_name("child.py")
@@ -34,7 +35,7 @@ ATTEMPTS: tuple[tuple[Detail, str, float, str], ...] = (
 def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
     """``NAME.FORMAT``, or the best that could be done in time.
 
-    Runs of states that count are folded.  Tried in this order, as far as there are not too many
+    States that count are folded.  Tried in this order, as far as there are not too many
     edges, each within ``options.layout_limit_s``: everything in layers; the same without guards, which
     an SVG still has as tooltips; only the states' numbers, by forces.  If nothing is done in time,
     ``NAME.dot``, with nothing folded.  What was left out is reported (TLT0711).
@@ -46,7 +47,7 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
         title = "a picture needs `pygraphviz`, which is not installed"
         raise TltlError([Diagnostic("TLT0730", title, help="pip install 'pygraphviz'")])
     name = f"{fspa.name}.{picture_format}"
-    drawing = folded(fspa)
+    drawing = shown(fspa)
     for detail, engine, most_edges, cut in ATTEMPTS:
         if len(drawing.edges) <= most_edges:
             picture = _laid_out(graph(fspa, options, drawing, detail), picture_format, engine, options.layout_limit_s)
@@ -54,7 +55,7 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
                 if cut:
                     title = f"the picture of `{fspa.name}` shows its {len(fspa.states)} states {cut}: it is too tangled"
                     options.report(Diagnostic("TLT0711", title, help=WHOLE_GRAPH, severity="note"))
-                return {name: picture}
+                return {name: worded(picture, fspa.name, drawing.folded) if picture_format == "svg" else picture}
     title = f"`{fspa.name}` is too tangled to be drawn in time; its graph was written as `{fspa.name}.dot`"
     options.report(Diagnostic("TLT0711", title, help="other tools may draw it", severity="note"))
     return {f"{fspa.name}.dot": graph(fspa, options)}

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 
-from tltlc.automaton.fspa import Fspa, Text
+from tltlc.automaton.fspa import Edge, Fspa, Text
 from tltlc.backends import Notation
 
 _OPERATORS: dict[Notation, dict[str, str]] = {
@@ -51,6 +52,17 @@ class Guards:
 
     def _token(self, token: str) -> str:
         return token if token in self._names else self._operators.get(token, token)
+
+
+def arrows(fspa: Fspa, edges: Iterable[Edge], notation: Notation) -> Mapping[tuple[int, int], list[str]]:
+    """Of each source and target the guards of the edges between them; several, which differ in their pairs, share
+    one arrow over infinite traces.
+    """
+    guards = Guards(fspa, notation)
+    found: dict[tuple[int, int], list[str]] = {}
+    for edge in edges:
+        found.setdefault((edge.source, edge.target), []).append(guards.text(edge.guard.text))
+    return found
 
 
 def visible(text: str) -> str:

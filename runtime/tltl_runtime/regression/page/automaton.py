@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence, Set
 from typing import Final
 from xml.etree import ElementTree
 
@@ -11,15 +12,16 @@ from tltl_runtime.regression.page.markup import Markup, element, short
 from tltl_runtime.regression.page.traffic import Traffic
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import Options, emit
-from tltlc.backends.drawing.folding import folded
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record, replace
 
 _LAYOUT_LIMIT_S: Final = 10.0
 """For each attempt to lay an automaton out, in seconds."""
 
+Ends = tuple[int, int]
+"""The states that an edge leads from and to."""
+
 _NUMBER: Final = re.compile(r"-?\d+(?:\.\d+)?")
-_TITLE: Final = "{http://www.w3.org/1999/xlink}title"
 _THINNEST, _THICKEST = 0.8, 7.0
 _HEIGHT, _MARGIN = 12.0, 4.0
 """Of a letter, and around the picture, in its units."""
@@ -61,25 +63,20 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
     root = ElementTree.fromstring(svg)
     for each in root.iter():
         each.tag = each.tag.rpartition("}")[2]
-        each.attrib.pop("id", None)
-        if each.tag == "a":
-            each.tag = "g"
-            each.attrib.pop(_TITLE, None)
-    inner = {first: tuple(state.id for state in run) for first, run in folded(fspa).folded.items()}
-    whole = {state: first for first, run in inner.items() for state in run}
-    for group in root.iter("g"):
-        title = group.find("title")
-        if title is None or title.text is None:
-            continue
-        if group.get("class") == "node" and title.text.isdigit():
-            states = inner.get(int(title.text), (int(title.text),))
-            _mark_state(group, title, states, now, before)
-        elif group.get("class") == "edge" and not title.text.startswith("start"):
-            # An end may name the side at which it meets its state, after a colon.
-            source, target = (int(end.partition(":")[0]) for end in title.text.split("->"))
-            _mark_edge(group, title, (source, target), whole, now, before)
-        else:
-            group.remove(title)
+    root.remove(root[0])  # its title
+    states = {
+        group: tuple(map(int, numbers.split())) for group in root.iter("g") if (numbers := group.get("data-states"))
+    }
+    edges = {
+        group: (int(source), int(target))
+        for group in root.iter("g")
+        if (source := group.get("data-source")) and (target := group.get("data-target"))
+    }
+    took = [(_taken(seen, states.values(), set(edges.values())), seen.episodes) for seen in (now, before)]
+    for group, run in states.items():
+        _mark_state(group, group[0], run, now, before)
+    for group, ends in edges.items():
+        _mark_edge(group, group[0], ends, [(taken[ends], episodes) for taken, episodes in took])
     _, _, width, height = map(float, _NUMBER.findall(root.get("viewBox", "")))
     top = _top(root)
     for graph in root:
@@ -93,6 +90,21 @@ def picture(fspa: Fspa, svg: bytes, now: Traffic, before: Traffic) -> Markup:
         "style": f"--width: {width:.0f}",
     }
     return Markup(ElementTree.tostring(root, encoding="unicode", short_empty_elements=True))
+
+
+def _taken(seen: Traffic, runs: Collection[tuple[int, ...]], drawn: Set[Ends]) -> Counter[Ends]:
+    """Of each edge that is drawn, how many episodes took it or one that it stands for; runs are drawn as one state."""
+    first = {state: run[0] for run in runs for state in run}
+    folded = [run[0] for run in runs if len(run) > 1]
+
+    def shown(edge: Ends) -> Ends:
+        source, target = (first[end] for end in edge)
+        if source != target and (source, target) not in drawn:
+            # From the end of a run to behind another one: there is a way to that one, and one from there.
+            target = next((each for each in folded if (source, each) in drawn and (each, target) in drawn), target)
+        return source, target
+
+    return Counter(edge for edges in seen.took for edge in {shown(edge) for edge in edges})
 
 
 def _mark_state(
@@ -117,21 +129,19 @@ def _mark_state(
 def _mark_edge(
     group: ElementTree.Element,
     title: ElementTree.Element,
-    ends: tuple[int, int],
-    whole: dict[int, int],
-    now: Traffic,
-    before: Traffic,
+    ends: Ends,
+    taken: Sequence[tuple[int, int]],
 ) -> None:
+    """Thickness and title by how many episodes took the edge, of how many, now and before."""
     if ends[0] == ends[1]:
         group.set("class", "edge loop")
         group.remove(title)
         return
     shown, said = [], []
-    for when, seen in (("now", now), ("before", before)):
-        took = sum(any(tuple(whole.get(end, end) for end in edge) == ends for edge in edges) for edges in seen.took)
-        share = took / seen.episodes if seen.episodes else 0.0
+    for when, (took, episodes) in zip(("now", "before"), taken, strict=True):
+        share = took / episodes if episodes else 0.0
         shown.append(f"--took-{when}: {short(_THINNEST + share * (_THICKEST - _THINNEST))}")
-        said.append(f"{when}: taken by {took} of {seen.episodes} episodes")
+        said.append(f"{when}: taken by {took} of {episodes} episodes")
         if not took:
             group.set("class", f"{group.get('class')} untaken-{when}")
     group.set("style", "; ".join(shown))

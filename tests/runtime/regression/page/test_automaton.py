@@ -17,6 +17,7 @@ from tltl_runtime.regression.page.traffic import Traffic, traffic
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltlc import compile_text
 from tltlc.automaton.fspa import Fspa
+from tltlc.backends.drawing.shown import shown
 
 
 def accounts(episodes: tuple[Episode, ...]) -> list[Account]:
@@ -139,6 +140,26 @@ def test_runs_of_states_that_count_are_one_group() -> None:
     titles = [title.text or "" for title in root.iter("title")]
     (leaving,) = (title for title in titles if title.startswith("From state 2 to state 1;"))
     assert "; now: taken by 4 of 5 episodes" in leaving
+
+
+def test_an_edge_between_the_ends_of_two_runs_counts_where_it_is_drawn() -> None:
+    (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
+    folded = shown(fspa).folded
+    ends = {run[-1].id: first for first, run in folded.items()}
+    # By the last steps of a run: to behind its own end, to behind that of another one, to success.
+    found = [(edge.source, edge.target) for edge in fspa.edges if edge.source in ends]
+    drawn_ends = {(edge.source, edge.target) for edge in shown(fspa).edges}
+    crossing = [edge for edge in found if (ends[edge[0]], edge[1]) not in drawn_ends]
+    assert len(crossing) == 2
+    made = drawn(fspa)
+    assert made.svg is not None
+    for edge in crossing:
+        seen = Traffic(1, {}, {}, (frozenset({edge}),))
+        root = ElementTree.fromstring(picture(fspa, made.svg, seen, seen))
+        titles = [title.text or "" for title in root.iter("title")]
+        (taken,) = (title for title in titles if "taken by 1 of 1" in title)
+        source, target = (int(word) for word in taken.partition(";")[0].split() if word.isdigit())
+        assert source == ends[edge[0]] and target in folded and target != source
 
 
 def test_a_layout_that_takes_too_long_is_said_in_place(fspa: Fspa, monkeypatch: pytest.MonkeyPatch) -> None:

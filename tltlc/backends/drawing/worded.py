@@ -1,0 +1,89 @@
+"""A layout's SVG made ready for its readers: names for those who listen, and texts that are in place in any font."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Final
+from xml.etree import ElementTree as ET
+
+from tltlc.automaton.fspa import State
+from tltlc.backends.drawing.texts import visible
+
+_SVG: Final = "{http://www.w3.org/2000/svg}"
+_LINK_TITLE: Final = "{http://www.w3.org/1999/xlink}title"
+
+Area = tuple[float, float, float, float]
+"""Left, top, right and bottom."""
+
+_number = re.compile(r"-?\d+(?:\.\d+)?")
+_ends = re.compile(r"(\d+)(?::\w+)?->(\d+)(?::\w+)?")
+
+
+def worded(svg: bytes, name: str, folded: Mapping[int, Sequence[State]]) -> bytes:
+    """The picture with a title, and with the tooltips of its states and edges as theirs.
+
+    States have ``data-states``, the numbers of the states that they stand for by ``folded``; edges ``data-source`` and
+    ``data-target``.  Texts are centred in their shape: begun where Graphviz has it, wider fonts would lead out of it.
+    """
+    root = ET.fromstring(svg)
+    root.set("role", "group")
+    title = ET.Element(f"{_SVG}title")
+    title.text = f"The automaton of {visible(name)}"
+    root.insert(0, title)
+    for group in list(root.iter(f"{_SVG}g")):
+        kind = group.get("class")
+        if kind == "graph":
+            group.remove(group[0])
+            _without_links(group)
+        elif kind in ("node", "edge"):
+            _name(group, folded)
+            _centre(group)
+        group.attrib.pop("id", None)
+    ET.register_namespace("", _SVG[1:-1])
+    written: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return written + b"\n"
+
+
+def _name(group: ET.Element, folded: Mapping[int, Sequence[State]]) -> None:
+    """Give a state or an edge its tooltip as title, in place of its name in the graph."""
+    title = group[0]
+    name = title.text or ""
+    title.text = next((link.get(_LINK_TITLE, "") for link in group.iter(f"{_SVG}a")), "start")
+    _without_links(group)
+    group.set("role", "img")
+    if name.isdigit():
+        numbers = [str(state.id) for state in folded.get(int(name), ())]
+        group.set("data-states", " ".join(numbers or [name]))
+    elif ends := _ends.fullmatch(name):
+        group.set("data-source", ends[1])
+        group.set("data-target", ends[2])
+        title.text = f"from {ends[1]} to {ends[2]}: {title.text}"
+
+
+def _without_links(group: ET.Element) -> None:
+    """Put what is in links into the group itself: they have a tooltip, and lead nowhere."""
+    inside: list[ET.Element] = []
+    for part in group:
+        link = part.find(f"{_SVG}a")
+        inside += [part] if link is None else link
+    group[:] = inside
+
+
+def _centre(group: ET.Element) -> None:
+    """Anchor each text at the middle of the smallest shape in which it begins."""
+    # The curve of an edge is no shape, and has no filling.
+    shapes = (each for each in group if each.tag in (f"{_SVG}path", f"{_SVG}polygon") and each.get("fill") != "none")
+    areas = [_area(shape) for shape in shapes]
+    for text in group.iter(f"{_SVG}text"):
+        x, y = float(text.get("x", "")), float(text.get("y", ""))
+        around = [area for area in areas if area[0] <= x <= area[2] and area[1] <= y <= area[3]]
+        if around:
+            left, _, right, _ = min(around, key=lambda area: area[2] - area[0])
+            text.set("x", f"{(left + right) / 2:.2f}")
+            text.set("text-anchor", "middle")
+
+
+def _area(shape: ET.Element) -> Area:
+    numbers = [float(found) for found in _number.findall(shape.get("points") or shape.get("d") or "")]
+    return min(numbers[::2]), min(numbers[1::2]), max(numbers[::2]), max(numbers[1::2])
