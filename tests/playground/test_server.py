@@ -39,7 +39,8 @@ def serving(limit_s: float = children.LIMIT_S) -> Iterator[Server]:
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[Server]:
-    with serving() as running:
+    # Long enough for a machine that has other work, too.
+    with serving(60.0) as running:
         yield running
 
 

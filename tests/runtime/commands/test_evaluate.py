@@ -201,6 +201,7 @@ def test_the_folder_of_a_training_knows_the_file_of_its_level(
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "status", "workers"), [("SIGINT", 130, "2"), ("SIGTERM", 143, "1")])
 def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status: int, workers: str) -> None:
     command = [sys.executable, "-m", "tltlc", "evaluate", str(policy), "--episodes", "300", "--workers", workers]

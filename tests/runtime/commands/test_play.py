@@ -85,7 +85,8 @@ def test_keys_move_the_player_and_escape_records(display: dict[str, str], tmp_pa
     episode = judged(tmp_path / "mine.episode.npz")
     assert episode.end == "stopped" and not episode.success
     x, y, _ = way(episode)
-    assert x > 1.0 and y > 1.0
+    # A busy machine plays fewer steps in that time.
+    assert x > 0.3 and y > 0.3
     assert all(episode.actions[:, branch].any() for branch in range(5))
     assert any(snapshot.player.crouching for snapshot in episode.snapshots)
     # Nothing but towards greater x and y was asked for.
@@ -110,7 +111,7 @@ def test_playing_again_and_ctrl_c_lose_nothing(display: dict[str, str], tmp_path
     player.send_signal(signal.SIGINT)
     ended(player, 130)
     first, second = (judged(tmp_path / f"cover_and_hide-v0{number}.episode.npz") for number in ("", "-2"))
-    assert way(first)[0] < -0.5 and way(second)[0] > 0.5
+    assert way(first)[0] < -0.2 and way(second)[0] > 0.2
     assert first.seed != second.seed
     keys(display, "keyup", "Right")
 
@@ -124,8 +125,14 @@ def test_an_end_is_recorded_once_and_a_request_to_end_is_heard(display: dict[str
         encoding="utf-8",
     )
     player = started(display, tmp_path, "navigation", "--spec", "soon.tltl:soon")
-    keys(display, "keydown", "w", "sleep", "1.2", "keyup", "w")
-    (path,) = tmp_path.glob("*.npz")
+    keys(display, "keydown", "w")
+    path = tmp_path / "navigation-v0.episode.npz"
+    for _ in range(300):
+        if path.exists():
+            break
+        time.sleep(0.1)
+    keys(display, "sleep", "0.5", "keyup", "w")
+    assert list(tmp_path.glob("*.npz")) == [path]
     assert judged(path).end == "success"
     player.send_signal(signal.SIGTERM)
     said = ended(player, 143)

@@ -19,8 +19,10 @@ MISSING += [name for name in ("playwright",) if find_spec(name) is None]
 @contextmanager
 def browser() -> Iterator[Browser]:
     """The browser, until the block ends."""
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
 
+    # Machines are shared: what comes at all, comes within this.
+    expect.set_options(timeout=30_000)
     with sync_playwright() as playwright:
         started = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         try:
