@@ -80,7 +80,8 @@ class _Product:
 
     def __init__(self, one: Fspa, other: Fspa, work: Work, impossible: Iterable[Literals] = ()) -> None:
         self._pair, self._work = (one, other), work
-        self._names = tuple(dict.fromkeys(atom.name for fspa in self._pair for atom in fspa.atoms))
+        impossible = tuple(impossible)
+        self._names = _in_order((atom.name for fspa in self._pair for atom in fspa.atoms), impossible)
         self._letters: Letters[Any] = Letters(work)
         groups = [[fspa.atoms[each].name for each in group] for fspa in self._pair for group in fspa.exclusive]
         places = [[self._names.index(name) for name in group] for group in groups]
@@ -218,6 +219,18 @@ class _Product:
                 stack.append((letters.high[node], [*holding, self._names[letters.atom[node]]]))
                 stack.append((letters.low[node], holding))
         return found
+
+
+def _in_order(names: Iterable[str], impossible: Iterable[Literals]) -> tuple[str, ...]:
+    """The names, behind each those that are impossible with it: diagrams explode where such atoms are far apart."""
+    partners: dict[str, dict[str, None]] = {}
+    for literals in impossible:
+        for name, _ in literals:
+            partners.setdefault(name, {}).update(dict.fromkeys(other for other, _ in literals))
+    found: dict[str, None] = {}
+    for name in names:
+        found |= dict.fromkeys((name, *partners.get(name, ())))
+    return tuple(found)
 
 
 def _edges_by_source(fspa: Fspa) -> list[list[int]]:

@@ -270,11 +270,70 @@ def test_atoms_that_are_called_otherwise(tmp_path: Path, tltlc: Run, monkeypatch
     old = "signal noise: ratio\nparam most: ratio = 20 %\nspec hush = G calm\n"
     old += "predicate calm in [-1, 1] = when noise < most: 1  otherwise: -1\n"
     write(old__hush=old, hush=old.replace("calm", "quiet").replace("= 20 %", "in [0, 1] = 20 %"))
-    assert codes(tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json")) == []
+    done = tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json")
+    (called,) = json.loads(done.out)["diagnostics"]
+    assert (done.status, called["severity"], called["title"]) == (0, "note", "`calm` is called `quiet` now")
     write(hush=old.replace("most", "greatest"))
     assert codes(tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json")) == ["error TLT0756"]
     write(hush=old.replace("calm", "quiet").replace("1  otherwise: -1", "-1  otherwise: 1"))
     assert "error TLT0753" in codes(tltlc("breaking", "hush.tltl", "--against", "old", "--format", "json"))
+
+
+HURT = """signal health in [0, 1]
+signal armour in [0, 1]
+param low in [0, 1] = 0.2
+predicate alive in [-1, 1] = health - low
+predicate strong in [-1, 1] = min(health, armour) - low
+spec live = G (alive & strong)
+spec win = F strong
+"""
+
+
+IN_PLACE = "the signal `hp` must be supplied now in place of `health`, to `live` and `win`"
+
+
+@pytest.mark.parametrize(
+    ("changes", "titles"),
+    [
+        ({"health": "hp"}, [IN_PLACE]),
+        # Also where a param is called otherwise.
+        ({"health": "hp", "low": "least"}, [IN_PLACE, "the param `low` is called `least` now"]),
+        # Another range is said besides, and so is a predicate that is another one.
+        (
+            {"health in [0, 1]": "health in [0, 0.9]", "health": "hp"},
+            [IN_PLACE, "the signal `hp` has the range [0, 0.9] now, and had [0, 1]"],
+        ),
+        ({"= health": "= health / 2", "health": "hp"}, [IN_PLACE, "the atom `alive` is judged otherwise"]),
+        # One that takes the place of two is no other name of both.
+        (
+            {"min(health, armour)": "min(hp, hp)", "health": "hp"},
+            [
+                "the signal `hp` must be supplied now in place of `health`, to `live`",
+                "the signal `armour` is no longer read, by `live` and `win`",
+                "the signal `health` is no longer read, by `win`",
+                "the signal `hp` must be supplied now, to `win`",
+                "the atom `strong` is judged otherwise",
+            ],
+        ),
+        # Both are still there.
+        ({"= health": "= armour"}, ["the atom `alive` is judged otherwise"]),
+    ],
+)
+def test_signals_that_are_called_otherwise(
+    changes: dict[str, str],
+    titles: list[str],
+    tltlc: Run,  # noqa: F811
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = HURT
+    for old, new in changes.items():
+        text = text.replace(old, new)
+    write(old__live=HURT, live=text)
+    done = tltlc("breaking", "live.tltl", "--against", "old", "--format", "json")
+    assert [each["title"] for each in json.loads(done.out)["diagnostics"]] == titles
+    assert done.status == 1
 
 
 def test_a_folder_beside(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
@@ -361,6 +420,32 @@ def test_a_library_that_has_changed(
         after, found = after.replace("= level_size", "= size"), ["error TLT0756"]
     write(old__mine=before, mine=after)
     assert codes(tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")) == found
+
+
+def test_what_a_library_says_of_all_specs(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(tmp_path)
+    base = "signal a: bool\nsignal b: bool\nsignal c: bool\nexclusive a, c\n"
+    plain = "import base\nlet d = a and b\n"
+
+    def said(old: str, new: str) -> list[tuple[str, str]]:
+        write(base=base, old__base=base, old__mine=old, mine=new)
+        done = tltlc("breaking", "mine.tltl", "--against", "old", "--format", "json")
+        return [(each["severity"], each["title"]) for each in json.loads(done.out)["diagnostics"]]
+
+    ruled = f"clock 20 Hz\n{plain}exclusive a, b\n"
+    assert said(plain, ruled) == [
+        ("error", "`a` and `b` are exclusive now"),
+        ("error", "specs are sampled every 0.05 s now, and were sampled by no clock"),
+    ]
+    assert said(ruled, plain) == [
+        ("warning", "`a` and `b` are no longer exclusive"),
+        ("error", "specs are sampled by no clock now, and were sampled every 0.05 s"),
+    ]
+    assert said(ruled, ruled.replace("a, b", "b, a").replace("20 Hz", "50 ms")) == []
+    # Of what is imported, the file that declares it tells.
+    assert said(plain, "let d = true\n") == [("error", f"the signal `{name}` is gone") for name in "abc"]
+    Path("old/mine.tltl").unlink()
+    assert tltlc("breaking", "mine.tltl", "--against", "old").err.endswith("0 breaking, 0 changed, 0 compatible\n")
 
 
 def test_a_library_offers_what_it_imports(tltlc: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811

@@ -151,9 +151,69 @@ def test_what_both_sources_declare_to_be_exclusive(tltlc: Run, inside: Path) -> 
 
     assert said("old.tltl", "new.tltl") == ("looser", None)
     assert said("old.tltl", "free.tltl") == ("incomparable", [["b", "a"]])
-    # An artefact has the groups that its own spec needs.
-    assert tltlc("compile", "old.tltl", "-t", "json").status == 0
-    assert said("s.fspa.json", "new.tltl") == ("incomparable", [["b", "a"]])
+
+
+def test_what_an_artefact_does_not_know_to_be_exclusive(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    declared = "signal a: bool\nsignal b: bool\nsignal x in [0, 9]\n"
+
+    def said(spec: str, source: str) -> list[dict[str, object]]:
+        """What is said of the spec as an artefact against the source, and the other way round."""
+        Path("of.tltl").write_text(spec, encoding="utf-8")
+        Path("new.tltl").write_text(source, encoding="utf-8")
+        assert tltlc("compile", "of.tltl", "-t", "json").status == 0
+        sides = ("s.fspa.json", "new.tltl"), ("new.tltl", "s.fspa.json")
+        return [json.loads(tltlc("diff", *pair, "--format", "json").out)["specs"][0] for pair in sides]
+
+    exclusive = f"{declared}exclusive a, b\nspec s = !a\n"
+    there, back = said(f"{declared}exclusive a, b\nspec s = b\n", exclusive)
+    assert (there["relation"], back["relation"]) == ("looser", "stricter")
+    assert there["exclusive"] == [{"atoms": ["a", "b"], "in_a": False, "in_b": True}]
+    assert back["exclusive"] == [{"atoms": ["a", "b"], "in_a": True, "in_b": False}]
+    judged_on = (
+        "judged on traces in which at most one of these holds at a time:\n    `a` and `b` (exclusive in B alone)\n"
+    )
+    assert judged_on in tltlc("diff", "s.fspa.json", "new.tltl").out
+
+    # An artefact of both atoms that has no such group was made where they are not exclusive.
+    there, _ = said(f"{declared}spec s = b & (a | !a & X a)\n", exclusive)
+    assert (there["relation"], there["exclusive"]) == ("incomparable", [])
+
+    # The atom of that name is another one there.
+    of_x = "signal a: bool\nsignal x in [0, 9]\npredicate b = clamp(x - {}, -1, 1)\n"
+    there, _ = said(f"{of_x.format(5)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
+    assert (there["relation"], there["exclusive"]) == ("incomparable", [])
+    there, _ = said(f"{of_x.format(6)}spec s = b\n", f"{of_x.format(6)}exclusive a, b\nspec s = !a\n")
+    assert there["relation"] == "looser"
+
+
+def test_atoms_that_two_sources_call_alike_are_not_exclusive_in_both(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    text = "signal a: bool\nsignal x in [0, 9]\npredicate b = clamp(x - {}, -1, 1)\nexclusive a, b\nspec s = {}\n"
+    Path("old.tltl").write_text(text.format(5, "b"), encoding="utf-8")
+    for number, relation in ((5, "looser"), (6, "incomparable")):
+        Path("new.tltl").write_text(text.format(number, "!a"), encoding="utf-8")
+        (spec,) = json.loads(tltlc("diff", "old.tltl", "new.tltl", "--format", "json").out)["specs"]
+        assert spec["relation"] == relation
+    assert tltlc("diff", "old.tltl", "new.tltl", "--by-name").out.count("B is looser") == 1
+
+
+def test_why_there_is_no_relation(tltlc: Run, inside: Path) -> None:  # noqa: F811
+    Path("ever.tltl").write_text("signal seen: bool\nspec hide { semantics infinite avoid seen }\n", encoding="utf-8")
+    done = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
+    (spec,) = json.loads(done.out)["specs"]
+    assert (done.status, spec["relation"]) == (1, None)
+    assert spec["reason"] == (
+        "B is of another kind than A: A is about traces that end, B about traces that never end, so no trace is one of "
+        "both. To compare what they ask for, give both the same `semantics`."
+    )
+    assert spec["beginnings"] == {"relation": "equivalent", "only_a": None, "only_b": None}
+    text = "signal seen: bool\nspec hide { semantics infinite avoid not seen }\n"
+    Path("ever.tltl").write_text(text, encoding="utf-8")
+    done = tltlc("diff", "hide.tltl", "ever.tltl", "--format", "json")
+    (spec,) = json.loads(done.out)["specs"]
+    assert spec["beginnings"] == {"relation": "incomparable", "only_a": [[]], "only_b": [["seen"]]}
+    jsonschema.validate(json.loads(done.out), SCHEMA)
+    (same,) = json.loads(tltlc("diff", "hide.tltl", "hide.tltl", "--format", "json").out)["specs"]
+    assert (same["relation"], same["reason"]) == ("equivalent", None)
 
 
 def test_one_side_names_the_spec_of_both(tltlc: Run, inside: Path) -> None:  # noqa: F811

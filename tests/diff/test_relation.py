@@ -15,7 +15,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.comparison import Letter, Trace, is_included
 from tltlc.diff.differences import differences
 from tltlc.diff.pairs import diff
-from tltlc.diff.relation import Relation, compare
+from tltlc.diff.relation import Group, Relation, compare
 from tltlc.logic.formula import Formula, always, and_, atom, not_
 from tltlc.logic.oracle import all_traces, holds
 from tltlc.logic.printer import ascii_text
@@ -74,7 +74,7 @@ def test_on_traces_on_which_a_and_b_never_hold_together(first: Formula, second: 
     never = always(not_(and_(atom("a"), atom("b"))))
     a, b = finite(first), finite(second)
     sides = (not is_included(finite(and_(one, never)), other) for one, other in ((first, b), (second, a)))
-    found = compare(a, b, exclusive=[("a", "b", "elsewhere")])
+    found = compare(a, b, exclusive=[Group(("a", "b", "elsewhere"), True, True)])
     assert found.relation == relation_of(*sides)
     for trace in (found.only_a, found.only_b):
         assert trace is None or {"a", "b"} not in trace.prefix
@@ -114,6 +114,31 @@ def test_a_spec_does_not_differ_from_itself(formula: Formula) -> None:
 def test_traces_of_two_kinds_do_not_relate() -> None:
     found = compare(one("signal a: bool spec p = F a"), one("signal a: bool spec p { semantics infinite reach a }"))
     assert (found.relation, found.only_a, found.only_b) == (None, None, None)
+    assert found.beginnings is not None and found.beginnings.relation == "equivalent"
+
+
+@settings(max_examples=80, deadline=None)
+@given(SMALL, SMALL)
+def test_beginnings_of_traces_of_two_kinds_relate(first: Formula, second: Formula) -> None:
+    a, b = finite(first), compiled(second)
+    found = compare(a, b).beginnings
+    assert found is not None
+    short = [trace for length in (1, 2, 3) for trace in product(SAMPLES, repeat=length)]
+    for trace, kept, broken in ((found.only_a, a, b), (found.only_b, b, a)):
+        telling = [each for each in short if not is_broken(kept, each) and is_broken(broken, each)]
+        if trace is None:
+            assert not telling
+        else:
+            assert not is_broken(kept, trace.prefix) and is_broken(broken, trace.prefix)
+            assert len(trace.prefix) <= min(map(len, telling), default=len(trace.prefix))
+    assert found.relation == relation_of(found.only_a is not None, found.only_b is not None)
+
+
+def is_broken(fspa: Fspa, letters: tuple[Letter, ...]) -> bool:
+    state = 0
+    for letter in letters:
+        state = after(fspa, state, letter)
+    return fspa.states[state].verdict == "violated"
 
 
 def test_an_atom_with_another_expression_is_another_atom() -> None:
@@ -197,3 +222,14 @@ def test_a_greater_threshold_is_stricter() -> None:
     # Where a signal is another thing in B, nothing is known of samples.
     other = param.replace("signal fuel in [0, 100]", "signal fuel in [200, 300]").replace("[0, 50]", "[200, 299]")
     assert not compare(one(param.format(20)), one(other.format(250)), real=True).impossible
+
+
+def test_many_thresholds_are_as_one() -> None:
+    def keeps(least: float) -> Fspa:
+        numbers = range(40)
+        signals = "".join(f"signal x{number} in [0, 1]\n" for number in numbers)
+        return one(f"{signals}spec s {{ {' '.join(f'keep x{number} > {least}' for number in numbers)} }}")
+
+    found = compare(keeps(0.1), keeps(0.2), real=True, work=200_000)
+    assert found.relation == "stricter"
+    assert len(found.impossible) == 40

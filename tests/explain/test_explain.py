@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from time import process_time
 
+import jsonschema
 import pytest
 from hypothesis import given, settings
 
@@ -38,6 +39,7 @@ Run = Callable[..., Outcome]
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.tltl"))
 GOLDEN = Path(__file__).parent / "golden"
+SCHEMA = json.loads((ROOT / "tltlc/explain/explain.schema.json").read_text(encoding="utf-8"))
 FORMULAS = formulas(atoms=("a", "b", "c"), max_leaves=5)
 
 
@@ -116,7 +118,7 @@ def test_the_fields_are_those_of_the_automaton(formula: Formula) -> None:
         assert found.states[found.fail.steps[-1].state].verdict == "violated"
     if found.succeed is not None:
         assert fspa.states[found.succeed.steps[-1].state].accepting
-    json.dumps(values(found))
+    jsonschema.validate({"specs": [values(found)]}, SCHEMA)
 
 
 def is_looser(fspa: Fspa, one: int, other: int) -> bool:
@@ -171,6 +173,12 @@ def test_what_breaks_a_spec_is_said_reason_by_reason() -> None:
     (fspa,) = compiler.compile_text("signal a: bool  signal b: bool  spec s { keep a  avoid b  require F a }")
     found = [(failure.when, failure.everywhere) for failure in explain(fspa).failures]
     assert found == [("not a", True), ("b", True)]
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_the_document_of_the_examples(path: Path, tltlc: Run) -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    jsonschema.validate(json.loads(tltlc("explain", path, "--format", "json").out), SCHEMA)
 
 
 def test_json_and_markdown(tltlc: Run) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 
 from benchmarks.mine_traces import Planted, evidence
@@ -20,6 +21,7 @@ SPEC = Planted(
     ("reach near(s1) then near(s2) then near(exit)", "keep alive"),
     {"near(s1)": 0.1, "near(s2)": 0.1, "near(exit)": 0.1, "alive": 0.985, "seen": 0.3},
 )
+SCHEMA = json.loads((ROOT / "tltlc/mine/mine.schema.json").read_text(encoding="utf-8"))
 DECLARED = """\
 signal alive: bool
 signal seen: bool
@@ -58,7 +60,9 @@ def _csv(trace: Recorded) -> str:
 
 
 def proposals(done: Outcome) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = json.loads(done.out)["proposals"]
+    document = json.loads(done.out)
+    jsonschema.validate(document, SCHEMA)
+    found: list[dict[str, Any]] = document["proposals"]
     return found
 
 
@@ -72,6 +76,7 @@ def test_what_is_printed(tltlc: Run, recorded: Path) -> None:
 
 
 def test_the_document(tltlc: Run, recorded: Path) -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
     done = tltlc("mine", "good", "--against", "bad", "--json")
     document = json.loads(done.out)
     assert {key: document[key] for key in ("traces", "counterexamples", "made_up", "complete")} == {
@@ -247,6 +252,23 @@ def test_a_column_that_one_trace_lacks_is_named(tltlc: Run, recorded: Path) -> N
     assert done.status == 0
     assert f"warning[TLT0763]: `{path}` lacks the column `seen`, so it is left out\n" in done.err
     assert "columns left out, being no atoms: time, noticed (" in done.err
+
+
+def test_columns_that_are_called_as_no_atom_are_named(tltlc: Run, inside: Path) -> None:
+    Path("run.csv").write_text("seen,x,the door\nfalse,1.5,false\ntrue,2.5,true\n")
+    done = tltlc("mine", "run.csv")
+    assert (done.status, done.err) == (
+        0,
+        "columns left out, being no atoms: x (`--predicates LIB` computes atoms from numbers)\n"
+        "columns left out, as no atom can be called so: the door (atoms are called `seen` or `at(key)`)\n",
+    )
+
+
+def test_a_library_is_called_by_its_name(tltlc: Run, inside: Path) -> None:
+    Path("run.csv").write_text("x\n1.5\n")
+    done = tltlc("mine", "run.csv", "--predicates", "stealth")
+    assert done.status == 1
+    assert "no predicate of `stealth` can be computed from the columns of the traces" in done.err
 
 
 @pytest.mark.parametrize("text", ["", "alive,seen\n"])

@@ -31,7 +31,7 @@ def test_columns_are_atoms_where_they_hold_truths_alone() -> None:
     assert found == {"alive": True, "health": False, "near(s1)": True}
     words = of_columns(found)
     assert [atom.name for atom in words.reader.atoms] == ["alive", "near(s1)"]
-    assert words.left_out == ("health",)
+    assert (words.left_out, words.misnamed) == (("health",), frozenset())
 
 
 def test_columns_of_json_lines() -> None:
@@ -48,7 +48,7 @@ def test_only_shared_columns_count() -> None:
 def test_columns_that_are_called_like_no_atom_are_left_out(column: str) -> None:
     words = of_columns({"alive": True, column: True})
     assert [atom.name for atom in words.reader.atoms] == ["alive"]
-    assert words.left_out == (column,)
+    assert (words.left_out, words.misnamed) == ((column,), {column})
 
 
 def test_a_column_that_stands_twice_is_told_by_the_reader() -> None:

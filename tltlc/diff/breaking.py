@@ -14,13 +14,15 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.diff import findings as say
 from tltlc.diff.differences import Difference, renamed_params
 from tltlc.diff.pairs import Pair, diff
-from tltlc.diff.renaming import with_names_of
+from tltlc.diff.renaming import renamed_signals, with_names_of, with_signals
 from tltlc.rabin.work import DEFAULT_WORK
-from tltlc.record import EMPTY, record
+from tltlc.record import EMPTY, record, replace
+from tltlc.resolve.spec import Atom
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.diff.library import Offer
+    from tltlc.diff.rules import Rules
 
 _OF_ALL: Final = ("clock", "signal", "param", "atom")
 """What the specs of a file share."""
@@ -28,11 +30,15 @@ _OF_ALL: Final = ("clock", "signal", "param", "atom")
 
 @record
 class Version:
-    """A file at one time: its automata, where its specs are declared, and what it offers if it has no specs."""
+    """A file at one time: its automata, where its specs are declared, and what it offers if it has no specs.
+
+    ``rules`` are of a file without specs that is there.
+    """
 
     automata: tuple[Fspa, ...] = ()
     places: Mapping[str, Label] = EMPTY
     offers: Mapping[str, Offer] = EMPTY
+    rules: Rules | None = None
 
 
 @record
@@ -67,8 +73,15 @@ def breaking(change: Change, work: int = DEFAULT_WORK) -> tuple[Diagnostic, ...]
     if not (old.automata or new.automata or change.moves):
         from tltlc.diff.offers import changed_offers
 
-        return tuple(changed_offers(old.offers, new.offers))
+        return (*changed_offers(old.offers, new.offers), *_changed_rules(old, new))
     return tuple(_specs(old, new, change.moves, work))
+
+
+def _changed_rules(old: Version, new: Version) -> Iterator[Diagnostic]:
+    if old.rules is not None and new.rules is not None:
+        from tltlc.diff.rules import changed_rules
+
+        yield from changed_rules(old.rules, new.rules)
 
 
 def _specs(old: Version, new: Version, moves: Sequence[Move], work: int) -> Iterator[Diagnostic]:
@@ -100,9 +113,19 @@ def _specs(old: Version, new: Version, moves: Sequence[Move], work: int) -> Iter
 def compared(old: Fspa, new: Fspa, work: int) -> Pair:
     """What is different, with atoms of one name for one: what became of their values is said beside.
 
-    Error as of :func:`breaking`.
+    An atom or signal that has another name is a difference, too, of the old name.  Error as of :func:`breaking`.
     """
-    return diff(old, with_names_of(old, new), True, work)
+    known = with_names_of(old, new)
+    names = renamed_signals(old, known)
+    found = diff(with_signals(old, names), known, True, work)
+    of_old, of_new = ({signal.name: signal for signal in fspa.signals} for fspa in (old, new))
+    renamed = [Difference("signal", name, of_old[name], of_new[now]) for name, now in names.items()]
+    renamed += [
+        Difference("atom", before.name, before, now)
+        for before, now in zip(known.atoms, new.atoms, strict=True)
+        if before.name != now.name
+    ]
+    return replace(found, differences=(*renamed, *found.differences))
 
 
 def _of_all(pairs: Sequence[Pair], places: Mapping[str, Label]) -> Iterator[Diagnostic]:
@@ -114,6 +137,7 @@ def _of_all(pairs: Sequence[Pair], places: Mapping[str, Label]) -> Iterator[Diag
                 users.setdefault(difference, []).append(pair)
     new_names = renamed_params(users)
     alike: dict[tuple[str, bool], list[Difference]] = {}
+    called: dict[str, list[Difference]] = {}
     for difference, using in users.items():
         place, specs = places[using[0].b.name], [pair.b.name for pair in using]
         if difference.what == "clock":
@@ -122,9 +146,15 @@ def _of_all(pairs: Sequence[Pair], places: Mapping[str, Label]) -> Iterator[Diag
             yield say.signal(difference, specs, place)
         elif difference.what == "param" and difference.name not in new_names.values():
             yield say.param(difference, new_names.get(difference.name), place)
+        elif isinstance(difference.b, Atom) and difference.b.name != difference.name:
+            called.setdefault(difference.name.partition("(")[0], []).append(difference)
         elif difference.apart is not None:
             predicate = difference.name.partition("(")[0]
             alike.setdefault((predicate, difference.apart.is_judged_otherwise), []).append(difference)
+    for several in called.values():
+        yield say.atoms_called(several, places[users[several[0]][0].b.name])
     for first, *others in alike.values():
         using = users[first]
-        yield say.atom(first, [each.name for each in others], using[0], places[using[0].b.name])
+        # Specs that call signals otherwise find other samples of one atom.
+        names = list(dict.fromkeys(each.name for each in others if each.name != first.name))
+        yield say.atom(first, names, using[0], places[using[0].b.name])

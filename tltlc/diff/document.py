@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from tltlc.comparison import Trace
 from tltlc.diff.traces import in_order
+from tltlc.diff.wording import unrelated
 from tltlc.expression_json import to_json
 from tltlc.resolve.spec import Atom, Param, Signal
 
@@ -32,12 +33,28 @@ def _pair(pair: Pair) -> dict[str, Any]:
         "name_a": pair.a.name,
         "name_b": pair.b.name,
         "relation": comparison.relation,
+        "reason": unrelated(pair.a, pair.b) if comparison.relation is None else None,
+        "beginnings": _beginnings(pair),
         "only_a": _trace(pair, comparison.only_a),
         "only_b": _trace(pair, comparison.only_b),
         "different_atoms": list(comparison.split),
         "left_out": [[{"atom": name, "holds": holds} for name, holds in each] for each in comparison.impossible],
+        "exclusive": [
+            {"atoms": list(each.names), "in_a": each.in_a, "in_b": each.in_b} for each in comparison.exclusive
+        ],
         "differences": [_difference(each) for each in pair.differences],
     }
+
+
+def _beginnings(pair: Pair) -> dict[str, Any] | None:
+    """How what does not break the two for good relates, where traces of two kinds do not."""
+    found = pair.comparison.beginnings
+    if found is None:
+        return None
+    only_a, only_b = (
+        trace and [in_order(pair, letter) for letter in trace.prefix] for trace in (found.only_a, found.only_b)
+    )
+    return {"relation": found.relation, "only_a": only_a, "only_b": only_b}
 
 
 def _trace(pair: Pair, trace: Trace | None) -> Any:

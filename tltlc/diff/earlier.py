@@ -44,6 +44,10 @@ class Tree:
         candidates = (self.root.joinpath(*parts[first:]) for first in range(1 if self.is_revision else len(parts) + 1))
         return next((str(each) for each in candidates if is_there(each)), None)
 
+    def libraries(self, folders: Iterable[Path]) -> tuple[Path, ...]:
+        """Folders of libraries as they were; where they were not, as they are."""
+        return tuple(Path(self.at(str(folder)) or folder) for folder in folders)
+
     def holds(self, path: Path) -> bool:
         """Whether a path lies in the tree itself."""
         return _inside(str(path), self.root) is not None

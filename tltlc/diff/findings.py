@@ -13,7 +13,7 @@ from tltlc.diff.traces import step_lines
 from tltlc.diff.values import Apart
 from tltlc.diff.wording import ends_text, listed, sample_text, type_text, value_text, values_text
 from tltlc.record import replace
-from tltlc.resolve.spec import Param, Signal, ValueType
+from tltlc.resolve.spec import Atom, Param, Signal, ValueType
 from tltlc.resolve.values import number_text
 
 BREAKING: Final[Severity] = "error"
@@ -82,6 +82,9 @@ def signal(difference: Difference, specs: Sequence[str], place: Label) -> Diagno
         title = f"the signal `{name}` is no longer read, by {used_by}"
         return Diagnostic("TLT0754", title, (place,), "the game may stop supplying it", COMPATIBLE)
     assert isinstance(difference.a, Signal) and isinstance(difference.b, Signal)
+    if difference.b.name != name:
+        title = f"the signal `{difference.b.name}` must be supplied now in place of `{name}`, to {used_by}"
+        return Diagnostic("TLT0754", title, (place,), f"have the game supply it: {type_text(difference.b)}", BREAKING)
     return signal_type(difference.a, difference.b, place)
 
 
@@ -135,6 +138,15 @@ def atom(difference: Difference, others: Sequence[str], pair: Pair, place: Label
     return values(f"`{difference.name}`", others, difference.apart, types, place)
 
 
+def atoms_called(several: Sequence[Difference], place: Label) -> Diagnostic:
+    """TLT0757: atoms of a predicate have other names, and are the same."""
+    names = [each.b.name for each in several if isinstance(each.b, Atom)]
+    are = "is" if len(names) == 1 else "are"
+    title = f"{listed([each.name for each in several])} {are} called {listed(names)} now"
+    way_out = "nothing needs to be done, unless the game looks for the name in what a monitor says"
+    return Diagnostic("TLT0757", title, (place,), way_out, COMPATIBLE)
+
+
 def values(
     what: str, others: Sequence[str], apart: Apart, types: dict[str, ValueType], place: Label, kind: str = "atom"
 ) -> Diagnostic:
@@ -152,9 +164,29 @@ def values(
 
 def clock(difference: Difference, specs: Sequence[str], place: Label) -> Diagnostic:
     """TLT0758: the clock of specs is another one."""
-    are = "is" if len(specs) == 1 else "are"
-    title = f"{listed(specs)} {are} sampled {_clock(difference.b)} now, and not {_clock(difference.a)}"
-    return Diagnostic("TLT0758", title, (place,), "have the game take a step as often", BREAKING)
+    are, were = ("is", "was") if len(specs) == 1 else ("are", "were")
+    title = f"{listed(specs)} {are} sampled {_clock(difference.b)} now, and {were} sampled {_clock(difference.a)}"
+    return Diagnostic("TLT0758", title, (place,), _as_often(difference.b), BREAKING)
+
+
+def clock_of_all(old: float | None, new: float | None, place: Label) -> Diagnostic:
+    """TLT0758: the clock that a library declares is another one."""
+    title = f"specs are sampled {_clock(new)} now, and were sampled {_clock(old)}"
+    return Diagnostic("TLT0758", title, (place,), _as_often(new), BREAKING)
+
+
+def exclusive_now(names: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0758: a library declares atoms to be exclusive."""
+    way_out = "a sample in which two of them hold is an error to specs that name both: look whether the game has such"
+    return Diagnostic("TLT0758", f"{listed(names)} are exclusive now", (place,), way_out, BREAKING)
+
+
+def no_longer_exclusive(names: Sequence[str], place: Label) -> Diagnostic:
+    """TLT0758: a library no longer does."""
+    title = f"{listed(names)} are no longer exclusive"
+    return Diagnostic(
+        "TLT0758", title, (was(place),), "steps may be skipped, so progress and rewards may differ", CHANGED
+    )
 
 
 def judged_otherwise(name: str, difference: Difference, place: Label) -> Diagnostic:
@@ -241,6 +273,12 @@ def _limit(limit: object) -> str:
 
 def _level(level: object) -> str:
     return f"the level `{level}`" if level else "no level in particular"
+
+
+def _as_often(period: object) -> str:
+    if period is None:
+        return "declare the old clock, if the game takes steps by it"
+    return "have the game take a step as often"
 
 
 def _clock(period: object) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import inf
-from typing import TYPE_CHECKING, Literal, cast
+from typing import Literal, cast
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.diff.values import Meaning, meaning_of
@@ -14,14 +14,9 @@ from tltlc.record import EMPTY, record, replace
 from tltlc.resolve import units
 from tltlc.resolve.predicates import predicate
 from tltlc.resolve.problem import ResolutionError
-from tltlc.resolve.program import resolution
 from tltlc.resolve.scope import Binding
 from tltlc.resolve.spec import Param, Signal, ValueType
 from tltlc.resolve.values import Entity, Env, Quantity, Value
-
-if TYPE_CHECKING:
-    from tltlc.grammar.tree import Module
-    from tltlc.resolve.options import ResolveOptions
 
 Kind = Literal["signal", "param", "predicate", "let", "entity"]
 
@@ -44,9 +39,8 @@ class Offer:
     meanings: Mapping[int, Meaning] = EMPTY
 
 
-def offers(module: Module, options: ResolveOptions) -> Mapping[str, Offer]:
-    """What a module that resolves without errors offers, by name."""
-    env = resolution(module, options).env
+def offers(env: Env) -> Mapping[str, Offer]:
+    """What a module that was resolved without errors offers, by name."""
     return {name: _offer(name, binding, env) for name, binding in env.scope.names.items()}
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diff.assumed import Declared, assumed
 from tltlc.diff.differences import Difference, differences
-from tltlc.diff.relation import Comparison, compare
+from tltlc.diff.relation import Comparison, Group, compare
 from tltlc.rabin.work import DEFAULT_WORK, OutOfWork
 from tltlc.record import record
 
@@ -54,23 +55,27 @@ def diff_files(
     one_each: bool = False,
     by_name: bool = False,
     work: int = DEFAULT_WORK,
-    exclusive: Sequence[Collection[str]] = (),
+    declared: Declared = (None, None),
 ) -> FileDiff:
     """What is different from the specs of A to those of B, each file with its name.
 
     Specs are paired by their names, in the order of A; ``one_each`` pairs the first of each whatever their names.
-    ``by_name`` and ``exclusive`` as of :func:`tltlc.diff.relation.compare`.
+    ``by_name`` as of :func:`tltlc.diff.relation.compare`, ``declared`` as of :func:`tltlc.diff.assumed.assumed`.
     Errors: TLT0750 where a comparison takes more than ``work``.
     """
     ours, theirs = a[1], b[1]
+
+    def pair(one: Fspa, other: Fspa) -> Pair:
+        return diff(one, other, by_name, work, assumed(one, other, declared, by_name=by_name), real=True)
+
     if one_each:
-        return FileDiff(a[0], b[0], (diff(ours[0], theirs[0], by_name, work, exclusive, real=True),))
+        return FileDiff(a[0], b[0], (pair(ours[0], theirs[0]),))
     named = {fspa.name: fspa for fspa in theirs}
     names = {fspa.name for fspa in ours}
     return FileDiff(
         a[0],
         b[0],
-        tuple(diff(fspa, named[fspa.name], by_name, work, exclusive, real=True) for fspa in ours if fspa.name in named),
+        tuple(pair(fspa, named[fspa.name]) for fspa in ours if fspa.name in named),
         tuple(fspa.name for fspa in ours if fspa.name not in named),
         tuple(fspa.name for fspa in theirs if fspa.name not in names),
     )
@@ -81,7 +86,7 @@ def diff(
     b: Fspa,
     by_name: bool = False,
     work: int = DEFAULT_WORK,
-    exclusive: Sequence[Collection[str]] = (),
+    exclusive: Sequence[Group] = (),
     *,
     real: bool = False,
 ) -> Pair:

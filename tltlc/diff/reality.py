@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from tltlc.comparison import Literals, Trace, separating
-from tltlc.expression import Condition, Const, Expression, Op, Param, When
+from tltlc.diff.leaves import Leaf, with_leaves
+from tltlc.expression import Const, Param
 from tltlc.record import replace
-from tltlc.witness.samples import Obstacle, Realiser
+from tltlc.witness.samples import Realiser
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.resolve.spec import Atom, Signal
 
 _MOST: Final = 30
-"""Combinations of literals that are found to be impossible in one comparison."""
+"""Traces that are found to be impossible in one comparison."""
 
 
 class Reality:
@@ -27,25 +27,28 @@ class Reality:
     def __init__(self, a: Fspa, b: Fspa, never: tuple[Literals, ...]) -> None:
         self._never = never
         self.impossible: dict[Literals, None] = {}
+        self._left = _MOST
         self._both = _both(a, b)
         self._realiser = None if self._both is None else Realiser(self._both)
 
     def real(self, trace: Trace | None, one: Fspa, other: Fspa, work: int) -> Trace | None:
         """The trace, which ``one`` alone accepts, if samples are found for it, else another such trace, or None."""
-        while trace is not None and (found := self._obstacle(trace)) is not None:
-            self.impossible[found] = None
+        while trace is not None and self._left and (found := self._obstacles(trace)):
+            self._left -= 1
+            self.impossible |= dict.fromkeys(found)
             trace = separating(one, other, work, (*self._never, *self.impossible))
         return trace
 
-    def _obstacle(self, trace: Trace) -> Literals | None:
-        if self._both is None or self._realiser is None or len(self.impossible) == _MOST:
-            return None
-        for letter in (*trace.prefix, *trace.cycle):
-            found = self._realiser.letter(letter)
-            if isinstance(found, Obstacle):
-                named = [(self._both.atoms[atom].name, holds) for atom, holds in found.literals]
-                return tuple(sorted(named, key=lambda literal: not literal[1]))
-        return None
+    def _obstacles(self, trace: Trace) -> list[Literals]:
+        """Literals of the trace's letters that nothing gives together."""
+        if self._both is None or self._realiser is None:
+            return []
+        found = []
+        for letter in dict.fromkeys((*trace.prefix, *trace.cycle)):
+            for obstacle in self._realiser.obstacles(letter):
+                named = [(self._both.atoms[atom].name, holds) for atom, holds in obstacle.literals]
+                found.append(tuple(sorted(named, key=lambda literal: not literal[1])))
+        return found
 
 
 def _both(a: Fspa, b: Fspa) -> Fspa | None:
@@ -84,29 +87,10 @@ def _common(one: Signal, other: Signal) -> Signal | None:
 
 
 def _atoms(fspa: Fspa) -> list[Atom]:
+    """The atoms with the values of params in their places."""
     values = {param.name: param.value for param in fspa.params}
-    return [replace(atom, expression=_bound(atom.expression, values)) for atom in fspa.atoms]
 
+    def bound(leaf: Leaf) -> Leaf:
+        return Const(values[leaf.name]) if isinstance(leaf, Param) else leaf
 
-def _bound(node: Expression, values: Mapping[str, float]) -> Expression:
-    """The expression with the values of params in their places."""
-    match node:
-        case Param():
-            return Const(values[node.name])
-        case Op():
-            return Op(node.op, tuple(_bound(each, values) for each in node.args))
-        case When():
-            cases = tuple((_bound_condition(when, values), _bound(then, values)) for when, then in node.cases)
-            return When(cases, _bound(node.otherwise, values))
-        case _:
-            return node
-
-
-def _bound_condition(node: Condition, values: Mapping[str, float]) -> Condition:
-    return Condition(
-        node.op,
-        tuple(
-            _bound_condition(each, values) if isinstance(each, Condition) else _bound(each, values)
-            for each in node.args
-        ),
-    )
+    return [replace(atom, expression=with_leaves(atom.expression, bound)) for atom in fspa.atoms]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable, Iterator
 from itertools import combinations
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -13,6 +13,7 @@ from tltlc.record import record, replace
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
+    from tltlc.resolve.spec import Vocabulary
 
 Relation = Literal["equivalent", "stricter", "looser", "incomparable"]
 
@@ -22,13 +23,24 @@ OF_B: Final = " of B"
 
 
 @record
+class Group:
+    """Atoms of which at most one holds at a time, and which of the two say so."""
+
+    names: tuple[str, ...]
+    in_a: bool
+    in_b: bool
+
+
+@record
 class Comparison:
     """What became of A in B.  ``stricter``: every trace that B accepts A accepts, too, and not the other way round.
 
     ``only_a`` is a trace that A alone accepts, ``only_b`` one that B alone accepts, over finite traces shortest ones.
     The names in ``split`` stand for two atoms, which are called ``NAME of A`` and ``NAME of B`` in traces.
-    ``impossible`` are literals that no sample was found to make true together: traces with such samples are left out.
-    ``relation`` is None where one is over finite traces and the other over infinite ones.
+    ``impossible`` are literals that no sample was found to make true together: traces with such samples are left out,
+    and so are those with samples at which two atoms of a group of ``exclusive`` hold.
+    ``relation`` is None where one is over finite traces and the other over infinite ones.  Then ``beginnings`` compares
+    the beginnings of traces that do not break them for good, each as if it accepted these.
     """
 
     relation: Relation | None
@@ -36,6 +48,8 @@ class Comparison:
     only_b: Trace | None = None
     split: tuple[str, ...] = ()
     impossible: tuple[Literals, ...] = ()
+    exclusive: tuple[Group, ...] = ()
+    beginnings: Comparison | None = None
 
 
 def compare(
@@ -45,23 +59,27 @@ def compare(
     by_name: bool = False,
     real: bool = False,
     work: int = DEFAULT_WORK,
-    exclusive: Iterable[Collection[str]] = (),
+    exclusive: Iterable[Group] = (),
 ) -> Comparison:
     """How the traces that B accepts relate to those that A does, over the atoms of both.
 
     Atoms of one name are one if their expressions are equal, and no sample in the ranges of both was found at which
     only one of them holds, by other params; with ``by_name``, always.  With ``real``, traces count only if samples were
-    found that are such: ``fuel > 30`` does not hold without ``fuel > 20``.  Atoms of a group of ``exclusive`` never
-    hold together, nor do those of the groups that the automata have.
+    found that are such: ``fuel > 30`` does not hold without ``fuel > 20``.  ``exclusive`` are groups beside those that
+    the automata have.
 
     Raises:
         OutOfWork: the comparison takes more than ``work`` steps, each way.
     """
     if a.semantics != b.semantics:
-        return Comparison(None)
+        one, other = _unbroken(a), _unbroken(b)
+        found = compare(one, other, by_name=by_name, real=real, work=work, exclusive=exclusive)
+        return replace(found, relation=None, only_a=None, only_b=None, beginnings=found)
     split = () if by_name else different_atoms(a, b)
     one, other = _renamed(a, split, OF_A), _renamed(b, split, OF_B)
-    never = _never(exclusive, one, other)
+    own = _own_groups(one, other)
+    groups = _together((*own, *exclusive), {atom.name for fspa in (one, other) for atom in fspa.atoms})
+    never = tuple(_never(groups, own))
     only_a, only_b = separating(one, other, work, never), separating(other, one, work, never)
     impossible: dict[Literals, None] = {}
     if real and (only_a or only_b):
@@ -75,18 +93,46 @@ def compare(
         if only_a is None
         else ("stricter" if only_b is None else "incomparable")
     )
-    return Comparison(relation, only_a, only_b, split, tuple(impossible))
+    return Comparison(relation, only_a, only_b, split, tuple(impossible), groups)
 
 
-def _never(groups: Iterable[Collection[str]], one: Fspa, other: Fspa) -> tuple[Literals, ...]:
-    """Of each group the pairs that the automata have; an atom that is split, and so called otherwise, is in none."""
-    names = {atom.name for fspa in (one, other) for atom in fspa.atoms}
-    pairs = (pair for group in groups for pair in combinations(sorted(names.intersection(group)), 2))
-    return tuple(((first, True), (second, True)) for first, second in pairs)
+def _unbroken(fspa: Fspa) -> Fspa:
+    """An automaton over finite traces that accepts what does not break another one for good."""
+    states = tuple(replace(state, accepting=state.verdict != "violated") for state in fspa.states)
+    return replace(fspa, semantics="finite", acceptance=(), states=states)
 
 
-def different_atoms(a: Fspa, b: Fspa) -> tuple[str, ...]:
-    """The names that two automata have different atoms for, in the order of A."""
+def _own_groups(one: Fspa, other: Fspa) -> list[Group]:
+    """The groups that the automata have."""
+    return [
+        Group(tuple(fspa.atoms[atom].name for atom in group), fspa is one, fspa is other)
+        for fspa in (one, other)
+        for group in fspa.exclusive
+    ]
+
+
+def _together(groups: Iterable[Group], known: set[str]) -> tuple[Group, ...]:
+    """The groups as far as their atoms are known, each once; one that is split is called otherwise, and not known."""
+    of_known = [replace(group, names=tuple(name for name in group.names if name in known)) for group in groups]
+    found: dict[frozenset[str], Group] = {}
+    for group in of_known:
+        wider = [each for each in of_known if set(group.names) <= set(each.names)]
+        in_a, in_b = any(each.in_a for each in wider), any(each.in_b for each in wider)
+        if len(group.names) > 1:
+            found.setdefault(frozenset(group.names), Group(group.names, in_a, in_b))
+    return tuple(found.values())
+
+
+def _never(groups: Iterable[Group], own: Iterable[Group]) -> Iterator[Literals]:
+    """The pairs of atoms in groups that the automata do not have themselves."""
+    known = [set(group.names) for group in own]
+    for group in groups:
+        if not any(each.issuperset(group.names) for each in known):
+            yield from (((first, True), (second, True)) for first, second in combinations(group.names, 2))
+
+
+def different_atoms(a: Fspa | Vocabulary, b: Fspa | Vocabulary) -> tuple[str, ...]:
+    """The names that stand for different atoms in two automata or vocabularies, in the order of A."""
     places = {atom.name: index for index, atom in enumerate(b.atoms)}
     found = []
     for index, atom in enumerate(a.atoms):

@@ -2,31 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING, Final
 
 from tltlc.comparison import Literals, Trace
 from tltlc.diff.differences import Difference
 from tltlc.diff.traces import block, step_lines, told
-from tltlc.diff.wording import listed, sample_text, type_text, value_text, values_text
+from tltlc.diff.wording import listed, sample_text, type_text, unrelated, value_text, values_text
 from tltlc.resolve.spec import Param, Signal
 from tltlc.resolve.values import number_text
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import State
     from tltlc.diff.pairs import FileDiff, Pair
+    from tltlc.diff.relation import Group, Relation
 
 _RELATIONS: Final = {
     "equivalent": ("B accepts the same traces as A", ""),
     "stricter": ("B is stricter than A", "every trace that B accepts A accepts, too"),
     "looser": ("B is looser than A", "every trace that A accepts B accepts, too"),
     "incomparable": ("B accepts other traces than A", "each accepts some that the other does not"),
-    None: ("B is of another kind than A", "one is about traces that end, the other about traces that never do"),
 }
+_BREAKING: Final[Mapping[Relation | None, str]] = {
+    "equivalent": "The same beginnings of traces break both for good, if any do.",
+    "stricter": "Every beginning of a trace that breaks A for good breaks B, too, and others do.",
+    "looser": "Every beginning of a trace that breaks B for good breaks A, too, and others do.",
+    "incomparable": "Each is broken for good by beginnings of traces that do not break the other.",
+}
+"""By the relation of the beginnings that do not."""
 
+_WIDTH: Final = 100
 _MOST_LEFT_OUT: Final = 5
+_MOST_ATOMS: Final = 10
 _TITLES: Final = {"A": "no longer accepted", "B": "not accepted before"}
-"""Of the tests that B passes, by which of the two accepts the trace."""
+_TITLES_OF_BEGINNINGS: Final = {"A": "broken now", "B": "broken before"}
+"""Of the tests that B passes, by which of the two accepts the trace, or is not broken by it."""
 
 
 def text(found: FileDiff) -> str:
@@ -36,6 +47,9 @@ def text(found: FileDiff) -> str:
     for side, names in (("A", found.only_a), ("B", found.only_b)):
         if names:
             paragraphs.append(f"only in {side}: {listed(names, len(names))}")
+    if found.only_a and found.only_b:
+        one, other = f"{found.a}:{found.only_a[0]}", f"{found.b}:{found.only_b[0]}"
+        paragraphs.append(f"to compare specs of different names, name both, e.g. `{one}` and `{other}`")
     if len(paragraphs) == 1:
         paragraphs.append("there is no spec in either of them")
     return "\n\n".join(paragraphs) + "\n"
@@ -44,22 +58,39 @@ def text(found: FileDiff) -> str:
 def _pair(pair: Pair) -> Iterator[str]:
     """The paragraphs on a pair of specs."""
     comparison = pair.comparison
-    said, meaning = _RELATIONS[comparison.relation]
     name = pair.a.name if pair.a.name == pair.b.name else f"{pair.a.name} and {pair.b.name}"
-    if comparison.relation == "equivalent":
-        said += ", but not all else is the same" if pair.differences else ", and nothing else differs"
-    yield f"{name}\n  {said}{f': {meaning}' if meaning else ''}."
+    if comparison.relation is None:
+        assert comparison.beginnings is not None
+        yield f"{name}\n  {fill(unrelated(pair.a, pair.b), _WIDTH, subsequent_indent='  ')}"
+        yield f"  {_BREAKING[comparison.beginnings.relation]}"
+    else:
+        said, meaning = _RELATIONS[comparison.relation]
+        if comparison.relation == "equivalent":
+            said += ", but not all else is the same" if pair.differences else ", and nothing else differs"
+        yield f"{name}\n  {said}{f': {meaning}' if meaning else ''}."
+    one_sided = [group for group in comparison.exclusive if not (group.in_a and group.in_b)]
+    if one_sided:
+        yield _exclusive(one_sided)
     if comparison.split:
         yield _split(comparison.split)
     if comparison.impossible:
         yield _left_out(comparison.impossible)
-    if comparison.only_a is not None:
-        yield from _trace(pair, comparison.only_a, "A", "B")
-    if comparison.only_b is not None:
-        yield from _trace(pair, comparison.only_b, "B", "A")
+    shown = comparison.beginnings or comparison
+    if shown.only_a is not None:
+        yield from _trace(pair, shown.only_a, "A", "B")
+    if shown.only_b is not None:
+        yield from _trace(pair, shown.only_b, "B", "A")
     if pair.differences:
         lines = ["  what else differs:"] if comparison.relation != "equivalent" else ["  what differs:"]
         yield "\n".join([*lines, *(f"    {sentence(each, pair)}" for each in pair.differences)])
+
+
+def _exclusive(groups: Sequence[Group]) -> str:
+    lines = ["  judged on traces in which at most one of these holds at a time:"]
+    lines += [
+        f"    {listed(group.names, _MOST_ATOMS)} (exclusive in {'A' if group.in_a else 'B'} alone)" for group in groups
+    ]
+    return "\n".join(lines)
 
 
 def _split(names: tuple[str, ...]) -> str:
@@ -84,7 +115,13 @@ def _left_out(several: Sequence[Literals]) -> str:
 def _trace(pair: Pair, trace: Trace, by: str, other: str) -> Iterator[str]:
     """A trace in words and, where a test can tell, as a block."""
     found = told(pair, trace)
-    lines = [f"  a trace that {by} accepts and {other} does not (atoms that are not named do not hold):"]
+    is_whole = pair.comparison.relation is not None
+    what = (
+        f"a trace that {by} accepts and {other} does not"
+        if is_whole
+        else f"a beginning that breaks {other} and not {by}"
+    )
+    lines = [f"  {what} (atoms that are not named do not hold):"]
     lines += [f"    {line}" for line in step_lines(pair, trace.prefix)]
     if trace.cycle:
         lines.append(f"    {'then ' if trace.prefix else ''}again and again:")
@@ -93,7 +130,7 @@ def _trace(pair: Pair, trace: Trace, by: str, other: str) -> Iterator[str]:
     after = "after one round" if trace.cycle else "after these" if len(trace.prefix) > 1 else "after it"
     lines += [f"    {after}, {side} is {_state(states[side])}" for side in (by, other)]
     yield "\n".join(lines)
-    written = block(pair, found, _TITLES[by])
+    written = block(pair, found, (_TITLES if is_whole else _TITLES_OF_BEGINNINGS)[by])
     if written is not None:
         side, lines_of_test = written
         yield f"  as a test of {side}:\n\n{_indented(lines_of_test)}"

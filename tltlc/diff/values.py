@@ -14,7 +14,7 @@ from tltlc.record import record
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.resolve.predicate_check.region import Box, Variable
-    from tltlc.resolve.spec import Param, Signal
+    from tltlc.resolve.spec import Param, Signal, Vocabulary
 
 _ROUNDING: Final = 1e-9
 """How far apart two values may be that count as one."""
@@ -56,9 +56,9 @@ class Apart:
         return one != other
 
 
-def meaning(fspa: Fspa, atom: int) -> Meaning:
-    """What the value of an atom of an automaton is computed from."""
-    return meaning_of(fspa.atoms[atom].expression, fspa.signals, fspa.params)
+def meaning(of: Fspa | Vocabulary, atom: int) -> Meaning:
+    """What the value of an atom of an automaton or vocabulary is computed from."""
+    return meaning_of(of.atoms[atom].expression, of.signals, of.params)
 
 
 def meaning_of(expression: Expression, signals: tuple[Signal, ...], params: tuple[Param, ...]) -> Meaning:

@@ -32,8 +32,11 @@ def of_artefact(path: str, automata: tuple[Fspa, ...]) -> Version:
 def of_library(path: str, library_dirs: tuple[Path, ...], params: Mapping[str, str]) -> Version:
     """The version of a source that compiles and has no specs."""
     from tltlc.diff.library import offers
+    from tltlc.diff.rules import rules
     from tltlc.grammar.parser import parse
     from tltlc.resolve.options import ResolveOptions
+    from tltlc.resolve.program import resolution
 
     module, _ = parse(read_source(path))
-    return Version(offers=offers(module, ResolveOptions(library_dirs=library_dirs, params=params)))
+    found = resolution(module, ResolveOptions(library_dirs=library_dirs, params=params))
+    return Version(offers=offers(found.env), rules=rules(module, found.program))

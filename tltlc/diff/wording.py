@@ -4,12 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import inf
-from typing import Union
+from typing import TYPE_CHECKING, Final, Union
 
 from tltlc.diff.values import Apart
 from tltlc.resolve import units
 from tltlc.resolve.spec import Param, Signal, ValueType
 from tltlc.resolve.values import number_text, range_text
+
+if TYPE_CHECKING:
+    from tltlc.automaton.fspa import Fspa
+
+_KINDS: Final = {"finite": "traces that end", "infinite": "traces that never end"}
+
+
+def unrelated(a: Fspa, b: Fspa) -> str:
+    """Why a spec over finite traces and one over infinite ones do not relate, with a way out."""
+    return (
+        f"B is of another kind than A: A is about {_KINDS[a.semantics]}, B about {_KINDS[b.semantics]}, so no trace is "
+        "one of both. To compare what they ask for, give both the same `semantics`."
+    )
 
 
 def listed(names: Sequence[str], most: int = 4) -> str:

@@ -40,13 +40,15 @@ class Words:
     """What traces are read with and specs are written in.
 
     ``library`` declares everything; ``entities`` are those that it did not.  ``reader`` is an automaton that accepts
-    everything and has all atoms: their expressions, signals and params.  ``left_out`` are columns that are no atoms.
+    everything and has all atoms: their expressions, signals and params.  ``left_out`` are columns that are no atoms, of
+    which those in ``misnamed`` are true or false, and called as no atom can be.
     """
 
     library: SourceFile
     entities: tuple[str, ...]
     reader: Fspa
     left_out: tuple[str, ...] = ()
+    misnamed: frozenset[str] = frozenset()
 
 
 def of_library(library: SourceFile, columns: Collection[str], options: ResolveOptions) -> Words:
@@ -80,14 +82,14 @@ def of_library(library: SourceFile, columns: Collection[str], options: ResolveOp
 
 def _unreadable(library: SourceFile, words: Vocabulary | None, columns: Collection[str]) -> TltlError:
     """The error where none of the atoms can be computed."""
-    title = f"no predicate of `{library.name}` can be computed from the columns of the traces"
+    title = f"no predicate of `{library.name.strip('<>')}` can be computed from the columns of the traces"
     missing = [signal.name for signal in words.signals if signal.name not in columns] if words else []
     way_out = f"record what its predicates use: {listed(missing[:3])}" if missing else "declare a predicate in it"
     return TltlError([Diagnostic("TLT0760", title, help=way_out)])
 
 
 def of_columns(columns: Mapping[str, bool]) -> Words:
-    """The columns that are true or false as atoms; ``left_out`` are the others, and those whose names are no atom's.
+    """The columns that are true or false as atoms; ``left_out`` are the others, and those that are ``misnamed``.
 
     Raises:
         TltlError: TLT0760, there is none.
@@ -106,7 +108,8 @@ def of_columns(columns: Mapping[str, bool]) -> Words:
         raise _no_columns(names)
     reader = _reader(found)
     read = {atom.name for atom in reader.atoms}
-    return Words(library, (), reader, tuple(name for name in columns if name not in read))
+    left_out = tuple(name for name in columns if name not in read)
+    return Words(library, (), reader, left_out, frozenset(left_out).intersection(names))
 
 
 def _no_columns(truths: Sequence[str]) -> TltlError:

@@ -143,9 +143,9 @@ class Test:
 class Program:
     """A resolved file: its own specs and tests, in order.
 
-    ``exclusive`` are the names of the atoms of each group that it and its imports declare, used or not.
+    ``exclusive`` are the atoms of all groups that it and its imports declare, used or not, with these groups.
     """
 
     specs: tuple[Spec, ...]
     tests: tuple[Test, ...]
-    exclusive: tuple[tuple[str, ...], ...] = ()
+    exclusive: Vocabulary = Vocabulary((), (), (), (), None)

@@ -13,7 +13,7 @@ from tltlc.monitor import MonitorError
 from tltlc.monitor.samples import Samples, check_exclusive, shown
 from tltlc.record import record
 from tltlc.resolve.spec import Signal
-from tltlc.witness.search import Group, groups
+from tltlc.witness.search import Group, Point, groups
 
 if TYPE_CHECKING:
     from tltlc.comparison import Letter
@@ -64,6 +64,15 @@ class Realiser:
             self._known[wanted] = self._found(wanted)
         return self._known[wanted]
 
+    def obstacles(self, letter: Letter) -> tuple[Obstacle, ...]:
+        """Why there is no such sample, of all atoms that share signals at once; none where there is one."""
+        found = self.letter(letter)
+        if not isinstance(found, Obstacle):
+            return ()
+        polarity = {i: atom.name in letter for i, atom in enumerate(self._fspa.atoms)}
+        points = [_point(group, polarity) for group in self._groups]
+        return tuple(each for each in points if isinstance(each, Obstacle)) or (found,)
+
     def letter_of(self, sample: Mapping[str, float]) -> Letter:
         """The letter that a sample is."""
         return self._letter(self._samples.atom_values(sample, 1))
@@ -75,10 +84,9 @@ class Realiser:
         polarity = dict(wanted)
         sample: Sample = {}
         for group in self._groups:
-            asked = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
-            point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(asked)
-            if point is None:
-                return Obstacle(_least(asked, group))
+            point = _point(group, polarity)
+            if isinstance(point, Obstacle):
+                return point
             sample.update(point)
         try:
             check_exclusive(self._fspa, self._samples.atom_values(sample, 1), 1)
@@ -116,6 +124,13 @@ def _cell(signal: Signal, value: float) -> str:
     if signal.type == "bool":
         return "true" if value else "false"
     return shown(value)
+
+
+def _point(group: Group, polarity: Mapping[int, bool]) -> Point | Obstacle:
+    """Values of a group's signals at which its atoms are as asked for; the others do not hold where that can be had."""
+    asked = tuple((atom, polarity[atom]) for atom in group.atoms if atom in polarity)
+    point = group.find(tuple((atom, polarity.get(atom, False)) for atom in group.atoms)) or group.find(asked)
+    return Obstacle(_least(asked, group)) if point is None else point
 
 
 def _least(literals: Implicant, group: Group) -> Implicant:

@@ -107,8 +107,7 @@ def _change(path: str, old: Tree, settings: Settings) -> Change:
     new = _version(path, settings) if is_there or before is None else Version()
     if before is None:
         return Change(path, Version(), new)
-    libraries = tuple(Path(old.at(str(folder)) or folder) for folder in settings.libraries)
-    return Change(path, _version(before, replace(settings, libraries=libraries)), new)
+    return Change(path, _version(before, replace(settings, libraries=old.libraries(settings.libraries))), new)
 
 
 def _version(path: str, settings: Settings) -> Version:

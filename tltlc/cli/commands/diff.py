@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import json
+import os
 from typing import TYPE_CHECKING
 
 import click
 
 from tltlc.cli import exits
 from tltlc.cli.settings import Settings, compile_options, work_of
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import replace
 from tltlc.spec_file import STDIN, split
 
 if TYPE_CHECKING:
     from tltlc.cli.inputs import Input
+    from tltlc.diff.assumed import Declared
     from tltlc.diff.pairs import FileDiff
 
 
@@ -23,6 +26,7 @@ Examples:
   tltlc diff vault.tltl vault_new.tltl             specs of one name, side by side
   tltlc diff vault.tltl:heist vault.tltl:heist_2   two specs of a file
   tltlc diff build/heist.fspa.json vault.tltl      what the artefact does not know yet
+  tltlc diff main:vault.tltl vault.tltl            since a revision of git
   tltlc diff old.tltl new.tltl --format json
 """
 )
@@ -34,7 +38,7 @@ Examples:
     "--format", type=click.Choice(("text", "json")), default="text", help="How to say what differs (default: text)."
 )
 def command(a: str, b: str, by_name: bool, settings: Settings, format: str) -> int:  # noqa: A002
-    """Say how B differs from A (files, FILE:NAME, artefacts, or - for standard input).
+    """Say how B differs from A (files, FILE:NAME, artefacts, REV:FILE of a git revision, or - for standard input).
 
     Whether it is equivalent, stricter or looser, with a shortest trace for each direction, in words and as a test
     block; and what else differs: limit, judge, level, what atoms mean, signals, params, exclusive atoms.  The
@@ -52,7 +56,7 @@ def command(a: str, b: str, by_name: bool, settings: Settings, format: str) -> i
             one_each=one_each,
             by_name=by_name,
             work=work_of(settings),
-            exclusive=_exclusive_in_both(ours, theirs),
+            declared=_declared(ours, theirs),
         )
         if format == "json":
             from tltlc.diff.document import document
@@ -67,12 +71,10 @@ def command(a: str, b: str, by_name: bool, settings: Settings, format: str) -> i
 
 def _opened(a: str, b: str, settings: Settings) -> tuple[Input, Input, bool]:
     """Both files, with the specs to be compared, and whether that is one of each, whatever their names."""
-    from tltlc.cli.inputs import open_input
-
     (path_a, name_a), (path_b, name_b) = split(a), split(b)
     if path_a == path_b == STDIN:
         raise click.UsageError("A and B cannot both be standard input")
-    ours, theirs = open_input(a, settings), open_input(b, settings)
+    ours, theirs = _open(a, settings), _open(b, settings)
     if name_a is None and name_b is None:
         return ours, theirs, False
     ours, theirs = _like(name_b, ours), _like(name_a, theirs)
@@ -80,12 +82,46 @@ def _opened(a: str, b: str, settings: Settings) -> tuple[Input, Input, bool]:
     return ours, theirs, True
 
 
-def _exclusive_in_both(a: Input, b: Input) -> list[frozenset[str]]:
-    """The groups of atoms that both sources declare to be exclusive, whatever their specs use of them."""
-    if a.program is None or b.program is None:
-        return []
-    both = (frozenset(one).intersection(other) for one in a.program.exclusive for other in b.program.exclusive)
-    return [group for group in both if len(group) > 1]
+def _open(argument: str, settings: Settings) -> Input:
+    """A side as :func:`~tltlc.cli.inputs.open_input` reads it; of ``REV:FILE`` the file as it was in that revision.
+
+    Errors: those of :func:`~tltlc.diff.earlier.earlier`, TLT0751 where the revision has no such file.
+    """
+    from tltlc.cli.inputs import open_input
+
+    path, name = split(argument)
+    revision, file = _of_revision(path)
+    if not revision:
+        return open_input(argument, settings)
+    from tltlc.diff.earlier import earlier
+
+    with earlier(revision, [file]) as old:
+        before = old.at(file)
+        if before is None:
+            way_out = "name a file that was there, by its path from the current folder"
+            raise TltlError([Diagnostic("TLT0751", f"there is no file `{file}` in `{revision}`", help=way_out)])
+        of_old = replace(settings, libraries=old.libraries(settings.libraries))
+        try:
+            opened = open_input(before if name is None else f"{before}:{name}", of_old)
+        except TltlError as error:
+            raise TltlError(old.renamed(error.diagnostics)) from None
+        return replace(opened, name=path)
+
+
+def _of_revision(path: str) -> tuple[str, str]:
+    """The revision and the file of ``REV:FILE``; no revision for the path of a file of now."""
+    from tltlc.diff.earlier import SOURCE_ENDINGS
+
+    revision, _, file = path.partition(":")
+    is_drive = os.name == "nt" and len(revision) == 1
+    if not file.endswith(SOURCE_ENDINGS) or is_drive or os.path.exists(path):  # noqa: PTH110 (pathlib raises where a name is too long)
+        return "", path
+    return revision, file
+
+
+def _declared(a: Input, b: Input) -> Declared:
+    """The ``exclusive`` of both files; an artefact does not say what its file declared."""
+    return (a.program.exclusive if a.program else None, b.program.exclusive if b.program else None)
 
 
 def _like(name: str | None, opened: Input) -> Input:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Final
@@ -121,9 +121,8 @@ def command(
         words, evidence, found = gathered(
             _files(traces), _files(counterexamples), library, resolve, _every_second(report)
         )
-        if words.left_out:
-            way_out = "" if predicates else " (`--predicates LIB` computes atoms from numbers)"
-            report.say(f"columns left out, being no atoms: {', '.join(words.left_out)}{way_out}")
+        for line in _left_out(words, predicates):
+            report.say(line)
         report.add(found)
         search = Search(evidence, Options(min_support, max_length))
         whole, interrupted = _searched(search, seconds, report)
@@ -138,6 +137,18 @@ def command(
         elif proposals:
             print(shown(proposals, evidence, search.bits))
     return exits.INTERRUPTED if interrupted else report.status
+
+
+def _left_out(words: Words, predicates: str | None) -> Iterator[str]:
+    """What is said of columns that are no atoms."""
+    misnamed = [name for name in words.left_out if name in words.misnamed]
+    others = [name for name in words.left_out if name not in words.misnamed]
+    if others:
+        way_out = "" if predicates else " (`--predicates LIB` computes atoms from numbers)"
+        yield f"columns left out, being no atoms: {', '.join(others)}{way_out}"
+    if misnamed:
+        names = ", ".join(misnamed)
+        yield f"columns left out, as no atom can be called so: {names} (atoms are called `seen` or `at(key)`)"
 
 
 # --- input ----------------------------------------------------------------------------------------
