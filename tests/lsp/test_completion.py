@@ -38,6 +38,7 @@ def offered(text: str, folder: Path | None = None, before: str = BEFORE, **other
         ("spec a { reach near(s1, ¦", ["close = ", "far = ", "most"], ["target = "]),
         ("spec a { reach near(s1, close = 3 ¦", ["m", "km", "s", "%"], ["steps", "near"]),
         ("spec a { limit 3 ¦", ["steps", "s", "min"], ["m", "%"]),
+        ("clock 20 ¦", ["Hz", "s", "ms"], ["m", "%", "steps"]),
         ("spec a { require eventually within 3 ¦", ["steps", "s"], ["m"]),
         ("spec a { judge ¦", ["at"], ["goal"]),
         ("spec a { judge at ¦", ["goal", "limit"], ["near"]),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.lsp.texts import EXAMPLES, opened
 from tltlc.files import is_file, read_source, unsaved
 from tltlc.lsp.analysis import Request, analyse
@@ -25,6 +27,38 @@ def test_predicates_are_proved_later() -> None:
 def test_an_error_of_syntax_hides_no_other_errors() -> None:
     document, _, _ = opened("import stealth\nspec a = G alive )\nspec b = F neer\n")
     assert [each.code for each in document.said] == ["TLT0105", "TLT0201"]
+
+
+WHOLE = """\
+clock 20 Hz
+import stealth
+entity s1, exit
+let calm = always hidden
+spec leave { limit 9 s  reach near(s1) then near(exit)  keep calm }
+test "t" for leave { step near(s1)  expect pending }
+"""
+
+
+@pytest.mark.parametrize(
+    ("read", "unread"),
+    [
+        ("reach near(s1) then", "reach near(s1) then then"),
+        ("let calm =", "let calm"),
+        ("spec leave {", "spec leave"),
+        ("import stealth", "import"),
+        ("entity s1", "entity , s1"),
+        ("clock 20 Hz", "clock"),
+    ],
+)
+def test_what_cannot_be_read_is_not_missed_elsewhere(read: str, unread: str) -> None:
+    text = WHOLE.replace("clock 20 Hz\n", "").replace("9 s", "9 steps") if "clock" not in read else WHOLE
+    whole, _, _ = opened(text)
+    assert whole.said == ()
+    document, _, _ = opened(text.replace(read, unread))
+    assert len(document.said) == 1
+    # What stands nowhere is missed all the same.
+    document, _, _ = opened(text.replace(read, unread) + "spec b = F neer\n")
+    assert [each.code for each in document.said][1:] == ([] if unread == "import" else ["TLT0201"])
 
 
 def test_the_levels_of_a_project_silence_remarks() -> None:

@@ -87,3 +87,16 @@ def test_a_name_that_covers_another_one_is_its_own() -> None:
     assert isinstance(document, Document)
     assert isinstance(found.contents, types.MarkupContent)
     assert "all s in (s1, s2)" in found.contents.value
+
+
+def test_times_are_said_in_steps() -> None:
+    text = "clock 20 Hz\n" + TEXT.replace("import stealth\n", "").replace("40 steps", "2 s")
+    assert said("2 s", text) == "40 steps of 0.05 s."
+    assert said("limit", text) == "`limit 400 steps` or `limit 20 s`"
+
+
+def test_no_range_is_said_where_there_is_none() -> None:
+    text = "param most: length = 2 m\nsignal far: length\nsignal most_of: length in [0 m, inf]\n"
+    assert said("most: l", text).endswith("A length constant, 2 m.")
+    assert said("far", text).endswith("supplied by the game as metres.")
+    assert said("most_of", text).endswith("supplied by the game as metres; its range is [0 m, inf].")

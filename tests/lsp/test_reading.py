@@ -9,10 +9,12 @@ from lsprotocol import types
 from tests.lsp.client import Client
 from tests.lsp.texts import EXAMPLES, opened
 from tltlc.lsp.document import Document
+from tltlc.lsp.durations import hints
 from tltlc.lsp.folding import folds
 from tltlc.lsp.positions import offset
 from tltlc.lsp.symbols import found
 from tltlc.lsp.tokens import LEGEND, tokens
+from tltlc.source import Span
 
 TEXT = """\
 import stealth
@@ -122,3 +124,38 @@ def test_every_name_of_the_examples_has_a_colour() -> None:
         document, _, _ = opened(path.read_text(encoding="utf-8"), path.parent)
         names = coloured(document, tokens(document, "utf-16"))
         assert [name for name, _, _ in names] == [each.symbol.name for each in document.names]
+
+
+TIMES = """\
+signal a: bool
+let soon = eventually within 150 ms a
+spec s {
+    limit 1 min
+    reach a
+    require always (not a implies F[1 s, 30] a) and next after 0.05 s a and G[5, 20] a
+}
+"""
+
+
+def steps_behind(document: Document, span: Span) -> list[tuple[str, str]]:
+    """The hints of a part of a document, and the unit in front of each."""
+    found = []
+    for hint in hints(document, span, "utf-16"):
+        before = document.source.text[: offset(document.source, hint.position)]
+        found.append((before.split()[-1], str(hint.label)))
+    return found
+
+
+def test_times_are_shown_in_steps() -> None:
+    document, _, _ = opened(f"clock 20 Hz\n{TIMES}")
+    whole = Span(0, len(document.source.text))
+    assert steps_behind(document, whole) == [
+        ("ms", "= 3 steps"),
+        ("min", "= 1200 steps"),
+        ("s", "= 20 steps"),
+        ("s", "= 1 step"),
+    ]
+    limit = document.source.text.index("limit")
+    assert steps_behind(document, Span(limit, limit + 12)) == [("min", "= 1200 steps")]
+    without_clock, _, _ = opened(TIMES)
+    assert steps_behind(without_clock, whole) == []

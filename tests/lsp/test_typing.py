@@ -9,8 +9,9 @@ from tests.lsp.test_server import SPEC, codes
 from tests.lsp.texts import SLOW, opened
 from tltlc.lsp.analysis import Request, analyse
 from tltlc.lsp.kept import kept
-from tltlc.lsp.session import LONG_S
+from tltlc.lsp.queue import LONG_S
 
+END = {"line": 9, "character": 0}
 IDLE = "spec idle = G (alive or not alive)\n"
 
 
@@ -59,6 +60,8 @@ def test_a_file_that_is_saved_is_looked_at_no_more(client: Client, tmp_path: Pat
     client.diagnostics(uri)
     client.diagnostics(main)
     client.diagnostics(main)
+    while len(client.said_of(uri)) < 2:
+        client.diagnostics(uri)
     assert titles(client, main) == ["2 states, distance 0"]
     common.write_text("signal loud: bool\n\n", encoding="utf-8")
     client.tell("workspace/didChangeWatchedFiles", {"changes": [{"uri": uri, "type": 2}]})
@@ -167,6 +170,7 @@ def test_what_takes_long_gives_way_to_what_is_being_written(client: Client, tmp_
     assert client.diagnostics(slow) == []
     uri = client.open(tmp_path / "main.tltl", "signal a: bool\n")
     assert client.diagnostics(uri) == []
+    assert client.diagnostics(uri) == []
     for version in (2, 3):
         assert client.is_quiet(LONG_S + 1)
         client.change(uri, f"signal a{version}: bool\nspec s = G (a{version} or not a{version})\n", version)
@@ -175,3 +179,24 @@ def test_what_takes_long_gives_way_to_what_is_being_written(client: Client, tmp_
     text = "signal a: bool\nspec t = G (a or not a)\n"
     client.change(slow, text, 2)
     assert codes(client.diagnostics(slow, bool)) == ["TLT0411"]
+
+
+def test_hints_follow_the_clock_of_another_file(tmp_path: Path) -> None:
+    client = Client(tmp_path, workspace={"inlayHint": {"refreshSupport": True}})
+    common = client.open(tmp_path / "common.tltl", "clock 20 Hz\nsignal a: bool\n")
+    main = client.open(tmp_path / "main.tltl", 'import "common.tltl"\nspec s = F within 2 s a\n')
+    asked = {"textDocument": {"uri": main}, "range": {"start": {"line": 0, "character": 0}, "end": END}}
+
+    def hints() -> list[tuple[int, str]]:
+        return [(each["position"]["character"], each["label"]) for each in client.ask("textDocument/inlayHint", asked)]
+
+    def refreshed() -> None:
+        client._next(lambda message: message.get("method") == "workspace/inlayHint/refresh")
+
+    assert hints() == [(21, "= 40 steps")]
+    refreshed()
+    refreshed()
+    client.change(common, "clock 10 Hz\nsignal a: bool\n")
+    refreshed()
+    assert hints() == [(21, "= 20 steps")]
+    assert client.close() == 0

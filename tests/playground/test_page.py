@@ -260,6 +260,20 @@ def test_the_table_is_walked_through_by_keyboard(page: Page) -> None:
     expect(page.locator("#moment")).to_contain_text("against exclusive")
 
 
+def test_steps_are_walked_to_both_ends_by_keyboard(page: Page) -> None:
+    page.get_by_role("button", name="Show a success").click()
+    expect(page.locator("#steps .verdict")).to_have_count(3)
+    back, forth = (page.get_by_role("button", name=name) for name in ("Step back", "Step on"))
+    for button, other, last in ((forth, back, "3"), (back, forth, "1")):
+        button.focus()
+        for _ in range(4):
+            page.keyboard.press("Enter")
+        expect(page.locator("#steps tr.current .go")).to_have_text(last)
+        expect(button).to_be_focused()
+        expect(button).to_have_attribute("aria-disabled", "true")
+        expect(other).to_have_attribute("aria-disabled", "false")
+
+
 def test_a_link_restores_everything(page: Page, browser: Browser) -> None:
     write(page, MENDED + "spec other = F a & G !b // ≤ 🎮\n")
     summary(page, "^It compiles")

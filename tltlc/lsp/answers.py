@@ -7,10 +7,12 @@ from typing import Any, Final
 
 from lsprotocol import types
 
+from tltlc.grammar.tree import SpecDecl
 from tltlc.lint.rule import Edit
 from tltlc.lsp import (
     actions,
     completion,
+    durations,
     folding,
     formatting,
     hover,
@@ -122,10 +124,9 @@ def _actions(server: Server, params: types.CodeActionParams) -> list[types.CodeA
     wanted = params.context.only
     if document is None or (wanted is not None and not {"", types.CodeActionKind.QuickFix}.intersection(wanted)):
         return None
-    start, end = (offset(document.source, each, server.encoding) for each in (params.range.start, params.range.end))
     analysis = server.analysis(document)
     findings = analysis.findings if analysis else ()
-    place = Span(start, max(start, end))
+    place = _span(server, document, params.range)
     return actions.actions(document, place, findings, server.encoding, server.texts.uri, server.workspace_edit)
 
 
@@ -135,6 +136,11 @@ def _lenses(server: Server, params: types.CodeLensParams) -> list[types.CodeLens
     # The last ones, so that the lines of the text do not move at each key.
     analysis = server.last_analysis(document) if document else None
     return lenses.lenses(document, uri, analysis, server.encoding) if document and analysis else []
+
+
+def _hints(server: Server, params: types.InlayHintParams) -> list[types.InlayHint] | None:
+    document = server.texts.document(params.text_document.uri)
+    return durations.hints(document, _span(server, document, params.range), server.encoding) if document else None
 
 
 def _folding(server: Server, params: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
@@ -162,12 +168,16 @@ def _find_symbols(server: Server, params: types.WorkspaceSymbolParams) -> list[t
 
 async def run_tests(server: Server, uri: str, spec: str) -> None:
     """Say how the tests of a spec ended."""
-    analysis = await server.analyse_now(uri)
+    analysis = await server.analysis_of(uri)
     figures = next((each for each in analysis.figures if each.spec == spec), None) if analysis else None
     document = server.texts.document(uri)
     if figures is not None:
         text = f"{spec}: {lenses.tests_text(figures)}"
-    elif analysis is None and document is not None and document.is_clean:
+    elif document is None or not any(
+        isinstance(each, SpecDecl) and each.name == spec for each in document.module.declarations
+    ):
+        text = f"there is no spec `{spec}`, so there are no tests to run"
+    elif analysis is None and document.is_clean:
         text = f"the tests of `{spec}` did not run: a text changed, or its automata take over {LONGEST_S:g} s"
     else:
         text = f"`{spec}` has errors, so its tests did not run"
@@ -187,6 +197,11 @@ def _place(server: Server, params: Any) -> tuple[Document | None, int]:
     """The document that a request is about, and the offset in it."""
     document = server.texts.document(params.text_document.uri)
     return document, offset(document.source, params.position, server.encoding) if document else 0
+
+
+def _span(server: Server, document: Document, asked: types.Range) -> Span:
+    start, end = (offset(document.source, each, server.encoding) for each in (asked.start, asked.end))
+    return Span(start, max(start, end))
 
 
 def _name(server: Server, params: Any) -> Occurrence | None:
@@ -222,6 +237,7 @@ ANSWERS: Final[tuple[tuple[str, Callable[[Server, Any], Any], Any], ...]] = (
         types.CodeActionOptions(code_action_kinds=[types.CodeActionKind.QuickFix]),
     ),
     (types.TEXT_DOCUMENT_CODE_LENS, _lenses, types.CodeLensOptions(resolve_provider=False)),
+    (types.TEXT_DOCUMENT_INLAY_HINT, _hints, types.InlayHintOptions(resolve_provider=False)),
     (types.TEXT_DOCUMENT_FOLDING_RANGE, _folding, None),
     (types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _tokens, tokens.LEGEND),
     (types.TEXT_DOCUMENT_DOCUMENT_SYMBOL, _symbols, None),

@@ -92,6 +92,8 @@ def _units(place: Cursor) -> Iterator[types.CompletionItem]:
     counted = place.first == "limit" or any(token.text in ("within", "for", "after") for token in place.piece[-2:])
     counted = counted or (any(token.type == "LSQB" for token in place.piece[-4:]) and place.start != "declaration")
     known = [*_OF_TIME, *units.time_units()] if counted else [each for each in load().units if each not in _OF_TIME]
+    if place.first == "clock":
+        known = ["Hz", *units.time_units()]
     for unit in known:
         found = units.in_si(1.0, unit)
         detail = units.described(found[1]) if found else "samples"

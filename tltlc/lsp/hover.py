@@ -13,6 +13,7 @@ from tltlc.logic import formula as build
 from tltlc.logic.english import english_text
 from tltlc.lsp.analysis import Analysis
 from tltlc.lsp.document import Document
+from tltlc.lsp.durations import durations, steps_text
 from tltlc.lsp.lenses import figures_text
 from tltlc.lsp.positions import range_of
 from tltlc.lsp.shown import spec_markdown, symbol_markdown
@@ -28,7 +29,12 @@ _LARGEST: Final = 2000
 
 def hover(document: Document, offset: int, analysis: Analysis | None, encoding: str) -> types.Hover | None:
     """What is to be known of the name, keyword or operator at an offset."""
-    found = _name(document, offset, analysis) or _operator(document, offset) or _keyword(document, offset)
+    found = (
+        _name(document, offset, analysis)
+        or _operator(document, offset)
+        or _duration(document, offset)
+        or _keyword(document, offset)
+    )
     if found is None:
         return None
     text, span = found
@@ -59,6 +65,14 @@ def _keyword(document: Document, offset: int) -> tuple[str, Span] | None:
     lines = [_FORMS[token.text]]
     meaning = _meaning_of_clause(document, clause) if clause else None
     return "\n\n".join([*lines, *([meaning] if meaning else [])]), token.span
+
+
+def _duration(document: Document, offset: int) -> tuple[str, Span] | None:
+    period = document.resolution.env.context.clock_s
+    for number, steps in durations(document):
+        if number.span.start <= offset < number.span.end:
+            return f"{steps_text(steps)} of {period:g} s.", number.span
+    return None
 
 
 def _operator(document: Document, offset: int) -> tuple[str, Span] | None:

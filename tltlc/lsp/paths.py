@@ -12,7 +12,11 @@ from tltlc.resolve.imports import STANDARD_LIBRARY_NAME, standard_library
 
 def name_of(uri: str) -> str:
     """What a document is called: its absolute path, or ``<URI>`` where it is no file."""
-    path = uris.to_fs_path(uri) if uri.startswith("file:") else None
+    try:
+        path = uris.to_fs_path(uri) if uri.startswith("file:") else None
+    except ValueError:
+        # ``file://[`` begins an address that does not end.
+        path = None
     return os.path.abspath(path) if path else f"<{uri}>"  # noqa: PTH100 (keeps links as they are)
 
 

@@ -16,6 +16,7 @@ from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.lsp.answers import ANSWERS, FILES_AND_FOLDERS, run_tests
 from tltlc.lsp.lenses import RUN_TESTS
 from tltlc.lsp.paths import name_of
+from tltlc.lsp.protocol import UNREADABLE, Incoming
 from tltlc.lsp.session import Server
 
 _REFUSED: Final = -32803
@@ -27,17 +28,18 @@ _NOBODY_READS: Final = 141
 def serve() -> bool:
     """Speak with an editor over standard input and output until it leaves; whether it took its leave in order."""
     # Copies of the two: whatever else prints, prints to standard error.
-    lines_in, lines_out = os.fdopen(os.dup(0), "rb"), _Line(os.fdopen(os.dup(1), "wb"))
+    lines_in, lines_out = Incoming(os.fdopen(os.dup(0), "rb")), _Line(os.fdopen(os.dup(1), "wb"))
     os.dup2(2, 1)
     # Of the library's log, only faults: editors may cancel what is answered already, and tell what nobody asked for.
     logging.getLogger("pygls").setLevel(logging.ERROR)
-    logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_unforeseen)
+    for part in ("pygls.protocol.json_rpc", "pygls.server"):
+        logging.getLogger(part).addFilter(_is_unforeseen)
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         # A thread waits for the editor's next line, and Python would wait for the thread.
         signal.signal(signal.SIGINT, lambda *_: os._exit(_INTERRUPTED))
     server = create()
     try:
-        server.start_io(lines_in, cast("BinaryIO", lines_out))
+        server.start_io(cast("BinaryIO", lines_in), cast("BinaryIO", lines_out))
     finally:
         server.worker.abandon()
     return server.was_shut_down
@@ -62,8 +64,11 @@ class _Line:
 
 
 def _is_unforeseen(record: logging.LogRecord) -> bool:
-    """Whether a line of the log is about more than a request that was refused."""
-    return not (record.exc_info and isinstance(record.exc_info[1], JsonRpcException))
+    """Whether a line of the log is about more than a message that was refused."""
+    error = record.exc_info[1] if record.exc_info else None
+    if record.msg == "Unable to handle message":
+        return not isinstance(error, UNREADABLE)
+    return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 
 
 def create() -> Server:
@@ -76,9 +81,12 @@ def create() -> Server:
 
 
 def _guarded(server: Server, handler: Callable[[Server, Any], Any]) -> Callable[[Any], Any]:
-    """A handler that turns what it refuses into the protocol's answer."""
+    """A handler that turns what it refuses into the protocol's answer; the user looks at what it is asked about."""
 
     def answer(params: Any) -> Any:
+        document = getattr(params, "text_document", None)
+        if document is not None:
+            server.queue.looked_at(document.uri)
         try:
             return handler(server, params)
         except TltlError as error:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterable, Mapping
-from typing import Final
+from typing import Any, Final, cast
 
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException, JsonRpcParseError
 from pygls.lsp.server import LanguageServer
 
 from tltlc import __version__
@@ -17,6 +18,8 @@ from tltlc.lsp.document import Document
 from tltlc.lsp.kept import kept
 from tltlc.lsp.paths import name_of, path_of
 from tltlc.lsp.positions import UTF_16
+from tltlc.lsp.protocol import UNREADABLE, Protocol
+from tltlc.lsp.queue import Queue
 from tltlc.lsp.remarks import remark, remark_on_project
 from tltlc.lsp.worker import Worker
 from tltlc.lsp.workspace import Workspace
@@ -25,8 +28,6 @@ SOON_S: Final = 0.01
 """Seconds from a change to what is said at once: changes that come together are looked at together."""
 LATER_S: Final = 0.4
 """Seconds without a change after which automata are built."""
-LONG_S: Final = 2.0
-"""An analysis that takes so many seconds gives way to what has been changed since, and begins anew after it."""
 
 
 class Server(LanguageServer):
@@ -34,20 +35,23 @@ class Server(LanguageServer):
 
     def __init__(self) -> None:
         # Editors count the lines of a text in their own way, so it is sent as a whole.
-        super().__init__("tltlc", __version__, text_document_sync_kind=types.TextDocumentSyncKind.Full)
+        full = types.TextDocumentSyncKind.Full
+        super().__init__("tltlc", __version__, text_document_sync_kind=full, protocol_cls=Protocol)
         self.texts = Workspace()
         self.worker = Worker()
+        self.queue = Queue(self._analyse_now, self.worker.abandon)
         self.was_shut_down = False
         self._analyses: dict[str, tuple[Document, Analysis]] = {}
         self._timers: dict[tuple[str, str], asyncio.TimerHandle] = {}
-        self._waiting: dict[str, bool] = {}
-        """What is to be analysed, and whether it is although an analysis is known."""
-        self._working: str | None = None
-        self._working_since = 0.0
-        self._task: asyncio.Task[None] | None = None
-        self._one_at_a_time = asyncio.Lock()
         self._imported: dict[str, list[str]] = {}
         self._said_of_project: dict[str, tuple[Diagnostic, ...]] = {}
+
+    def report_server_error(self, error: Exception, source: Any) -> None:
+        """Tell the editor what went wrong; of a message that is no JSON, what the protocol has for that."""
+        if source is JsonRpcException and isinstance(error, UNREADABLE):
+            cast("Protocol", self.protocol).refuse(None, JsonRpcParseError.of(error))
+        else:
+            super().report_server_error(error, source)
 
     @property
     def encoding(self) -> str:
@@ -81,7 +85,7 @@ class Server(LanguageServer):
     def changed(self, uris: Iterable[str]) -> None:
         """These documents have other texts, or import what has."""
         for uri in uris:
-            self._forget_work(uri)
+            self.queue.drop(uri)
             self._at("now", uri, SOON_S, self._publish, restart=False)
             self._at("later", uri, LATER_S, self._analyse, restart=True)
 
@@ -93,7 +97,7 @@ class Server(LanguageServer):
 
     def closed(self, uri: str) -> None:
         """Nothing more is said of a document."""
-        self._forget_work(uri)
+        self.queue.drop(uri)
         self._analyses.pop(name_of(uri), None)
         for what in ("now", "later", "again"):
             timer = self._timers.pop((what, uri), None)
@@ -108,13 +112,7 @@ class Server(LanguageServer):
         self.was_shut_down = True
         for timer in self._timers.values():
             timer.cancel()
-        self._waiting.clear()
-        self.worker.abandon()
-
-    def _forget_work(self, uri: str) -> None:
-        self._waiting.pop(uri, None)
-        if self._working == uri:
-            self.worker.abandon()
+        self.queue.clear()
 
     def _at(self, what: str, uri: str, delay_s: float, then: Callable[[str], None], *, restart: bool) -> None:
         key = (what, uri)
@@ -165,49 +163,43 @@ class Server(LanguageServer):
         """Have the automata of a document built; what it imports may have names now that nothing uses, or none."""
         before, self._imported[uri] = self._imported.get(uri, []), self.texts.imported(uri)
         self.used_otherwise(dict.fromkeys([*before, *self._imported[uri]]))
-        self._waiting[uri] = False
-        if self._working is not None and asyncio.get_running_loop().time() - self._working_since > LONG_S:
-            self._waiting.setdefault(self._working, True)
-            self.worker.abandon()
-        self._work()
+        self.queue.put(uri)
 
     def _analyse_again(self, uri: str) -> None:
         document = self.texts.document(uri)
         # Of a file without specs, everything may be used elsewhere.
         if document is not None and any(isinstance(each, SpecDecl) for each in document.module.declarations):
-            self._waiting.setdefault(uri, True)
-            self._work()
+            self.queue.put(uri, again=True)
 
-    def _work(self) -> None:
-        if self._task is None or self._task.done():
-            self._task = asyncio.get_running_loop().create_task(self._analyse_waiting())
+    async def analysis_of(self, uri: str) -> Analysis | None:
+        """What is found of a document, built if need be; None where it is not there, broken or changing."""
+        document = self.texts.document(uri)
+        return (self.analysis(document) if document else None) or await self.queue.answer(uri)
 
-    async def _analyse_waiting(self) -> None:
-        while self._waiting:
-            uri = next(iter(self._waiting))
-            await self.analyse_now(uri, again=self._waiting.pop(uri))
-
-    async def analyse_now(self, uri: str, *, again: bool = False) -> Analysis | None:
+    async def _analyse_now(self, uri: str, again: bool) -> Analysis | None:
         """Build the automata of a document and say what is found; None where it is not there, broken or changing."""
-        async with self._one_at_a_time:
-            document = self.texts.document(uri)
-            if document is None or not document.is_clean:
-                return None
-            known = self.analysis(document)
-            if known is not None and not again:
-                return known
-            project = document.project
-            self._working, self._working_since = uri, asyncio.get_running_loop().time()
-            request = Request(document.source, project.libraries, dict(project.lint), self.texts.texts())
-            found = await self.worker.analyse(request)
-            self._working = None
+        document = self.texts.document(uri)
+        if document is None or not document.is_clean:
+            return None
+        known = self.analysis(document)
+        if known is not None and not again:
+            return known
+        project = document.project
+        request = Request(document.source, project.libraries, dict(project.lint), self.texts.texts())
+        found = await self.worker.analyse(request)
         if found is None or self.texts.document(uri) is not document:
             return None
         self._analyses[document.source.name] = (document, found)
         if found == known:
             return found
         self._publish(uri)
-        refresh = self.client_capabilities.workspace and self.client_capabilities.workspace.code_lens
-        if refresh and refresh.refresh_support:
-            self.workspace_code_lens_refresh(None)
+        self._ask_to_look_again()
         return found
+
+    def _ask_to_look_again(self) -> None:
+        """Lenses are made of an analysis, and hints may be made of another file."""
+        workspace = self.client_capabilities.workspace or types.WorkspaceClientCapabilities()
+        if workspace.code_lens and workspace.code_lens.refresh_support:
+            self.workspace_code_lens_refresh(None)
+        if workspace.inlay_hint and workspace.inlay_hint.refresh_support:
+            self.workspace_inlay_hint_refresh(None)

@@ -99,7 +99,7 @@ def _facts(symbol: Symbol, env: Env) -> Iterator[str]:
             dimension = units.TYPES[param.type]
             unit = units.si_unit(dimension)
             value = number_text(param.value) + (f" {unit}" if unit else "")
-            yield f"{_article(param.type)} constant, {value}; its range is {_range(param.low, param.high, param.type)}."
+            yield f"{_article(param.type)} constant, {value}{_range(param.low, param.high, param.type)}."
     elif isinstance(declaration, PredicateDecl):
         low, high = (declaration.interval.low, declaration.interval.high) if declaration.interval else (None, None)
         shown = f"[{symbol.source.slice(low.span)}, {symbol.source.slice(high.span)}]" if low and high else "[-1, 1]"
@@ -117,9 +117,7 @@ def _signal(declaration: SignalDecl, context: Context) -> Iterator[str]:
     if info is None:
         return
     text = f"{_article(info.type)} signal, supplied by the game as {_SUPPLIED.get(info.type, 'a plain number')}"
-    if info.type != "bool":
-        text += f"; its range is {_range(info.low, info.high, info.type)}"
-    yield f"{text}."
+    yield f"{text}{_range(info.low, info.high, info.type)}."
 
 
 def _english(declaration: LetDecl, env: Env) -> str | None:
@@ -138,5 +136,8 @@ def _article(type_: str) -> str:
 
 
 def _range(low: float | None, high: float | None, type_: str) -> str:
+    """What follows on a range; nothing where there is none."""
+    if type_ == "bool" or (low is None and high is None):
+        return ""
     ends = -inf if low is None else low, inf if high is None else high
-    return range_text(*ends, units.TYPES[units.value_type(type_) or "number"])
+    return "; its range is " + range_text(*ends, units.TYPES[units.value_type(type_) or "number"])

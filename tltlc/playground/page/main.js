@@ -119,8 +119,9 @@ function render() {
   for (const input of document.getElementsByName("mode")) input.checked = input.value === mode;
   for (const input of document.getElementsByName("notation")) input.checked = input.value === notation;
   trace.show({ spec, letters, mode, current, rows });
-  byId("back").disabled = current <= 0;
-  byId("forth").disabled = current >= letters.length - 1;
+  // A button that is disabled loses the focus, and who walks by keyboard the place.
+  byId("back").setAttribute("aria-disabled", current <= 0);
+  byId("forth").setAttribute("aria-disabled", current >= letters.length - 1);
   if (!spec) return;
   const row = rows[current];
   const state = row ? (row.error ? null : row.state) : 0;
