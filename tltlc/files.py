@@ -189,6 +189,8 @@ def _neighbour(name: str) -> str | None:
         close = get_close_matches(file, os.listdir(folder or "."), n=1, cutoff=0.85)  # noqa: PTH208
     except OSError:
         return f"there is no folder `{folder}` either"
+    if close and close[0] == file:
+        return "it is a link: what it leads to is gone"
     return f"did you mean `{os.path.join(folder, close[0])}`?" if close else None  # noqa: PTH118
 
 

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.build import DEFAULT_STATE_BUDGET, build
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, stop_at_errors
 from tltlc.files import MAX_ARTEFACT_BYTES, read_source
+from tltlc.grammar.allowed import unsilenced
 from tltlc.grammar.parser import parse
 from tltlc.record import EMPTY, record, replace
 from tltlc.resolve.options import ResolveOptions
-from tltlc.resolve.program import resolve
+from tltlc.resolve.program import resolution
 from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
@@ -50,7 +51,10 @@ class CompileOptions:
 
 @record
 class Compiled:
-    """A compiled file: its ``automata`` in the order of its specs, and ``diagnostics`` that are no errors."""
+    """A compiled file: its ``automata`` in the order of its specs, and what is to be said of it.
+
+    ``diagnostics`` are no errors, and no comment in the file where they are allows them.
+    """
 
     program: Program
     automata: tuple[Fspa, ...]
@@ -66,13 +70,14 @@ def compile_source(source: SourceFile, options: CompileOptions | None = None) ->
     options = options or CompileOptions()
     module, found = parse(source)
     stop_at_errors(found)
-    program, resolved = resolve(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
-    found += resolved
+    resolved = resolution(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
+    program, modules = resolved.program, [loaded.module for loaded in resolved.modules]
+    found += unsilenced(modules, resolved.diagnostics)
     stop_at_errors(found)
     automata: list[Fspa] = []
     for spec in pick_specs(program.specs, options.specs, source.name):
         fspa, remarks = build_spec(spec, options)
-        found += remarks
+        found += unsilenced(modules, remarks)
         if fspa is not None:
             automata.append(fspa)
     stop_at_errors(found)

@@ -8,12 +8,12 @@ notation = "unicode"                  # of formulas in pictures: unicode, ascii 
 formatting = "words"                  # of what `tltlc fmt` writes: words, letters, symbols or unicode
 
 [lint]
-allow = ["TLT0419"]                   # what `tltlc lint` says nothing of; note, warning and error change a severity
+allow = ["TLT0419"]                   # what nothing is said of; note, warning and error change a severity
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -46,6 +46,11 @@ class Project:
     notation: Notation = "unicode"
     lint: Mapping[str, str] = EMPTY
     formatting: str = "words"
+
+    def levelled(self, found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """What the compiler says, with the severities of ``lint``, less what that allows."""
+        left = [each for each in found if self.lint.get(each.code) != "allow"]
+        return tuple(replace(each, severity=self.lint.get(each.code, each.severity)) for each in left)
 
 
 def project_for(path: str) -> Project:

@@ -18,6 +18,10 @@ class Span:
         """The smallest span that covers this one and ``other``."""
         return Span(min(self.start, other.start), max(self.end, other.end))
 
+    def covers(self, other: Span) -> bool:
+        """Whether the other span lies in this one, or is the same."""
+        return self.start <= other.start and other.end <= self.end
+
 
 class SourceFile:
     """A text and the name under which messages speak of it (a path, or ``<stdin>``).

@@ -8,7 +8,7 @@ import sys
 from errno import EBADF
 from typing import TYPE_CHECKING, Final
 
-from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, note, read_source, reading_error
+from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, note, read_bytes, reading_error
 from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
@@ -55,9 +55,15 @@ def read(path: str) -> tuple[SourceFile, bool]:
 
 def read_text(path: str, max_bytes: int) -> SourceFile:
     """The text of a file or of standard input; errors as of :func:`tltlc.files.read_source`."""
+    data, name = read_data(path, max_bytes)
+    return decode(data, name, max_bytes=max_bytes)
+
+
+def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
+    """The bytes of a file or of standard input, and what messages call it; errors as of :func:`read_bytes`."""
     if path == STDIN:
-        return decode(_standard_input().read(max_bytes + 1), STDIN_NAME, max_bytes=max_bytes)
-    return read_source(path, max_bytes=max_bytes)
+        return _standard_input().read(max_bytes + 1), STDIN_NAME
+    return read_bytes(path, path, max_bytes), path
 
 
 def _standard_input() -> BinaryIO:

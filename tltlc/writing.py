@@ -13,6 +13,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
 
 _OPTION: Final = "name another place with -o"
+_WRITABLE: Final = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 
 def write_files(
@@ -38,6 +39,15 @@ def write_files(
 def write_file(path: Path, content: str | bytes, advice: str = _OPTION, *, durable: bool = False) -> None:
     """Write one file into a folder that exists, in the same way; a device or a pipe is written to directly."""
     _write({path: content}, advice, durable)
+
+
+def rewrite(path: Path, content: str) -> None:
+    """Write a source file anew, in the same way; one that is marked as read-only stays, and TLT0005 says so."""
+    mode = _mode(path)
+    # To be renamed over, a file need not be writable.
+    if mode is not None and not (mode & _WRITABLE and os.access(path, os.W_OK)):
+        raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: it is read-only", help="make it writable")])
+    write_file(path, content, "make it and its folder writable")
 
 
 def remove_file(path: Path, advice: str) -> None:

@@ -55,6 +55,17 @@ def test_what_two_files_import_is_told_once(tltlc: Command, inside: Path) -> Non
     assert tltlc("lint", "one.tltl", "two.tltl").err.count("TLT0402") == 1
 
 
+def test_a_file_that_is_read_only_is_not_mended(tltlc: Command, inside: Path) -> None:
+    path = Path("unused.tltl")
+    path.write_text(UNUSED)
+    path.chmod(0o444)
+    done = tltlc("lint", "--fix", "unused.tltl")
+    path.chmod(0o644)
+    assert done.status == 3
+    assert "error[TLT0005]: cannot write `unused.tltl`: it is read-only" in done.err
+    assert path.read_text() == UNUSED
+
+
 def test_standard_input(process) -> None:  # type: ignore[no-untyped-def]
     done = process("lint", "-", stdin=UNUSED.encode())
     assert done.status == 1 and "<stdin>:2:8" in done.err

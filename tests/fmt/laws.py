@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tltlc.fmt import format_text
-from tltlc.grammar import tree
+from tltlc.grammar import allowed, tree
 from tltlc.grammar.parser import parse
 from tltlc.source import SourceFile, Span
 
@@ -19,13 +19,15 @@ def check(text: str, style: str) -> str:
     after = read(formatted)
     assert shape(after.declarations) == shape(before.declarations)
     assert [comment.text for comment in after.comments] == [comment.text for comment in before.comments]
+    assert spoken_of(after) == spoken_of(before)
     assert format_text(formatted, style) == formatted
     lines = formatted.split("\n")
     assert lines[-1] == ""
     assert not formatted or (lines[0] and lines[-2])
     assert all(line == line.rstrip() for line in lines)
     # What is longer than a line is a comment, or holds a word that is.
-    assert all(len(line) <= 100 or "//" in line or len(max(line.split(), key=len)) > 40 for line in lines)
+    if not any(places for _, places in allowed.spoken_of(before)):
+        assert all(len(line) <= 100 or "//" in line or len(max(line.split(), key=len)) > 40 for line in lines)
     assert "\n\n\n" not in formatted
     assert "\ufeff" not in formatted[:1]
     return formatted
@@ -35,6 +37,25 @@ def read(text: str) -> tree.Module:
     module, found = parse(SourceFile("a.tltl", text))
     assert found == ()
     return module
+
+
+def spoken_of(module: tree.Module) -> list[set[int] | None]:
+    """The clauses and declarations that each comment speaks of which allows something, those within others left out.
+
+    They are known by their numbers; None is the whole file.
+    """
+    numbers = {span: number for number, span in enumerate(allowed.statements(module))}
+    blocks = [each.span for each in module.declarations if isinstance(each, tree.SpecDecl)]
+    found: list[set[int] | None] = []
+    for _, places in allowed.spoken_of(module):
+        whole = [place for place in places or () if place in blocks]
+        outer = [
+            place
+            for place in places or ()
+            if place in whole or not any(block.start <= place.start < block.end for block in whole)
+        ]
+        found.append(None if places is None else {numbers[place] for place in outer})
+    return found
 
 
 def shape(node: object) -> object:

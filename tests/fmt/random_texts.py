@@ -21,16 +21,17 @@ INFIXES = (
 ARITHMETIC = ("+", "-", "*", "/", "^")
 NUMBERS = ["1", "0.5", "2e-3", "20 m", "5%", "20 m / s", "3 km/h", "9.81 m/s^2"]
 GAPS = [" "] * 24 + ["\n", "\n\n\n\n", "\t", " // a remark\n", "\n  // alone\n", "\n/// said\n", " /// behind\r\n"]
+ALLOWING = [*GAPS, " // tltlc: allow TLT0412\n", "\n// tltlc: allow TLT0425\n"]
 
 
-def module(random: Random) -> str:
+def module(random: Random, gaps: Sequence[str] = GAPS) -> str:
     """The text of a module without errors."""
-    return join(random, [word for _ in range(random.randint(0, 4)) for word in declaration(random)])
+    return join(random, [word for _ in range(random.randint(0, 4)) for word in declaration(random)], gaps)
 
 
-def join(random: Random, words: list[str]) -> str:
+def join(random: Random, words: list[str], gaps: Sequence[str] = GAPS) -> str:
     """The words with blanks, lines and comments between them; a word may hold a blank of its own."""
-    return "".join(random.choice(GAPS) + word for word in words) + random.choice(GAPS)
+    return "".join(random.choice(gaps) + word for word in words) + random.choice(gaps)
 
 
 def declaration(random: Random) -> list[str]:

@@ -105,6 +105,37 @@ def test_a_file_with_errors_is_left_and_the_others_are_formatted(tltlc, inside: 
     assert tltlc("fmt", "empty").status == 2
 
 
+def test_standard_input_counts_as_a_file_does(process, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    for data in (WORDS.encode("utf-8-sig"), WORDS.replace("\n", "\r").encode()):
+        assert process("fmt", "--check", "-", stdin=data).out == "<stdin>\n"
+        assert process("fmt", "-", stdin=data).out == WORDS
+
+
+def test_a_file_that_is_read_only_stays(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    for name in ("kept.tltl", "other.tltl"):
+        Path(name).write_text(ROUGH, encoding="utf-8")
+    Path("kept.tltl").chmod(0o444)
+    done = tltlc("fmt", "kept.tltl", "other.tltl")
+    assert done.status == 3
+    assert "error[TLT0005]: cannot write `kept.tltl`: it is read-only" in done.err
+    assert Path("kept.tltl").read_text(encoding="utf-8") == ROUGH
+    assert Path("other.tltl").read_text(encoding="utf-8") == WORDS
+    assert tltlc("fmt", "--check", "kept.tltl").out == "kept.tltl\n"
+    Path("kept.tltl").chmod(0o644)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs links")
+def test_links(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    Path("rough.tltl").write_text(ROUGH, encoding="utf-8")
+    Path("link.tltl").symlink_to("rough.tltl")
+    Path("loose.tltl").symlink_to("gone.tltl")
+    done = tltlc("fmt", "link.tltl", "loose.tltl")
+    assert done.status == 3
+    assert "cannot read `loose.tltl`: there is no such file\n  help: it is a link: what it leads to is gone" in done.err
+    assert Path("link.tltl").is_symlink()
+    assert Path("rough.tltl").read_text(encoding="utf-8") == WORDS
+
+
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="needs a folder that refuses")
 def test_a_file_that_cannot_be_written(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
     Path("shut").mkdir()

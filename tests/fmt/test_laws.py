@@ -55,6 +55,12 @@ def test_random_modules(random: Random, style: str) -> None:
     check(random_texts.module(random), style)
 
 
+@settings(max_examples=400, deadline=None)
+@given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
+def test_comments_allow_the_same_as_before(random: Random, style: str) -> None:
+    check(random_texts.module(random, random_texts.ALLOWING), style)
+
+
 @settings(max_examples=200, deadline=None)
 @given(st.randoms(use_true_random=False), st.sampled_from([*STYLES]))
 def test_comments_between_any_two_words(random: Random, style: str) -> None:

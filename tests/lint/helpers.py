@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+
 from tltlc.lint.fixing import Fixed, fix
-from tltlc.lint.rule import Finding
-from tltlc.lint.run import lint
+from tltlc.lint.rule import Finding, Remark
+from tltlc.lint.run import lint, view_of
+from tltlc.lint.view import SpecView, View
 from tltlc.pipeline import CompileOptions
 from tltlc.source import SourceFile
+
+SIGNALS = "signal a: bool signal b: bool signal c: bool\n"
+RANGES = "signal x in [0, 10]\nsignal y in [0, 10]\n" + SIGNALS
+PLACES = "entity x, y, z\nsignal d(e): length in [0 m, 9 m]\npredicate at(e: entity) = 1 - 2 * d(e) / 9 m\n"
+APART = PLACES + "exclusive at(x), at(y)\n"
+_HEAD = "spec s {\n    limit 9 steps\n    judge at goal\n    "
 
 
 def found(text: str, **options: object) -> tuple[Finding, ...]:
@@ -25,6 +34,23 @@ def marked(text: str, code: str) -> list[str]:
     return [label.source.slice(label.span) for label in labels]
 
 
+def remarks(check: Callable[[View], Iterable[Remark]], text: str) -> tuple[SpecView, list[Remark]]:
+    """The spec of a text, and what one rule has to say of it, whatever others say."""
+    view = view_of(SourceFile("example.tltl", text), CompileOptions())
+    (spec,) = view.specs
+    return spec, list(dict.fromkeys(check(view)))
+
+
 def mended(text: str) -> Fixed:
     """A text with all its fixes."""
     return fix(SourceFile("example.tltl", text))
+
+
+def block(*clauses: str, before: str = SIGNALS) -> str:
+    """A spec of these clauses that has a limit and says when it is judged, so that nothing is said of that."""
+    return before + _HEAD + "\n    ".join(clauses) + "\n}\n"
+
+
+def of(code: str, *clauses: str, before: str = SIGNALS) -> list[str]:
+    """What a rule points at in a spec of these clauses."""
+    return marked(block(*clauses, before=before), code)

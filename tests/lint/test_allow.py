@@ -24,6 +24,8 @@ BEFORE = "signal seen: bool\n"
         "        then (seen implies heard)  // tltlc: allow TLT0412\n}",
         "signal heard: bool\nspec go {\n    limit 9 steps\n    reach seen\n        then (seen implies heard)\n"
         "}  // tltlc: allow TLT0412",
+        # Empty lines do not matter.
+        "signal heard: bool\n// tltlc: allow TLT0419\n\nspec hide { avoid seen or heard }",
     ],
 )
 def test_what_is_allowed_is_not_said(text: str) -> None:
@@ -46,6 +48,30 @@ def test_what_is_allowed_is_not_said(text: str) -> None:
 )
 def test_what_is_allowed_elsewhere_is_said(text: str, expected: list[str]) -> None:
     assert codes(BEFORE + text) == expected
+
+
+@pytest.mark.parametrize(
+    ("clauses", "expected"),
+    [
+        ("reach heard\n        then heard  // ALLOW\n        then (seen implies heard)\n    limit 9 steps\n", []),
+        ("reach (seen\n        implies heard) limit 9 steps  // ALLOW\n", []),
+        ("limit 9 steps reach (seen  // ALLOW\n        implies heard)\n", []),
+        ("reach (seen implies heard)\n    limit 9 steps  // ALLOW\n", ["TLT0412", "TLT0427"]),
+        ("// ALLOW\n    limit 9 steps\n    reach (seen implies heard)\n", ["TLT0427", "TLT0412"]),
+        ("limit 9 steps\n    reach (seen implies heard)\n    // ALLOW\n", []),
+    ],
+)
+def test_a_comment_speaks_of_the_clauses_on_its_line(clauses: str, expected: list[str]) -> None:
+    text = f"{BEFORE}signal heard: bool\nspec go {{\n    {clauses}}}\n"
+    assert codes(text.replace("ALLOW", "tltlc: allow TLT0412")) == expected
+
+
+@pytest.mark.parametrize(
+    "head", ["spec go {  // ALLOW", "spec go  // ALLOW\n{", "spec go\n// ALLOW\n{", "// ALLOW\nspec go {"]
+)
+def test_at_the_head_of_a_spec_for_all_of_it(head: str) -> None:
+    text = f"{BEFORE}signal heard: bool\n{head}\n    limit 9 steps\n    reach (seen implies heard)\n}}\n"
+    assert codes(text.replace("ALLOW", "tltlc: allow TLT0412")) == []
 
 
 def test_at_the_head_of_a_file_for_all_of_it() -> None:

@@ -10,6 +10,7 @@ import pytest
 from tests.docs.blocks import blocks
 from tltlc.diagnostics import codes
 from tltlc.lint import allow
+from tltlc.lint import rules as package
 from tltlc.lint.rules import rules
 from tltlc.lint.run import lint
 from tltlc.source import SourceFile
@@ -46,6 +47,12 @@ def test_the_form_of_a_page(code: str) -> None:
 def test_every_rule_has_a_code_of_its_own() -> None:
     assert len(set(CODES)) == len(CODES) >= 16
     assert all("TLT0412" <= code <= "TLT0439" for code in CODES)
+
+
+def test_every_rule_has_tests_of_its_own() -> None:
+    folder, tests = Path(package.__file__).parent, Path(__file__).parent / "rules"
+    names = {path.name for path in folder.glob("[!_]*.py")}
+    assert {path.name.removeprefix("test_") for path in tests.glob("test_*.py")} == names
 
 
 def test_the_guide_lists_every_rule_with_its_severity() -> None:

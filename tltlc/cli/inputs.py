@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tltlc.cli.settings import Settings, check_libraries, compile_settings
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.project import Project, project_for
 from tltlc.record import record
 from tltlc.spec_file import STDIN, STDIN_NAME, read, split
@@ -47,7 +47,7 @@ class Input:
 def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> Input:
     """Read and compile an argument; ``specs`` picks by name beside what the argument itself says.
 
-    Errors: TltlError with everything that the file's reading and compilation found.
+    Errors: TltlError with everything that the file's reading and compilation found, at the levels of its project.
     """
     path, name = split(argument)
     if path.endswith(".toml"):
@@ -69,7 +69,9 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
     from tltlc.pipeline import compile_source
 
     compiled = compile_source(source, compile_settings(settings, project, wanted))
-    return Input(source.name, compiled.automata, compiled.program, project, compiled.diagnostics)
+    found = project.levelled(compiled.diagnostics)
+    stop_at_errors(found)
+    return Input(source.name, compiled.automata, compiled.program, project, found)
 
 
 def check_text(source: SourceFile) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from typing import Final
 
 from tltlc.fmt.expressions import Expressions, Item, name
@@ -18,12 +18,13 @@ _AMOUNT: Final = re.compile(r"(<=|>=|[<>≤≥])\s*([0-9.eE+-]+)\s*(\S*)\Z")
 
 
 class Declarations:
-    """Writes the declarations of one source on a page."""
+    """Writes the declarations of one source on a page; no line begins at the offsets ``joints``."""
 
-    def __init__(self, source: SourceFile, page: Page, flat: Flat) -> None:
+    def __init__(self, source: SourceFile, page: Page, flat: Flat, joints: Set[int]) -> None:
         self._source = source
         self._page = page
         self._flat = flat
+        self._joints = joints
         self._expressions = Expressions(page, flat)
 
     def put(self, node: tree.Declaration) -> None:
@@ -135,10 +136,11 @@ class Declarations:
         for item in items:
             page.comments(item.span.start, STEP, gaps=True)
             page.gap(item.span.start)
-            page.end_line(STEP)
+            page.begin(item.span.start in self._joints, STEP)
             self._put_item(item)
         page.comments(span.end - 1, STEP, gaps=True)
-        page.end_line(0)
+        if items or page.is_fresh or span.end - 1 not in self._joints:
+            page.begin(span.end - 1 in self._joints, 0)
         page.put("}")
 
     def _flat_item(self, item: tree.Clause | tree.TestStep | tree.TestExpect) -> str | None:

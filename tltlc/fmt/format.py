@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.fmt.allowed import NOTHING, Kept, keeping
 from tltlc.fmt.declarations import Declarations
 from tltlc.fmt.flat import Flat
 from tltlc.fmt.page import Page
@@ -46,12 +47,27 @@ _EVERYTHING: Final = 1 << 62
 
 
 def _written(module: tree.Module, style: Style) -> str:
+    """The layout, with as much as it takes kept as it is for comments to allow the same as before."""
+    kept = NOTHING
+    while True:
+        text = _laid_out(module, style, kept)
+        more = keeping(module, text, kept)
+        if more == kept:
+            return text
+        kept = more
+
+
+def _laid_out(module: tree.Module, style: Style, kept: Kept) -> str:
     page = Page(module.source, module.comments)
-    declarations = Declarations(module.source, page, Flat(module.source, style))
+    declarations = Declarations(module.source, page, Flat(module.source, style), kept.joints)
     for declaration in module.declarations:
-        page.comments(declaration.span.start, 0, gaps=True)
-        page.gap(declaration.span.start)
-        page.end_line(0)
-        declarations.put(declaration)
+        start = declaration.span.start
+        page.comments(start, 0, gaps=True)
+        page.gap(start)
+        page.begin(start in kept.joints, 0)
+        if start in kept.declarations:
+            page.put_as_written(declaration.span)
+        else:
+            declarations.put(declaration)
     page.comments(_EVERYTHING, 0, gaps=True)
     return page.text()

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from tltlc.grammar.tree import Comment
-from tltlc.source import SourceFile
+from tltlc.source import SourceFile, Span
 
 WIDTH: Final = 100
 """The most columns of a line, where its words and comments allow it."""
@@ -53,6 +53,23 @@ class Page:
         """What is put next begins a line there."""
         self._fresh = True
         self._indent = min(indent, _DEEPEST)
+
+    def begin(self, joined: bool, indent: int) -> None:
+        """What is put next begins a line there, or stands behind this one where that does not end in a comment."""
+        if joined and not self._fresh:
+            self.put(" ")
+        else:
+            self.end_line(indent)
+
+    def put_as_written(self, span: Span) -> None:
+        """Write a part of the source, and the comments in it, as it stands there."""
+        while self.has_comment(span.end):
+            self._next += 1
+        first, *others = (line.rstrip() for line in self._text[span.start : span.end].split("\n"))
+        self.put(first)
+        for place, line in enumerate(others):
+            if line or others[place - 1]:
+                self._lines.append(line)
 
     def open_block(self) -> None:
         """No empty line follows here."""

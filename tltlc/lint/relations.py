@@ -33,11 +33,19 @@ def relations(spec: SpecView, names: Collection[str]) -> tuple[Part, ...]:
 
     Only what is proved is among it.
     """
-    found = (always(not_(pair)) for pair in _impossible(spec, names))
+    found = (always(not_(pair)) for pair in _pairs(spec, names))
     return tuple(Part(each, spec.spec.source, spec.spec.name_span) for each in found)
 
 
-def _impossible(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
+def is_impossible(spec: SpecView) -> bool:
+    """Whether no trace satisfies a spec, by its formula or by what is known of its atoms."""
+    if spec.fspa.states[0].verdict == "violated":
+        return True
+    known = relations(spec, [each.name for each in spec.fspa.atoms])
+    return bool(known) and spec.decision((*spec.spec.parts, *known), spec.spec)
+
+
+def _pairs(spec: SpecView, names: Collection[str]) -> Iterator[Formula]:
     declared = _Declared(spec.fspa.signals, spec.fspa.params)
     simple = [each for each in spec.fspa.atoms if each.name in names and _is_simple(each)]
     pairs = [pair for pair in combinations(simple, 2) if _reads(pair[0]) & _reads(pair[1])]

@@ -28,11 +28,10 @@ def without(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) ->
     return Span(line, end)
 
 
-def item(spans: Sequence[Span], index: int) -> Span:
-    """The span of an item of a list, of two at least, with one of its commas."""
-    if index:
-        return Span(spans[index - 1].end, spans[index].end)
-    return Span(spans[0].start, spans[1].start)
+def item(spans: Sequence[Span], index: int, comments: Sequence[Comment]) -> tuple[Span, ...]:
+    """The span of an item of a list, of two at least, with one of its commas; none where a comment would go with it."""
+    gone = Span(spans[index - 1].end, spans[index].end) if index else Span(spans[0].start, spans[1].start)
+    return () if any(gone.start <= each.span.start < gone.end for each in comments) else (gone,)
 
 
 def _is_comment(text: str, start: int, end: int) -> bool:
@@ -40,9 +39,12 @@ def _is_comment(text: str, start: int, end: int) -> bool:
 
 
 def _documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
-    """Where the documentation right before a place begins, the place itself where there is none."""
-    for comment in reversed(comments):
-        between = source.text[comment.span.end : start]
-        if comment.span.end <= start and comment.text.startswith("///") and not between.strip():
-            start = comment.span.start
-    return start
+    """Where the documentation of a place begins, with other comments in it; the place itself where there is none."""
+    first = start
+    for comment in reversed([each for each in comments if each.span.end <= start]):
+        if source.text[comment.span.end : start].strip():
+            break
+        start = comment.span.start
+        if comment.text.startswith("///"):
+            first = start
+    return first

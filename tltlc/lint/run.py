@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from tltlc.diagnostics.diagnostic import Diagnostic, stop_at_errors
+from tltlc.grammar.allowed import unsilenced
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import SpecDecl
 from tltlc.lint.allow import silenced
@@ -51,7 +52,8 @@ def view_of(source: SourceFile, options: CompileOptions) -> View:
     stop_at_errors(said)
     resolved = resolution(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
     said += resolved.diagnostics
-    stop_at_errors(said)
+    modules = [loaded.module for loaded in resolved.modules]
+    stop_at_errors(unsilenced(modules, said))
     declared = {each.name: each for each in module.declarations if isinstance(each, SpecDecl)}
     specs: list[SpecView] = []
     for spec in resolved.program.specs:
@@ -59,7 +61,7 @@ def view_of(source: SourceFile, options: CompileOptions) -> View:
         said += remarks
         if fspa is not None:
             specs.append(SpecView(declared[spec.name], spec, fspa, resolved.env))
-    stop_at_errors(said)
+    stop_at_errors(unsilenced(modules, said))
     return View(module, resolved.env, resolved.modules, tuple(specs), said, program=resolved.program)
 
 
@@ -77,9 +79,7 @@ def _is_superseded(said: Diagnostic, of_rules: Iterable[tuple[Rule, Finding]]) -
     """Whether a rule says more of one of the places that a diagnostic points at."""
     places = [finding.diagnostic.labels[0] for rule, finding in of_rules if said.code in rule.supersedes]
     return any(
-        label.source == place.source and label.span.start <= place.span.start and place.span.end <= label.span.end
-        for label in said.labels
-        for place in places
+        label.source == place.source and label.span.covers(place.span) for label in said.labels for place in places
     )
 
 

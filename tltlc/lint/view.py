@@ -10,6 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar.tree import Binary, Call, Clause, Expr, Group, Module, Name, Quantified, SpecDecl
 from tltlc.grammar.walk import children
 from tltlc.logic.formula import Formula
+from tltlc.logic.phrases import is_state
 from tltlc.record import record
 from tltlc.resolve import formulas
 from tltlc.resolve.imports import Loaded
@@ -50,6 +51,11 @@ class Expression:
         except ResolutionError:
             return None
 
+    def is_of_one_step(self) -> bool:
+        """Whether it asks something of the step that it is about and of no other: atoms without a temporal operator."""
+        formula = self.formula()
+        return formula is not None and is_state(formula) and bool(formula.atoms())
+
     def parts(self) -> Iterator[Expression]:
         """The expression and everything in it, outer before inner; the body of a quantifier once for each entity."""
         waiting = [self]
@@ -83,6 +89,11 @@ class SpecView:
         from tltlc.rabin import contradiction as over_infinite_traces
 
         return over_infinite_traces.unsatisfiable
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether every trace satisfies it, or none does."""
+        return self.fspa.states[0].verdict in ("satisfied", "violated")
 
     def clauses(self, *kinds: str) -> Iterator[tuple[Clause, Expression]]:
         """The clauses of these kinds (``reach keep avoid require``) that hold a formula, in order."""

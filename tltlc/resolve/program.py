@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.grammar.allowed import unsilenced
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
 from tltlc.logic.formula import Formula
@@ -63,7 +64,7 @@ def resolution(module: Module, options: ResolveOptions | None = None) -> Resolut
     program = Program(
         tuple(found for found in specs.values() if found is not None),
         tuple(found for found in tests if found is not None),
-        groups,
+        vocabulary([name for group in groups for name in group], groups, context),
     )
     return Resolution(program, env, modules, context.log.all())
 
@@ -71,13 +72,13 @@ def resolution(module: Module, options: ResolveOptions | None = None) -> Resolut
 def resolve_atoms(
     module: Module, written: Sequence[SourceFile], options: ResolveOptions | None = None
 ) -> tuple[Vocabulary | None, FormulaOf, tuple[Diagnostic, ...]]:
-    """The atoms that texts elsewhere stand for, in the words of a module, and what is to be said.
+    """The atoms that texts elsewhere stand for, in the words of a module, and what is to be said and is not allowed.
 
     A text is a formula that is an atom, or the name that an atom of the module's own specs has, which says no units.
     None where the module or a text is in error, and where two are one atom.  Further formulas can be read, of which
     nothing is said.
     """
-    env, groups, _ = _declared(module, options or ResolveOptions())
+    env, groups, modules = _declared(module, options or ResolveOptions())
     context = env.context
     kept: list[Expr] = []
 
@@ -105,7 +106,7 @@ def resolve_atoms(
         except ResolutionError as failure:
             context.log.add(failure.diagnostic)
     check_predicates(context)
-    said = context.log.all()
+    said = unsilenced((loaded.module for loaded in modules), context.log.all())
     return vocabulary(found, groups, context) if len(found) == len(written) else None, formula_of, said
 
 

@@ -68,17 +68,13 @@ def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -
 
     from tltlc.cli.inputs import check_text
     from tltlc.cli.report import wants_colour
-    from tltlc.files import MAX_SOURCE_BYTES, decode, read_bytes
+    from tltlc.files import MAX_SOURCE_BYTES, decode
     from tltlc.fmt import format_source
-    from tltlc.spec_file import STDIN, read_text
-    from tltlc.writing import write_file
+    from tltlc.spec_file import STDIN, read_data
+    from tltlc.writing import rewrite
 
-    if path == STDIN:
-        source = read_text(path, MAX_SOURCE_BYTES)
-        data = source.text.encode()
-    else:
-        data = read_bytes(path, path, MAX_SOURCE_BYTES)
-        source = decode(data, path)
+    data, name = read_data(path, MAX_SOURCE_BYTES)
+    source = decode(data, name)
     check_text(source)
     formatted = format_source(source, style)
     is_same = formatted.encode() == data
@@ -93,6 +89,6 @@ def _format(path: str, style: str, report: Report, *, check: bool, diff: bool) -
             # The text is UTF-8, whatever the terminal says.
             sys.stdout.buffer.write(formatted.encode())
         elif not is_same:
-            write_file(Path(path), formatted, "check its permissions")
+            rewrite(Path(path), formatted)
             report.say(f"formatted {path}")
     return is_same

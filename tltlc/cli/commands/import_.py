@@ -75,6 +75,7 @@ def command(
     from tltlc.cli.inputs import check_text
     from tltlc.cli.report import Report
     from tltlc.cli.settings import check_libraries
+    from tltlc.diagnostics.diagnostic import stop_at_errors
     from tltlc.files import MAX_ARTEFACT_BYTES, read_source
     from tltlc.hoa.load import ImportOptions, load
     from tltlc.project import project_for
@@ -93,6 +94,8 @@ def command(
         budget = settings.state_budget or DEFAULT_STATE_BUDGET
         options = ImportOptions(atoms, name, level, limit, judge, resolve, budget)
         fspa, found = load(source, library, options)
+        found = project.levelled(found)
+        stop_at_errors(found)
         report.add(found)
         write_and_tell(folder, files_of([fspa], asked, project, report), report, (file, predicates))
     return report.status

@@ -69,7 +69,7 @@ def _of_file(
     from tltlc.lint.run import levelled, lint
     from tltlc.project import project_for
     from tltlc.spec_file import STDIN, read
-    from tltlc.writing import write_file
+    from tltlc.writing import rewrite
 
     if fixing and path == STDIN:
         raise click.UsageError("`--fix` writes the file that it mends: name one", click.get_current_context())
@@ -82,7 +82,7 @@ def _of_file(
         return _diagnostics(levelled(lint(source, options, elsewhere), project.lint))
     mended = fix(source, options, project.lint, elsewhere)
     if mended.source != source:
-        write_file(Path(path), mended.source.text, "make it writable")
+        rewrite(Path(path), mended.source.text)
     for each in mended.fixed:
         label = each.labels[0]
         report.say(f"fixed {label.source.name}:{label.source.position(label.span.start)[0]}: {each.title}")

@@ -10,7 +10,6 @@ from tltlc.grammar.walk import operands
 from tltlc.lint.goals import conjuncts
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.view import Expression, View
-from tltlc.logic.phrases import is_state
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -25,13 +24,8 @@ def check(view: View) -> Iterator[Remark]:
                     first, *others = operands(part.tree.left, "and")
                     if isinstance(first, Unary) and first.op == "G" and not isinstance(first.operand, Group):
                         asked = (part.at(first.operand), *map(part.at, others))
-                        if all(map(_is_of_one_step, asked)):
+                        if all(map(Expression.is_of_one_step, asked)):
                             yield _remark(part, part.tree, first)
-
-
-def _is_of_one_step(part: Expression) -> bool:
-    formula = part.formula()
-    return formula is not None and is_state(formula)
 
 
 def _remark(part: Expression, tree: Binary, first: Unary) -> Remark:

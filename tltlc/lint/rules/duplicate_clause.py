@@ -25,14 +25,10 @@ def check(view: View) -> Iterator[Remark]:
 def _fix(part: Part, spec: SpecView, view: View) -> Fix:
     """Without the clause, where the part is all that it says."""
     for clause in spec.declaration.clauses:
-        alone = [each for each in spec.spec.parts if _lies_in(each, clause.span.start, clause.span.end)]
+        alone = [each for each in spec.spec.parts if clause.span.covers(each.span)]
         if alone == [part]:
             return (Edit(without(view.source, clause.span, view.module.comments), ""),)
     return ()
-
-
-def _lies_in(part: Part, start: int, end: int) -> bool:
-    return start <= part.span.start and part.span.end <= end
 
 
 RULE = Rule("TLT0425", "warning", check)

@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from itertools import takewhile
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Group, Unary
+from tltlc.grammar.tree import Binary, Group, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.lint.rule import Remark, Rule
-from tltlc.lint.view import Expression, View, operand
-from tltlc.logic.phrases import is_state
+from tltlc.lint.view import Expression, View, inner, operand
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -21,25 +20,28 @@ def check(view: View) -> Iterator[Remark]:
     for spec in view.specs:
         for clause, value in spec.clauses("require"):
             parts = [value.at(tree) for tree in conjuncts(value.tree)]
-            if spec.declaration.block and all(map(_is_of_one_step, parts)):
+            if spec.declaration.block and all(map(Expression.is_of_one_step, parts)):
                 label = Label(value.source, clause.span, "asked at the first step, and never again")
-                way_out = f"at every step is `keep {value.text}`, at some step `reach {value.text}`"
+                way_out = f"at every step is `keep {value.text}`"
+                if not _is_implication(value):
+                    way_out += f", at some step `reach {value.text}`"
                 yield Remark("this speaks of the first step alone", (label,), way_out)
                 continue
             for place, part in enumerate(parts):
-                behind = list(takewhile(_is_of_one_step, parts[place + 1 :]))
+                behind = list(takewhile(Expression.is_of_one_step, parts[place + 1 :]))
                 if behind and isinstance(part.tree, Unary) and _is_bare(part.tree):
                     yield _outside(part, part.tree, behind)
+
+
+def _is_implication(value: Expression) -> bool:
+    """Whether it is one, which as a goal would be met by its condition not holding."""
+    tree = inner(value.tree)
+    return isinstance(tree, Binary) and tree.op == "implies"
 
 
 def _is_bare(tree: Unary) -> bool:
     """Whether a temporal word has no brackets that would say where it ends."""
     return tree.op in ("F", "G") and not isinstance(tree.operand, Group)
-
-
-def _is_of_one_step(part: Expression) -> bool:
-    formula = part.formula()
-    return formula is not None and is_state(formula) and bool(formula.atoms())
 
 
 def _outside(temporal: Expression, tree: Unary, behind: list[Expression]) -> Remark:

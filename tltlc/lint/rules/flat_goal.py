@@ -2,39 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.signs import can_be, is_always
 from tltlc.lint.view import View
+from tltlc.resolve.spec import Atom
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each atom of a spec that is never negative and that a state waits for."""
+    """A remark for each atom of a spec that is never negative and that a state waits for, with no other that is."""
     for spec in view.specs:
-        for index in _awaited(spec.fspa):
-            atom = spec.fspa.atoms[index]
-            can_fail = can_be("not positive", atom, spec.fspa)
-            if can_fail and not can_be("negative", atom, spec.fspa) and is_always("not negative", atom, spec.fspa):
-                label = spec.atom_label(atom.name, "0 until it holds: progress cannot tell near from far")
-                way_out = "give the predicate negative values where it does not hold, the lower the farther"
-                yield Remark(f"the value of `{atom.name}` is never negative", (label,), way_out)
+        flat = {index for index, atom in enumerate(spec.fspa.atoms) if _is_flat(atom, spec.fspa)}
+        for index in _awaited(spec.fspa, flat) if flat else ():
+            name = spec.fspa.atoms[index].name
+            label = spec.atom_label(name, "0 until it holds: progress cannot tell near from far")
+            way_out = "give the predicate negative values where it does not hold, the lower the farther"
+            yield Remark(f"the value of `{name}` is never negative", (label,), way_out)
 
 
-def _awaited(fspa: Fspa) -> list[int]:
-    """The atoms that an edge towards the goal needs, and without which the automaton stays where it is."""
+def _is_flat(atom: Atom, fspa: Fspa) -> bool:
+    found = can_be("negative", atom, fspa) or not can_be("not positive", atom, fspa)
+    return not found and is_always("not negative", atom, fspa)
+
+
+def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
+    """The flat atoms that an edge towards the goal needs, and without which the automaton stays where it is.
+
+    Of several that it needs together the least value counts: one that can be negative tells near from far.
+    """
     stays: dict[int, list[Implicant]] = {}
     for edge in fspa.edges:
         if edge.source == edge.target:
             stays.setdefault(edge.source, []).extend(edge.guard.primes)
+    kept = {state: set.intersection(*map(set, primes)) for state, primes in stays.items()}
     found: set[int] = set()
     for edge in fspa.edges:
         here, there = fspa.states[edge.source].distance, fspa.states[edge.target].distance
-        if here is not None and there is not None and there < here:
-            needed = set.intersection(*({atom for atom, holds in prime if holds} for prime in edge.guard.primes))
-            loops = stays.get(edge.source, [])
-            found.update(atom for atom in needed - found if any((atom, True) not in prime for prime in loops))
+        if edge.source in kept and here is not None and there is not None and there < here:
+            missing = (set(prime) - kept[edge.source] for prime in edge.guard.primes)
+            awaited = [{atom for atom, holds in literals if holds} for literals in missing]
+            if any(atoms <= flat for atoms in awaited):
+                found |= set.intersection(*awaited)
     return sorted(found)
 
 

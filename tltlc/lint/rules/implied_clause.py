@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from tltlc.automaton.build import default_judge
 from tltlc.automaton.contradiction import contradiction
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.lint.relations import relations
+from tltlc.lint.relations import is_impossible, relations
 from tltlc.lint.rule import Remark, Rule
+from tltlc.lint.rules import recurrence
 from tltlc.lint.view import SpecView, View
-from tltlc.logic.formula import Formula, not_
+from tltlc.logic.formula import Formula, and_, not_
 from tltlc.record import replace
 from tltlc.resolve.spec import Part, Spec
 
@@ -18,31 +20,50 @@ _MOST_PARTS = 24
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each clause that the others of its spec imply, and which of them do."""
+    """A remark for each clause that the others of its spec imply, and which of them do.
+
+    What speaks of the last step alone was mostly not meant, so that nothing is concluded from it.
+    """
+    doubtful = [remark.labels[0] for remark in recurrence.check(view)]
     for spec in view.specs:
         # Of what stands twice another rule speaks.
         first: dict[Formula, Part] = {}
         for part in spec.spec.parts:
             first.setdefault(part.formula, part)
         parts = list(first.values())
-        if 1 < len(parts) <= _MOST_PARTS and spec.fspa.states[0].verdict != "violated":
-            yield from _remarks(spec, parts)
+        if 1 < len(parts) <= _MOST_PARTS and not is_impossible(spec):
+            yield from _remarks(spec, parts, [part for part in parts if not _is_any_in(doubtful, part)])
 
 
-def _remarks(spec: SpecView, parts: Sequence[Part]) -> Iterator[Remark]:
-    left = list(parts)
+def _is_any_in(places: Sequence[Label], part: Part) -> bool:
+    return any(part.source == place.source and part.span.covers(place.span) for place in places)
+
+
+def _remarks(spec: SpecView, parts: Sequence[Part], reasons: Sequence[Part]) -> Iterator[Remark]:
+    left = list(reasons)
     # The later of two that imply each other goes, and nothing is implied by what has gone.
     for part in reversed(parts):
         others = [other for other in left if other is not part]
-        reasons = _reasons(part, others, _known(part, spec), spec)
-        if reasons:
+        needed = _reasons(part, others, _known(part, spec), spec)
+        if needed:
             left = others
             labels = (
                 Label(part.source, part.span, "nothing is lost without this"),
-                *(Label(other.source, other.span, "because of this") for other in reasons),
+                *(Label(other.source, other.span, "because of this") for other in needed),
             )
-            title = f"{'another clause asks' if len(reasons) == 1 else 'other clauses ask'} for this already"
-            yield Remark(title, labels, "leave it out, or say what more it should ask for")
+            title = f"{'another clause asks' if len(needed) == 1 else 'other clauses ask'} for this already"
+            way_out = "leave it out, or say what more it should ask for"
+            if _decides_judge(part, spec.spec):
+                way_out = f"leave it out and say `judge at {spec.fspa.judge}`, or say what more it should ask for"
+            yield Remark(title, labels, way_out)
+
+
+def _decides_judge(part: Part, spec: Spec) -> bool:
+    """Whether the spec would be judged at another moment without this part of its formula."""
+    if spec.judge is not None or spec.semantics == "infinite":
+        return False
+    left = and_(*(each.formula for each in spec.parts if each.formula is not part.formula))
+    return default_judge(left) != default_judge(spec.formula)
 
 
 def _known(part: Part, spec: SpecView) -> list[Part]:

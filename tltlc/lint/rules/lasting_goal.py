@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tltlc.automaton.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import Binary, Unary
 from tltlc.grammar.walk import operands
 from tltlc.lint.goals import conjuncts
 from tltlc.lint.rule import Remark, Rule
-from tltlc.lint.view import Expression, View, inner, operand
+from tltlc.lint.view import Expression, SpecView, View, inner, operand
+from tltlc.logic.formula import FALSE, and_, weak_next
+from tltlc.resolve.spec import Part
 
 _WAY_OUT = "let a signal count the time, and ask for enough of it, as in `reach time_there >= 3 s`"
 
@@ -21,8 +24,10 @@ def check(view: View) -> Iterator[Remark]:
             continue
         for clause, value in spec.clauses("reach", "require"):
             wanted = [value] if clause.kind == "reach" else [goal for part in conjuncts(value) for goal in _asked(part)]
-            for goal in (innermost for each in wanted for innermost in _last(each)):
-                yield from _remarks(goal)
+            for asked in map(_last, wanted):
+                found = [remark for goal in asked for remark in _remarks(goal)]
+                if found and _is_met_by_one_step(asked, spec):
+                    yield from found
 
 
 def _asked(part: Expression) -> Iterator[Expression]:
@@ -43,8 +48,14 @@ def _last(goal: Expression) -> list[Expression]:
             inside = list(_asked(part))
             waiting += inside
             found += [] if inside else [part]
-    # What is to come at the next step or later takes more than one step.
-    return [] if any(isinstance(each.tree, Unary) and each.tree.op == "X" for each in found) else found
+    return found
+
+
+def _is_met_by_one_step(asked: list[Expression], spec: SpecView) -> bool:
+    """Whether a play of one step can meet all of it; what is to come at the next step or later takes more."""
+    formulas = (formula for formula in map(Expression.formula, asked) if formula is not None)
+    ended = and_(weak_next(FALSE), *formulas)
+    return not unsatisfiable((Part(ended, spec.spec.source, spec.spec.name_span),), spec.spec)
 
 
 def _remarks(goal: Expression) -> Iterator[Remark]:

@@ -8,42 +8,52 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import Binary
 from tltlc.lint.goals import conjuncts, goals
+from tltlc.lint.relations import relations
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.view import Expression, SpecView, View, inner, operand
-from tltlc.logic.formula import Formula, and_, atom, eventually, not_, or_, rebuild
+from tltlc.logic.formula import TRUE, Formula, and_, atom, eventually, not_, or_, rebuild
 from tltlc.resolve.spec import Part
+from tltlc.source import Span
 
 
 def check(view: View) -> Iterator[Remark]:
     """A remark for each goal that can be met while none of what it asks for holds, whatever the other clauses ask."""
     for spec in view.specs:
-        if spec.fspa.states[0].verdict not in ("satisfied", "violated"):
+        if not spec.is_settled:
             for goal in goals(spec):
-                awaited = _met_without(goal, spec)
-                if awaited:
-                    yield _remark(goal, awaited)
+                yield from _remarks(goal, spec)
 
 
-def _met_without(goal: Expression, spec: SpecView) -> list[str]:
-    """What a goal asks for, where it can be met while none of it holds; nothing where it cannot."""
+def _remarks(goal: Expression, spec: SpecView) -> Iterator[Remark]:
     formula = goal.formula()
     if formula is None:
-        return []
+        return
     still = _standing_still(formula)
     holding, failing = _wanted(still)
-    awaited = [name for name in holding if name not in failing]
     # A goal that is only to hold, or only not to hold, is one that a player brings about.
-    if not awaited or not failing:
-        return []
+    if not failing or not set(holding) - set(failing):
+        return
+
+    known = relations(spec, spec.spec.formula.atoms())
 
     def can_be(state: Formula) -> bool:
         part = Part(eventually(state), goal.source, goal.tree.span)
-        return not spec.decision((*spec.spec.parts, part), spec.spec)
+        return not spec.decision((*spec.spec.parts, *known, part), spec.spec)
 
     # What the other clauses keep anyway is nothing to bring about.
-    awaited = [name for name in awaited if can_be(not_(atom(name)))]
-    met = and_(still, *(not_(atom(name)) for name in awaited))
-    return awaited if can_be(met) else []
+    missing = [name for name in holding if can_be(not_(atom(name)))]
+    awaited = [name for name in missing if name not in failing]
+    met = and_(formula, still, *(not_(atom(name)) for name in missing))
+    if awaited and can_be(met):
+        implications = _implications(goal)
+        conditions = (part.formula() or TRUE for part, _ in implications)
+        # A condition that always holds is not to blame.
+        if implications and can_be(and_(met, *map(not_, conditions))):
+            yield _of_implications(implications)
+        else:
+            listed = " and ".join(f"`{name}`" for name in awaited)
+            label = Label(goal.source, inner(goal.tree).span, f"can be met without {listed}")
+            yield Remark(_TITLE, (label,), f"ask with `and` for what is to be done, or for {listed} alone")
 
 
 def _standing_still(formula: Formula) -> Formula:
@@ -85,23 +95,22 @@ def _wanted(state: Formula) -> tuple[list[str], list[str]]:
     return [name for name, holds in atoms if holds], [name for name, holds in atoms if not holds]
 
 
-def _remark(goal: Expression, awaited: list[str]) -> Remark:
+def _implications(goal: Expression) -> list[tuple[Expression, Expression]]:
+    """The condition and the result of each one that a goal asks for; the body of `all` is one, for all its entities."""
+    found: dict[Span, tuple[Expression, Expression]] = {}
+    for part in conjuncts(goal):
+        if isinstance(part.tree, Binary) and part.tree.op == "implies":
+            found[part.tree.span] = part.at(part.tree.left), part.at(part.tree.right)
+    return list(found.values())
+
+
+def _of_implications(implications: list[tuple[Expression, Expression]]) -> Remark:
     labels, ways = [], []
-    # The body of `all` is one place, for all its entities.
-    for part in {part.tree.span: part for part in conjuncts(goal) if _is_implication(part)}.values():
-        assert isinstance(part.tree, Binary)
-        condition, result = part.at(part.tree.left), part.at(part.tree.right)
-        labels.append(Label(part.source, part.tree.span, f"true while {condition.text} is false"))
+    for condition, result in implications:
+        span = condition.tree.span.to(result.tree.span)
+        labels.append(Label(condition.source, span, f"true while {condition.text} is false"))
         ways.append(f"{operand(condition)} and {operand(result)}")
-    if labels:
-        return Remark(_TITLE, tuple(labels), f"`{ways[0]}`" if len(ways) == 1 else f"`({') or ('.join(ways)})`")
-    listed = " and ".join(f"`{name}`" for name in awaited)
-    label = Label(goal.source, inner(goal.tree).span, f"can be met without {listed}")
-    return Remark(_TITLE, (label,), f"ask with `and` for what is to be done, or for {listed} alone")
-
-
-def _is_implication(part: Expression) -> bool:
-    return isinstance(part.tree, Binary) and part.tree.op == "implies"
+    return Remark(_TITLE, tuple(labels), f"`{ways[0]}`" if len(ways) == 1 else f"`({') or ('.join(ways)})`")
 
 
 _TITLE: Final = "this goal can be met without doing anything"

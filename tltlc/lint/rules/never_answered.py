@@ -25,11 +25,11 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _implications(value: Expression) -> Iterator[Expression]:
-    """Those that are to hold as rules: not as a goal, negated or in a condition."""
+    """Those that are to hold as rules: not as a goal, negated, in a condition or in `iff`."""
     waiting = [value]
     while waiting:
         part = waiting.pop()
-        if isinstance(part.tree, (Unary, Binary)) and part.tree.op in ("not", "F", "then"):
+        if isinstance(part.tree, (Unary, Binary)) and part.tree.op in ("not", "F", "then", "iff"):
             continue
         found = part.children()
         if isinstance(part.tree, Binary) and part.tree.op == "implies":

@@ -12,8 +12,9 @@ from tltlc.logic.formula import Formula
 def check(view: View) -> Iterator[Remark]:
     """A remark for each spec that is judged at its limit without a clause that says so."""
     for spec in view.specs:
-        # One without a limit has a remark of its own.
-        if _is_judged_at_limit(spec) and spec.spec.judge is None and spec.spec.limit_steps is not None:
+        # One without a limit has a remark of its own, and one that every trace satisfies, or none, a warning.
+        has_own = spec.is_settled or spec.spec.limit_steps is None
+        if _is_judged_at_limit(spec) and spec.spec.judge is None and not has_own:
             label = spec.name_label("it rewards lasting: progress is the share of its limit that has passed")
             way_out = "add a goal with `reach`, or say that this is meant: `judge at limit`"
             yield Remark(f"`{spec.spec.name}` has no goal, so it is judged at its limit", (label,), way_out)

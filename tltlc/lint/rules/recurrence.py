@@ -85,4 +85,4 @@ def _remark(place: Span, op: str, goal: str, view: View) -> Remark:
     return Remark("this speaks of the last step alone", (label,), way_out)
 
 
-RULE = Rule("TLT0424", "warning", check, supersedes=("TLT0413",))
+RULE = Rule("TLT0424", "warning", check)

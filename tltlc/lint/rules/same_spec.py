@@ -14,9 +14,14 @@ _WORK: Final = 200_000
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each spec that accepts what an earlier one does, and is judged as it is."""
+    """A remark for each spec that accepts what an earlier one does, and is judged as it is.
+
+    Of one that every trace satisfies, or none, the compiler has said what is wrong with it.
+    """
     firsts: dict[object, list[SpecView]] = {}
     for spec in view.specs:
+        if spec.is_settled:
+            continue
         alike = firsts.setdefault(_form(spec.fspa), [])
         earlier = next((each for each in alike if _accept_the_same(each.fspa, spec.fspa)), None)
         if earlier is None:
@@ -28,13 +33,9 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _form(fspa: Fspa) -> object:
-    """What two specs share that may accept the same; over finite traces they then do."""
+    """What two specs of a file share that may accept the same; over finite traces they then do."""
     settings = (fspa.semantics, fspa.judge, fspa.limit_steps, fspa.level, fspa.spec_size)
-    return settings if fspa.semantics == "infinite" else (*settings, _exclusive(fspa), _edges(fspa))
-
-
-def _exclusive(fspa: Fspa) -> frozenset[frozenset[str]]:
-    return frozenset(frozenset(fspa.atoms[index].name for index in group) for group in fspa.exclusive)
+    return settings if fspa.semantics == "infinite" else (*settings, _edges(fspa))
 
 
 def _edges(fspa: Fspa) -> tuple[object, ...]:

@@ -14,7 +14,7 @@ def check(view: View) -> Iterator[Remark]:
         limit, least = spec.spec.limit_steps, spec.fspa.states[0].distance
         if limit is not None and least is not None and least > limit:
             clause = next(each for each in spec.declaration.clauses if each.kind == "limit")
-            label = view.label(clause.span, f"{limit} steps, and the goal takes {least} at least")
+            label = view.label(clause.span, f"the goal takes {least} steps at least, and this is {limit}")
             title = f"`{spec.spec.name}` cannot be met within its limit"
             yield Remark(title, (label,), f"allow more, at least `limit {least} steps`")
 

@@ -112,14 +112,11 @@ def _is_shortened(spec: SpecView, indices: list[int]) -> bool:
         apart = build(_apart(spec.spec, indices), state_budget=_MOST_STATES)
     except TltlError:
         return False
-    if apart.states[0].verdict == "violated":
-        # What the spec may need together must not be exclusive.
-        return False
     return _length(apart) > _length(spec.fspa)
 
 
 def _length(fspa: Fspa) -> tuple[int, int]:
-    """The distance from the start, and the greatest one."""
+    """The distance from the start, and the greatest one; both are 0 where no trace satisfies it."""
     return fspa.states[0].distance or 0, fspa.spec_size
 
 

@@ -28,7 +28,7 @@ def check(view: View) -> Iterator[Remark]:
             declaration.name in used or _is_refined(declaration, view)
         ):
             gone = without(view.source, declaration.span, view.module.comments)
-            yield _remark(_KINDS[type(declaration)], declaration.name, declaration.name_span, gone, view)
+            yield _remark(_KINDS[type(declaration)], declaration.name, declaration.name_span, (gone,), view)
 
 
 def _entities(declaration: EntityDecl, used: frozenset[str], view: View) -> Iterator[Remark]:
@@ -36,15 +36,15 @@ def _entities(declaration: EntityDecl, used: frozenset[str], view: View) -> Iter
     unused = [index for index, name in enumerate(declaration.names) if name.name not in used]
     for index in unused:
         if len(unused) == len(spans):
-            gone = without(view.source, declaration.span, view.module.comments)
+            gone: tuple[Span, ...] = (without(view.source, declaration.span, view.module.comments),)
         else:
-            gone = item(spans, index)
+            gone = item(spans, index, view.module.comments)
         yield _remark("entity", declaration.names[index].name, spans[index], gone, view)
 
 
-def _remark(kind: str, name: str, place: Span, gone: Span, view: View) -> Remark:
+def _remark(kind: str, name: str, place: Span, gone: tuple[Span, ...], view: View) -> Remark:
     title = f"nothing uses the {kind} `{name}`"
-    return Remark(title, (view.label(place),), "remove it, or use it", (Edit(gone, ""),))
+    return Remark(title, (view.label(place),), "remove it, or use it", tuple(Edit(span, "") for span in gone))
 
 
 def _is_refined(declaration: Declared, view: View) -> bool:

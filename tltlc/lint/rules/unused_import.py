@@ -33,9 +33,10 @@ def _names(declaration: Import, used: frozenset[str], view: View) -> Iterator[Re
     names = declaration.names or ()
     for index, name in enumerate(names):
         if f"{_prefix(declaration)}{name.name}" not in used:
-            gone = item([each.span for each in names], index)
+            gone = item([each.span for each in names], index, view.module.comments)
             title = f"`{name.name}` of `{declaration.target}` is not used"
-            yield Remark(title, (view.label(name.span),), "remove it from the import, or use it", (Edit(gone, ""),))
+            fix = tuple(Edit(span, "") for span in gone)
+            yield Remark(title, (view.label(name.span),), "remove it from the import, or use it", fix)
 
 
 def _brought(declaration: Import, view: View) -> set[str]:

@@ -6,11 +6,9 @@ import re
 
 import pytest
 
-from tests.lint.helpers import codes, found, marked
+from tests.lint.helpers import SIGNALS, codes, found, marked
 from tltlc.comparison import are_equivalent
 from tltlc.pipeline import compile_text
-
-SIGNALS = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
 
 
 @pytest.mark.parametrize(

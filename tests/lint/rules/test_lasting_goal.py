@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
 
-from tests.lint.helpers import codes, marked
+from tests.lint.helpers import codes, marked, remarks
+from tests.lint.strategies import FREE, World, specs
+from tltlc.lint.rules import lasting_goal
 from tltlc.monitor.monitor import Monitor
 from tltlc.pipeline import compile_text
 
@@ -45,6 +48,7 @@ def test_of_a_chain_it_is_the_last_goal(clause: str) -> None:
     [
         ("reach (always for 3 s a) then b",),
         ("reach (always for 3 s a) and (next after 29 steps true)",),
+        ("reach (always for 3 s (a then b))",),
         ("reach b", "require always for 3 s a"),
         ("reach b", "keep b implies (always for 3 s a)"),
         ("reach eventually within 3 s a",),
@@ -61,3 +65,14 @@ def test_the_way_out_without_a_signal_takes_the_time() -> None:
     (fspa,) = compile_text(spec("reach (always for 3 s a) and (next after 29 steps true)"))
     monitor = Monitor(fspa)
     assert [monitor.step({"a": True}).done for _ in range(30)] == [False] * 29 + [True]
+
+
+LASTING = "(always for 3 steps {} and {})"
+
+
+@given(specs(f"reach {LASTING}", f"reach {LASTING} and {{}}", f"require F ({LASTING} | {{}})", worlds=[FREE], most=1))
+def test_some_play_of_one_step_meets_it(drawn: tuple[World, str]) -> None:
+    world, text = drawn
+    spec, told = remarks(lasting_goal.check, text)
+    for _ in told:
+        assert world.traces.satisfying(spec.spec.formula)[0]

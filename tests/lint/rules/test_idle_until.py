@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
 
-from tests.lint.helpers import codes
+from tests.lint.helpers import SIGNALS, codes, remarks
+from tests.lint.strategies import FREE, World, specs
 from tltlc.comparison import are_equivalent
+from tltlc.lint.rules import idle_until
 from tltlc.pipeline import compile_text
-
-SIGNALS = "signal a: bool\nsignal b: bool\nsignal c: bool\n"
 
 
 @pytest.mark.parametrize(
@@ -36,3 +37,14 @@ def test_where_it_has_one(clause: str) -> None:
 
 def spec(clause: str) -> str:
     return f"{SIGNALS}spec s {{\n    limit 300 steps\n    {clause}\n}}\n"
+
+
+@given(specs("reach {} until {}", "avoid {} until {}", "reach {} then ({} until {})", worlds=[FREE], most=1))
+def test_what_is_said_of_the_clause_is_the_same(drawn: tuple[World, str]) -> None:
+    world, text = drawn
+    spec, told = remarks(idle_until.check, text)
+    for remark in told:
+        span = remark.labels[0].span
+        _, goal = remark.labels[0].message.split("`")[1].split(" ", 1)
+        same, _ = remarks(idle_until.check, f"{text[: span.start]}({goal}){text[span.end :]}")
+        assert world.traces.satisfying(spec.spec.formula) == world.traces.satisfying(same.spec.formula)

@@ -1,0 +1,73 @@
+"""Comments such as ``// tltlc: allow TLT0421`` speak of what is on their line, and of the same after layout."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from tltlc.grammar.allowed import spoken_of, statements
+from tltlc.grammar.parser import parse
+from tltlc.grammar.tree import Comment, Module
+from tltlc.record import record
+from tltlc.source import SourceFile, Span
+
+
+@record
+class Kept:
+    """What the layout leaves as it is, by offsets: no line begins at ``joints``, ``declarations`` stay as written."""
+
+    joints: frozenset[int]
+    declarations: frozenset[int]
+
+
+NOTHING: Final = Kept(frozenset(), frozenset())
+
+
+def keeping(module: Module, text: str, kept: Kept) -> Kept:
+    """What is to be kept beside ``kept``, with which ``text`` was laid out, for comments to allow the same as before.
+
+    First that the statements of a line share one, and where that is not enough their declarations as they are.
+    """
+    before = spoken_of(module)
+    if not any(_may_change(comment, places or (), module.source.text) for comment, places in before):
+        return kept
+    laid_out, _ = parse(SourceFile("<layout>", text))
+    back = dict(zip(statements(laid_out), statements(module), strict=True))
+    wrong: set[Span] = set()
+    for (_, places), (_, others) in zip(before, spoken_of(laid_out), strict=True):
+        now = {back[place] for place in others or ()}
+        if places is not None and _outer(places) != _outer(now):
+            wrong.update(now.union(places))
+    joints = kept.joints.union(*(_joints(module.source.text, place) for place in wrong))
+    if joints != kept.joints:
+        return Kept(joints, kept.declarations)
+    starts = {each.span.start for each in module.declarations if any(_is_in(place, each.span) for place in wrong)}
+    return Kept(joints, kept.declarations | starts)
+
+
+def _may_change(comment: Comment, places: tuple[Span, ...], text: str) -> bool:
+    """Whether a comment speaks of several statements, or stands in the block of which it speaks.
+
+    Others stay above, behind or within the one that they speak of, and need no second look.
+    """
+    return len(places) > 1 or any(_is_in(comment.span, place) and text[place.end - 1] == "}" for place in places)
+
+
+def _outer(places: Iterable[Span]) -> set[Span]:
+    """The places that lie in no other one."""
+    outer: list[Span] = []
+    for place in sorted(places, key=lambda place: (place.start, -place.end)):
+        if not outer or place.end > outer[-1].end:
+            outer.append(place)
+    return set(outer)
+
+
+def _is_in(place: Span, other: Span) -> bool:
+    return other.start <= place.start and place.end <= other.end
+
+
+def _joints(text: str, place: Span) -> Iterator[int]:
+    """The offsets where a statement, or its closing brace, stands behind others on a line."""
+    for offset in (place.start, *((place.end - 1,) if text[place.end - 1] == "}" else ())):
+        if text[text.rfind("\n", 0, offset) + 1 : offset].strip():
+            yield offset
