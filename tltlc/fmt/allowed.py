@@ -41,7 +41,7 @@ def keeping(module: Module, text: str, kept: Kept) -> Kept:
     joints = kept.joints.union(*(_joints(module.source.text, place) for place in wrong))
     if joints != kept.joints:
         return Kept(joints, kept.declarations)
-    starts = {each.span.start for each in module.declarations if any(_is_in(place, each.span) for place in wrong)}
+    starts = {each.span.start for each in module.declarations if any(each.span.covers(place) for place in wrong)}
     return Kept(joints, kept.declarations | starts)
 
 
@@ -50,7 +50,7 @@ def _may_change(comment: Comment, places: tuple[Span, ...], text: str) -> bool:
 
     Others stay above, behind or within the one that they speak of, and need no second look.
     """
-    return len(places) > 1 or any(_is_in(comment.span, place) and text[place.end - 1] == "}" for place in places)
+    return len(places) > 1 or any(place.covers(comment.span) and text[place.end - 1] == "}" for place in places)
 
 
 def _outer(places: Iterable[Span]) -> set[Span]:
@@ -60,10 +60,6 @@ def _outer(places: Iterable[Span]) -> set[Span]:
         if not outer or place.end > outer[-1].end:
             outer.append(place)
     return set(outer)
-
-
-def _is_in(place: Span, other: Span) -> bool:
-    return other.start <= place.start and place.end <= other.end
 
 
 def _joints(text: str, place: Span) -> Iterator[int]:

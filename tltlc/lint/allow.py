@@ -48,10 +48,7 @@ def _undecided(view: View) -> list[Span]:
 
 
 def _speaks_of_any(specs: Iterable[Span], each: Allowed) -> bool:
-    return any(
-        each.places is None or any(spec.start <= place.start and place.end <= spec.end for place in each.places)
-        for spec in specs
-    )
+    return any(each.places is None or any(spec.covers(place) for place in each.places) for spec in specs)
 
 
 def _in_vain(each: Allowed, is_kept: bool) -> Finding:

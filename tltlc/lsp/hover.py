@@ -108,7 +108,7 @@ def _meaning(document: Document, part: Expr) -> str | None:
 
 def _meaning_of_clause(document: Document, clause: Clause) -> str | None:
     for spec in document.resolution.program.specs:
-        own = [each.formula for each in spec.parts if _within(each.span, clause.span)]
+        own = [each.formula for each in spec.parts if clause.span.covers(each.span)]
         if own and spec.source.name == document.source.name:
             return _sentence(build.and_(*own), endless=spec.semantics == "infinite")
     return None
@@ -119,12 +119,8 @@ def _sentence(formula: build.Formula, *, endless: bool = False) -> str | None:
     return None if large else english_text(formula, endless=endless)
 
 
-def _within(inner: Span, outer: Span) -> bool:
-    return outer.start <= inner.start and inner.end <= outer.end
-
-
 def _clause_at(document: Document, span: Span) -> Clause | None:
     for declaration in document.module.declarations:
-        if isinstance(declaration, SpecDecl) and _within(span, declaration.span):
+        if isinstance(declaration, SpecDecl) and declaration.span.covers(span):
             return next((each for each in declaration.clauses if each.keyword_span == span), None)
     return None
