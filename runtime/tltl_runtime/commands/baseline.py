@@ -14,8 +14,9 @@ from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_file
 from tltl_runtime.commands.plain import plain
+from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.commands.workers import all_cores_option
-from tltl_runtime.commands.writable import check_apart
+from tltl_runtime.commands.writable import check_apart, check_writable
 from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import TltlError
@@ -47,7 +48,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     already is not played again where level, policy, spec, seed, versions and code are as they were.  Without SUITE, the
     levels that come with tltlc are played, and `shipped.baseline.json` is written.
     """
-    with Report() as report, learning_for("`tltlc baseline`"), requests_heard():
+    with Report() as report, learning_for("`tltlc baseline`"), requests_heard(), on_without_readers():
         from tltl_runtime.commands.regression_display import RegressionDisplay
         from tltl_runtime.regression.baseline import written_to
         from tltl_runtime.regression.baseline_run import kept_at, write_recorded
@@ -56,6 +57,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
 
         read = read_suite(suite or SHIPPED)
         wrote = path or written_to(read.path)
+        check_writable({"--output": wrote})
         check_apart({"--output": wrote}, files_of(read) - {read.baseline.resolve()})
         there, older = exists(wrote), _older(wrote)
         try:

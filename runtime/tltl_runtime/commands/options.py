@@ -28,18 +28,12 @@ class FiniteRange(click.FloatRange):
 def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:
     """``-o DIR``, which the command takes as ``folder``."""
     path = click.Path(path_type=Path, file_okay=False)
-
-    def named(_: click.Context, parameter: click.Parameter, folder: Path | None) -> Path | None:
-        if folder == Path("-"):
-            raise click.BadParameter("a folder is needed, and `-` is none", param=parameter)
-        return folder
-
     return click.option(
         *_OUTPUT,
         "folder",
         metavar="DIR",
         type=path,
-        callback=named,
+        callback=_no_dash("a folder"),
         default=default,
         show_default=default is not None,
         help=about,
@@ -49,7 +43,18 @@ def output_folder(about: str, default: Path | None = None) -> Callable[[Function
 def output_file(metavar: str, about: str) -> Callable[[Function], Function]:
     """``-o FILE``, which the command takes as ``path``."""
     path = click.Path(path_type=Path, dir_okay=False)
-    return click.option(*_OUTPUT, "path", metavar=metavar, type=path, help=about)
+    return click.option(*_OUTPUT, "path", metavar=metavar, type=path, callback=_no_dash("a file"), help=about)
+
+
+def _no_dash(needed: str) -> Callable[[click.Context, click.Parameter, Path | None], Path | None]:
+    """Refuses `-`, by which other options mean standard output."""
+
+    def named(_: click.Context, parameter: click.Parameter, path: Path | None) -> Path | None:
+        if path == Path("-"):
+            raise click.BadParameter(f"{needed} is needed, and `-` is none", param=parameter)
+        return path
+
+    return named
 
 
 def seed_option(about: str) -> Callable[[Function], Function]:

@@ -13,6 +13,7 @@ from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.plain import plain
+from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.stealth.levels.place import level_place
 from tltlc.cli import exits
 from tltlc.cli.report import Report
@@ -77,7 +78,7 @@ def command(
 
     The exit status is 0 where there are N demonstrations, and 1 where the player stopped before.
     """
-    with Report() as report, requests_heard():
+    with Report() as report, requests_heard(), on_without_readers():
         from tltl_runtime.stealth.env import make_env
         from tltl_runtime.stealth.recording import RecordEpisode
         from tltl_runtime.training.demonstrations import Demonstrations
@@ -204,5 +205,6 @@ def _line(tried: Tried, wanted: int) -> str:
 
 def _there(made: Demonstrations, wanted: int) -> str:
     if made.count > wanted:
-        return f"{made.count} demonstrations are in {made.folder}, and {wanted} are asked for"
+        asked = f"{wanted} {'is' if wanted == 1 else 'are'} asked for"
+        return f"{made.count} demonstrations are in {made.folder}, and {asked}"
     return f"{made.count} of {wanted} demonstrations are in {made.folder}"

@@ -13,6 +13,7 @@ from tltl_runtime.commands.changed_option import ChangedCommand
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import FiniteRange, Function, output_folder
+from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import is_output
 from tltlc.cli.report import Report
@@ -99,10 +100,10 @@ def command(
         both = "both" if len(users) == 2 else "all"
         raise click.UsageError(f"{', '.join(users[:-1])} and {users[-1]} {both} need standard output: {way_out}")
     if minutes is not None and not retrain:
-        raise click.UsageError("--minutes are those of --retrain")
+        raise click.UsageError("--minutes are those of --retrain: give it, too")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` is taken as a word of --changed: put the suite before it")
-    with Report() as report, learning_for("`tltlc regress`"), requests_heard():
+    with Report() as report, learning_for("`tltlc regress`"), requests_heard(), on_without_readers():
         from tltl_runtime.commands.regression_run import Wanted, run
 
         wanted = Wanted(

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Final, get_args
+from typing import Final, cast, get_args
 
 from tltl_runtime.regression.baseline import Reference
 from tltl_runtime.regression.document import document
 from tltl_runtime.regression.junit import junit
 from tltl_runtime.regression.level_texts import designed
-from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
+from tltl_runtime.regression.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.page.page import html_report
 from tltl_runtime.regression.play import Ready
 from tltl_runtime.regression.run import CASES, Done, case_folder
@@ -22,6 +22,7 @@ from tltl_runtime.regression.verdict import Verdict
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltl_runtime.stealth.episodes.file import read_episode
 from tltl_runtime.stealth.level import Level
+from tltl_runtime.texts import listed
 from tltl_runtime.training.versions import versions
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.record import record
@@ -36,14 +37,17 @@ _REPORT: Final = "case.json"
 _NOTE: Final = "Its variants v1 and v2 were changed on purpose: reviews and fails are what they are to show."
 """On the page of the suite that comes with the package."""
 
+_MOST_NAMED: Final = 8
+"""Of the files that were named, as many are told."""
+
 _NO_UTF8: Final = re.compile("[\ud800-\udfff]")
 """What names of files have in place of bytes that are no UTF-8, and no text of UTF-8 can hold."""
 
 
 @record
 class Outcome:
-    """What a run of a suite came to, in its ``folder``; ``left_out`` are the names of cases that no change concerns,
-    ``missing`` of those that were not judged before the run was stopped.
+    """What a run of a suite came to, in its ``folder``; ``left_out`` are the names of cases that depend on none of the
+    ``changed`` files, ``missing`` of those that were not judged before the run was stopped.
 
     ``complete`` says whether all cases were judged, and trained for, that this was asked for.
     """
@@ -54,6 +58,7 @@ class Outcome:
     complete: bool
     left_out: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
+    changed: tuple[str, ...] = ()
 
 
 def json_text(outcome: Outcome) -> str:
@@ -78,24 +83,35 @@ def _page_text(outcome: Outcome) -> str:
         versions=versions(),
         cases=tuple(_reported(done, suite, outcome.folder) for done in outcome.cases),
         complete=outcome.complete,
-        missing=outcome.missing,
-        left_out=outcome.left_out,
-        earlier=_earlier(outcome),
+        not_run=tuple(_not_run(outcome)),
         note=_NOTE if is_shipped else "",
     )
     return _encodable(html_report(contents))
 
 
-def _earlier(outcome: Outcome) -> dict[str, Verdict]:
-    """What an earlier run in the folder said of the cases that were left out, as far as it is there."""
-    found: dict[str, Verdict] = {}
-    for name in outcome.left_out:
-        path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
-        with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
-            verdict = json.loads(path.read_text(encoding="utf-8"))["content"]["verdict"]
-            if verdict in get_args(Verdict):
-                found[name] = verdict
-    return found
+def _not_run(outcome: Outcome) -> Iterator[NotRun]:
+    """The cases that were not judged, in the suite's order."""
+    depends = "--changed names no file"
+    if outcome.changed:
+        names = listed([f"`{each}`" for each in outcome.changed], _MOST_NAMED)
+        depends = f"it depends on none of the files that --changed names: {names}"
+    why = {
+        **dict.fromkeys(outcome.missing, "the run was stopped before; the same command goes on"),
+        **dict.fromkeys(outcome.left_out, depends),
+    }
+    for case in outcome.suite.cases:
+        if case.name in why:
+            yield NotRun(case.name, why[case.name], _earlier(outcome, case.name))
+
+
+def _earlier(outcome: Outcome, name: str) -> Verdict | None:
+    """What an earlier run in the folder said of a case, if that is there."""
+    path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
+    with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
+        verdict = json.loads(path.read_text(encoding="utf-8"))["content"]["verdict"]
+        if verdict in get_args(Verdict):
+            return cast(Verdict, verdict)
+    return None
 
 
 def _encodable(text: str) -> str:

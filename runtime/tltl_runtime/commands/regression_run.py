@@ -201,7 +201,7 @@ def _outcome(
     """What the run has come to so far."""
     missing = tuple(case.name for case in cases[len(found) :])
     complete = not missing and not _untrained(wanted, found)
-    return Outcome(suite, wanted.folder, tuple(found), complete, left_out, missing)
+    return Outcome(suite, wanted.folder, tuple(found), complete, left_out, missing, wanted.changed or ())
 
 
 def _tell_too(outcome: Outcome, wanted: Wanted) -> None:

@@ -136,6 +136,6 @@ def _lines(asked: Retraining, name: str, outcome: Retrained) -> Iterator[str]:
         yield f"    the new policy: {policy}"
     else:
         then = baseline_command(asked.suite)
-        yield f"    where the change was meant: copy {policy} beside the suite, name it there as `policy`, {then}"
+        yield f"    where the change was meant: copy {policy} beside the suite, name it there as `policy`, then: {then}"
     if outcome.episode:
         yield f"    an episode that met the spec: tltlc replay {quote(str(asked.folder / outcome.episode))}"

@@ -11,7 +11,7 @@ from typing import Literal
 from tltl_runtime.evaluation.local import Process
 from tltl_runtime.evaluation.play import Played
 from tltl_runtime.evaluation.player import Player, Plays, Recorded, Result, Setup, Task
-from tltl_runtime.evaluation.spread import spread
+from tltl_runtime.evaluation.spread import Alone, spread
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.policies.fit import check_policy
 from tltl_runtime.policies.policy import Policy
@@ -92,10 +92,12 @@ def results(
     tasks: Sequence[Task],
     workers: Pool = 1,
     waiting: Callable[[float], None] = lambda left: None,
+    alone: Alone | None = None,
 ) -> Generator[Result]:
     """Play the tasks and give their results in order; closing the iterator ends the workers.
 
-    Where no core of a Ray cluster is free, ``waiting`` is told for how many more seconds one is waited for.
+    Where no core of a Ray cluster is free, ``waiting`` is told for how many more seconds one is waited for.  Where a
+    worker is lost, ``alone`` is the command that plays its episode, by default ``tltlc evaluate``.
 
     Raises:
         TltlError: TLT0850, a worker was lost; TLT0730, Ray is asked for and is not installed; TLT0852, there is no
@@ -103,15 +105,17 @@ def results(
         ValueError: a number of workers below 0.
     """
     if workers != "ray":
-        yield from results_here(partial(Player, setup), tasks, workers, setup.seed)
+        yield from results_here(partial(Player, setup), tasks, workers, setup.seed, alone)
         return
     from tltl_runtime.evaluation.ray_pool import ray_workers
 
     with ray_workers(setup, len(tasks), waiting) as team:
-        yield from spread(team, tasks, setup.seed)
+        yield from spread(team, tasks, setup.seed, alone)
 
 
-def results_here(make: Callable[[], Plays], tasks: Sequence[Task], workers: int, seed: int) -> Generator[Result]:
+def results_here(
+    make: Callable[[], Plays], tasks: Sequence[Task], workers: int, seed: int, alone: Alone | None = None
+) -> Generator[Result]:
     """As :func:`results`, on this machine, played by what ``make`` makes in each process, to which it is pickled.
 
     Raises:
@@ -130,4 +134,4 @@ def results_here(make: Callable[[], Plays], tasks: Sequence[Task], workers: int,
         team = [Process(make) for _ in range(min(workers or cores(), len(tasks)))]
         for each in team:
             stack.callback(each.close)
-        yield from spread(team, tasks, seed)
+        yield from spread(team, tasks, seed, alone)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Protocol
 
@@ -25,7 +25,11 @@ class Worker(Protocol):
         """Free what there is to free."""
 
 
-def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int) -> Iterator[Result]:
+Alone = Callable[[Task], str]
+"""The command that plays one episode alone."""
+
+
+def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int, alone: Alone | None = None) -> Iterator[Result]:
     """Have the workers play, each the next task as soon as it is free; results in the order of the tasks.
 
     Where a task fails, the results that are there already come before the error, and those of others may be missing
@@ -48,7 +52,7 @@ def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int) -> Itera
                 if (error := future.exception()) is not None:
                     yield from (found[each] for each in sorted(found))
                     if isinstance(error, LostError):
-                        raise _lost(error, tasks[place], seed) from error
+                        raise _lost(error, tasks[place], seed, alone) from error
                     raise error
                 for next_place, task in left:
                     running[worker.play(task)] = worker, next_place
@@ -56,10 +60,13 @@ def spread(workers: Sequence[Worker], tasks: Sequence[Task], seed: int) -> Itera
         yield found.pop(wanted)
 
 
-def _lost(error: LostError, task: Task, seed: int) -> TltlError:
+def _lost(error: LostError, task: Task, seed: int, alone: Alone | None) -> TltlError:
     title = (
         f"a worker was lost while it played episode {task.index} of seed {seed}, {CHOICES[task.sampled]} "
         f"(seed {episode_seed(seed, task.index)} of the level): {error}"
     )
-    help_ = f"`tltlc evaluate` plays that one alone: `--seed {seed} --first {task.index} --episodes 1 --workers 1`"
+    if alone:
+        help_ = f"to play that one alone: {alone(task)}"
+    else:
+        help_ = f"`tltlc evaluate` plays that one alone: `--seed {seed} --first {task.index} --episodes 1 --workers 1`"
     return TltlError([Diagnostic("TLT0850", title, help=help_)])

@@ -36,7 +36,10 @@ def check_policy(card: Card, level: Level, fspa: Fspa | None = None) -> None:
     missing = [*_missing(card, level)]
     if missing:
         title = f"the policy senses {listed(missing, _MOST)}, which the level `{level.name}` does not have"
-        raise _unfit(title, f"let it play `{card.level}`, where it was trained, or train one for `{level.name}`")
+        way_out = f"let it play `{card.level}`, where it was trained"
+        if card.level == level.name:
+            way_out = "put back what was there when it was trained"
+        raise _unfit(title, f"{way_out}, or train one for `{level.name}`")
     if fspa is not None and spec_hash(fspa) != spec_hash(card.fspa):
         title = f"the policy was trained for another spec than `{fspa.name}`: {differences(card.fspa, fspa)}"
         raise _unfit(title, "let it play its own spec, or train one for this spec")

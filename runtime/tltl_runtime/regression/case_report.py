@@ -72,7 +72,10 @@ def report_on(result: Result) -> CaseReport:
     level, outdated = result.ready.level, result.ready.outdated
     said = tuple(reasons(result.judgement, case.thresholds, now, before))
     blocked = tuple(obstacles(level, setup.fspa))
-    failed = next(ends(level, setup.fspa, now, before), None)
+    figures, baseline = figures_of(now), figures_of(before)
+    # How a case that is only not certain fails as rarely as before says nothing of its verdict.
+    is_worse = result.judgement.verdict == "fail" or figures.pass_rate < baseline.pass_rate
+    failed = next(ends(level, setup.fspa, now, before), None) if is_worse else None
     return CaseReport(
         name=case.name,
         level=level.name,
@@ -81,8 +84,8 @@ def report_on(result: Result) -> CaseReport:
         verdict="review" if outdated and result.judgement.verdict == "pass" else result.judgement.verdict,
         certain=result.judgement.certain,
         rate_interval=result.judgement.rate_interval,
-        figures=figures_of(now),
-        baseline=figures_of(before),
+        figures=figures,
+        baseline=baseline,
         changes=result.judgement.changes,
         causes=(*([outdated] if outdated else []), *said[:1], *blocked, *said[1:]),
         told=outdated or next(iter(blocked), None) or _headline(result.judgement, case.thresholds, said, failed),

@@ -138,7 +138,7 @@ def _told(level: Level, end: End, accounts: Sequence[Account]) -> str:
     ends = [(each.place, each.shut) for each in accounts]
     stopped = in_the_way(level, ends)
     mostly = "" if all(set(stopped) <= set(in_the_way(level, [each])) for each in ends) else "mostly "
-    return f"is {end.where} when time is up" + (f", {mostly}at {_names(stopped)}," if stopped else "")
+    return f"runs out of time {end.where}" + (f", {mostly}at {_names(stopped)}," if stopped else "")
 
 
 def _mostly(what: str, named: Sequence[Sequence[str]]) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Generator
 from contextlib import closing
+from functools import partial
+from shlex import join
 from typing import Final
 
 from tltl_runtime.evaluation.evaluate import Pool, results, set_up
@@ -98,7 +100,7 @@ def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
             playing raises.
     """
     tasks = [Task(index) for index in range(made.case.episodes)]
-    with closing(results(made.setup, tasks, pool)) as playing:
+    with closing(results(made.setup, tasks, pool, alone=partial(_alone, made))) as playing:
         for count, each in enumerate(playing):
             # Before an error come all results that are there: a gap among them would leave out the slow episodes.
             if each.played.index != count:
@@ -108,6 +110,14 @@ def episodes(made: Ready, pool: Pool) -> Generator[Recorded]:
             _check_unedited(made, episode.level)
             yield Recorded(account(each.played, episode), each.recording)
     check_unedited(made)
+
+
+def _alone(made: Ready, task: Task) -> str:
+    """The command that plays one of the case's episodes."""
+    place = ["--level", f"{made.setup.level}:{made.setup.variant}"]
+    spec = [] if made.case.spec is None else ["--spec", made.case.spec]
+    episode = ["--seed", str(made.setup.seed), "--first", str(task.index), "--episodes", "1"]
+    return join(["tltlc", "evaluate", str(made.case.policy), *place, *spec, *episode])
 
 
 def check_unedited(made: Ready) -> None:

@@ -91,19 +91,14 @@ def edits(
     aside = {name for name in differ if now.variant != before.variant and name.startswith(_OVERLAYS)}
     aside -= old.keys() & new.keys()
     if changed := [name for name in differ if name not in aside]:
-        words = (f"{_called(name)}{_keys(dict(texts_before).get(name), dict(texts).get(name))}" for name in changed)
+        words = (f"{name}{_keys(dict(texts_before).get(name), dict(texts).get(name))}" for name in changed)
         yield f"changed since the baseline: {', '.join(words)}"
     if aside:
-        yield f"differs from `{before.variant}` by {', '.join(_called(name) for name in differ if name in aside)}"
+        yield f"differs from `{before.variant}` by {', '.join(name for name in differ if name in aside)}"
     yield from changes
     for name, version in before.versions.items():
         if (here := now.versions.get(name)) != version:
             yield f"the baseline was recorded with {name} {version}, and this is {here or 'without it'}"
-
-
-def _called(name: str) -> str:
-    """A file of a level, and whether it is an overlay."""
-    return f"overlay {name}" if name.startswith(_OVERLAYS) else name
 
 
 def _keys(before: str | None, now: str | None) -> str:

@@ -150,7 +150,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
     error = suite.error / len(suite.cases)
     # Episodes of another seed: those of the suite's were played by the policy that this one comes of.
     setup = replace(done.ready.setup, policy=policy, seed=(suite.seed + 1) % 2**31)
-    ready = replace(done.ready, setup=setup)
+    ready = replace(done.ready, setup=setup, case=replace(done.ready.case, policy=run.folder))
     inputs = _inputs(ready, weights_hash(policy), trained, error, done.report.accounts)
     if kept := _kept(run.folder, inputs):
         return kept

@@ -7,6 +7,7 @@ from os.path import normpath
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.policies.file import SUFFIX
 from tltl_runtime.policies.shipped import shipped_policies, shipped_policy
 from tltl_runtime.regression.named_files import level_like, policy_faults, policy_for_its_spec, spec_faults
 from tltl_runtime.stealth.levels.file import level_names, level_path, shared_names, variants
@@ -103,9 +104,13 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     source = read_source(path, shown(path))
     log: list[Diagnostic] = []
     table = Table(Entry(read_tree(source, help_=_HELP), Label(source, Span(0, 0))), "the suite", log)
-    if "case" not in table.entries and (other := _something_else(table)):
+    if "case" not in table.entries:
         help_ = "a suite lists cases that name levels, each under `[[case]]`"
-        raise TltlError([Diagnostic("TLT0803", f"this is {other}, and no suite", (table.label,), help_)])
+        if other := _something_else(table):
+            raise TltlError([Diagnostic("TLT0803", f"this is {other}, and no suite", (table.label,), help_)])
+        if "level" in table.entries:
+            title, help_ = "the suite has no cases, and `level` is a key of one", "write `[[case]]` in a line above it"
+            raise TltlError([Diagnostic("TLT0802", title, (table.place("level"),), help_)])
     seed = table.whole("seed", 0, low=0, high=2**31 - 1)
     error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
     episodes = _episodes(table, MOST_EPISODES)
@@ -250,7 +255,8 @@ def _policy(table: Table, folder: Path, level: str) -> Path | None:
         return found
     path = folder / named
     if not exists(path):
-        table.log.append(_missing("policy", named, table.place("policy"), tuple(shipped_policies())))
+        known = (*shipped_policies(), *sorted(each.name for each in folder.glob(f"*{SUFFIX}")))
+        table.log.append(_missing("policy", named, table.place("policy"), known))
     else:
         table.log += policy_faults(path, table.place("policy"))
     return path

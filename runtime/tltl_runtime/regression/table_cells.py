@@ -86,7 +86,11 @@ def _by_expert(level: str, variant: str, pool: Pool) -> Generator[Went]:
     """The careful expert's episodes, which are those of the policies, so that all play the same; on this machine."""
     tasks = [Task(index) for index in range(EPISODES)]
     workers = 0 if pool == "ray" else pool
-    for each in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED):
+
+    def alone(task: Task) -> str:
+        return f"tltlc demonstrate {level}:{variant} --seed {episode_seed(SEED, task.index)}"
+
+    for each in results_here(partial(_ExpertPlayer, level, variant), tasks, workers, SEED, alone):
         yield Went(each.played.success, each.played.progress, each.played.reward)
 
 

@@ -38,7 +38,11 @@ def test_a_baseline_is_recorded(tltlc: Run, game: Path) -> None:  # noqa: F811
     assert len(read_baseline(Path("again.json"))) == 2
     # It is known before anything is played that it cannot be written.
     found = tltlc("baseline", "game.toml", "--output", "nowhere/again.json", *ONE)
-    assert (found.status, found.out) == (3, "") and "name another place with --output" in found.err
+    assert (found.status, found.out) == (3, "")
+    assert found.err == (
+        "error[TLT0005]: cannot write `nowhere/again.json`: there is no such folder\n"
+        "  help: name another place with --output\n"
+    )
 
 
 def test_a_baseline_keeps_what_has_not_changed_and_says_what_has(tltlc: Run, game: Path) -> None:  # noqa: F811
@@ -114,6 +118,12 @@ def test_nothing_that_the_suite_reads_is_overwritten(tltlc: Run, game: Path, nam
         f"error[TLT0005]: cannot write `{name}`: the suite reads it\n  help: name another place"
     )
     assert (game / name).read_bytes() == before
+
+
+def test_standard_output_is_no_place_for_a_baseline(tltlc: Run, game: Path) -> None:  # noqa: F811
+    found = tltlc("baseline", "game.toml", "-o", "-")
+    assert (found.status, found.out) == (2, "") and "a file is needed, and `-` is none" in found.err
+    assert not Path("-").exists()
 
 
 def test_a_case_that_is_always_met_needs_more_episodes_alone() -> None:

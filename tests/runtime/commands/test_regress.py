@@ -210,9 +210,8 @@ def test_where_nothing_is_concerned(tltlc: Run, game: Path, words: list[str]) ->
     found = tltlc("regress", "game.toml", "--junit", "report.xml", *ONE, "--changed", *words)
     assert (found.status, found.out) == (0, "no case was to be played\n")
     # One of an earlier run would be taken for this one's.
-    assert "Left out, since none of the named files concerns them" in Path("regression/game/report.html").read_text(
-        encoding="utf-8"
-    )
+    why = "it depends on none of the files that --changed names" if words else "--changed names no file"
+    assert Path("regression/game/report.html").read_text(encoding="utf-8").count(why) == 2 * len(NAMES)
     assert f"left out, since none of the named files concerns them: {', '.join(NAMES)}" in found.err
     assert ("no case depends on README.md, src/game.py" in found.err) == bool(words)
     (tests,) = ET.parse("report.xml").getroot()
@@ -286,6 +285,20 @@ def test_reports_go_into_pipes(tltlc: Run, game: Path) -> None:  # noqa: F811
         os.close(here)
         assert found.status == 0, found.err
         assert json.load(pipe)["left_out"] == NAMES
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes close otherwise")
+def test_whoever_stops_reading_stops_no_run(game: Path) -> None:
+    words = [sys.executable, "-m", "tltlc", "regress", "game.toml", "--fresh", "--junit", "report.xml", *ONE]
+    Path("regression/game/report.html").unlink()
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as running:
+        assert running.stdout is not None
+        # As `head -1` does.
+        assert running.stdout.readline().startswith(b"room:v0")
+        running.stdout.close()
+    assert running.returncode == 1
+    assert [test.get("name") for test in ET.parse("report.xml").iter("testcase")] == NAMES
+    assert Path("regression/game/report.html").is_file()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are Unicode here")
@@ -368,6 +381,7 @@ def test_what_is_refused(tltlc: Run, game: Path) -> None:  # noqa: F811
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "status"), [("SIGINT", 130), ("SIGTERM", 143)])
 def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str, status: int) -> None:  # noqa: F811
     # One that never meets its spec, and may: thousands of episodes would tell.

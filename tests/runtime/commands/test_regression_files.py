@@ -34,8 +34,17 @@ def judged(suite: Suite, count: int) -> tuple[Done, ...]:
 
 def test_cases_that_were_left_out_have_their_earlier_verdicts(suite: Suite) -> None:
     text = page(Outcome(suite, Path("run"), (), True, NAMES))
-    assert text.count("not played now; earlier: pass") == 2 and text.count("not played now; earlier: fail") == 1
-    assert "not played now" not in page(Outcome(suite, Path("elsewhere"), (), True, NAMES))
+    assert text.count("earlier: pass") == 2 and text.count("earlier: fail") == 1
+    assert "earlier" not in page(Outcome(suite, Path("elsewhere"), (), True, NAMES))
+
+
+def test_cases_that_were_not_run_say_why(suite: Suite) -> None:
+    changed = tuple(f"{number}.toml" for number in range(10))
+    text = page(Outcome(suite, Path("run"), judged(suite, 1), False, ("room:v1",), ("hopeless",), changed))
+    names = ", ".join(f"<code>{name}</code>" for name in changed[:8])
+    assert text.count(f"it depends on none of the files that --changed names: {names} and 2 more") == 2
+    assert text.count("the run was stopped before; the same command goes on") == 2
+    assert page(Outcome(suite, Path("run"), (), True, NAMES)).count("--changed names no file") == 6
 
 
 @pytest.mark.parametrize(
@@ -44,7 +53,7 @@ def test_cases_that_were_left_out_have_their_earlier_verdicts(suite: Suite) -> N
 def test_what_cannot_be_read_of_an_earlier_run_is_left_out(suite: Suite, kept: str) -> None:
     Path("run/cases/hopeless/case.json").write_text(kept, encoding="utf-8")
     text = page(Outcome(suite, Path("run"), (), True, NAMES))
-    assert text.count("not played now; earlier: pass") == 2 and "earlier: fail" not in text
+    assert text.count("earlier: pass") == 2 and "earlier: fail" not in text
 
 
 def test_the_level_of_the_baseline_is_drawn_where_it_looks_otherwise(suite: Suite) -> None:

@@ -195,6 +195,7 @@ def test_what_is_refused(tltlc: Run, game: Path, words: tuple[str, ...], said: s
     assert said in re.sub(r"\s+", " ", found.err)
 
 
+@pytest.mark.slow
 def test_asked_to_end_it_keeps_what_there_is(tltlc: Run, game: Path) -> None:  # noqa: F811
     words = [sys.executable, "-m", "tltlc", "regress", "game.toml", "--retrain", "--minutes", "60", *ONE]
     with subprocess.Popen([*words, "--json", "report.json"], stderr=subprocess.PIPE, text=True) as training:

@@ -5,10 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.runtime.regression.game import Played, edit
+from tests.runtime.regression.made import several
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
 from tltl_runtime.regression.baseline import baseline_of
+from tltl_runtime.regression.case_report import report_on
+from tltl_runtime.regression.play import Recorded, Result, ready
 from tltl_runtime.regression.run import regress
 from tltl_runtime.regression.suite import read_suite
+from tltl_runtime.regression.verdict import judge
+from tltlc.record import replace
 
 
 def test_it_tells_which_keys_of_a_file_have_changed(game: Path) -> None:
@@ -17,3 +22,18 @@ def test_it_tells_which_keys_of_a_file_have_changed(game: Path) -> None:
     (done,) = regress(suite, suite.cases[:1], baseline_of(suite), Path("run"), 1, Played())
     (said,) = done.report.edits
     assert said.startswith("changed since the baseline: room.toml (") and "[8, 7, 0]" in said.replace(".0", "")
+
+
+def test_the_headline_is_no_failure_that_comes_no_more_often_than_before(game: Path) -> None:
+    suite = read_suite(Path("game.toml"))
+    one, reference = ready(suite.cases[0], suite.seed), baseline_of(suite)[0]
+    now = several(47, 3)
+
+    def headline(before: int) -> str:
+        compared = replace(reference, accounts=tuple(several(before, 50 - before)))
+        judgement = judge(now, compared.accounts, 50, one.case.thresholds, 0.05)
+        assert judgement is not None and judgement.verdict == "review"
+        return report_on(Result(one, compared, judgement, tuple(Recorded(each, b"") for each in now))).headline
+
+    assert headline(47).startswith("met in 47 of 50 episodes (94%), before in 47 of 50 (94%): ")
+    assert headline(50) == "runs out of time in the middle in 3 of 50 episodes"

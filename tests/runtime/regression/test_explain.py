@@ -102,7 +102,7 @@ def test_ends_are_told_by_kind_and_place_the_most_frequent_first(level: Level, f
         now[index] = made(index, False, states=to(fspa, 1), place=(8.5, 8.0, 0.0))
     texts = told(level, fspa, now)
     assert [each.partition("; in state")[0] for each in texts[1:]] == [
-        "is near `exit` when time is up in 7 of 25 episodes; before: in 0 of 25 episodes",
+        "runs out of time near `exit` in 7 of 25 episodes; before: in 0 of 25 episodes",
         "breaks the spec in the middle (`seen`), seen by `guard`, in 5 of 25 episodes; before: in 0 of 25 episodes",
     ]
 
@@ -137,8 +137,8 @@ def test_a_death_names_what_broke(level: Level, fspa: Fspa) -> None:
 
 def test_ends_of_two_stages_are_told_apart(level: Level, fspa: Fspa) -> None:
     now = [made(index, False, states=to(fspa, 1 if index < 14 else 2)) for index in range(25)]
-    ends = [each for each in findings(level, fspa, now, good(fspa)) if "when time is up" in each.text]
-    same = "is in the middle when time is up before it reaches"
+    ends = [each for each in findings(level, fspa, now, good(fspa)) if "runs out of time" in each.text]
+    same = "runs out of time in the middle before it reaches"
     assert [(each.text.partition(" of 25")[0], len(each.episodes)) for each in ends] == [
         (f"{same} `s2` in 14", 14),
         (f"{same} `exit` in 11", 11),
@@ -163,7 +163,7 @@ def test_ends_of_few_episodes_are_told_together(level: Level, fspa: Fspa) -> Non
     assert "; in state" in last(level, fspa, now)
     now[0] = timed_out(fspa, 0, 0)
     (_, rest) = findings(level, fspa, now, good(fspa, 40))
-    text = "is in the middle when time is up in 3 of 40 episodes; before: in 0 of 40 episodes"
+    text = "runs out of time in the middle in 3 of 40 episodes; before: in 0 of 40 episodes"
     assert (rest.text, rest.episodes) == (text, (0, 1, 2))
     now[1] = timed_out(fspa, 1, 1, NORTH)
     assert last(level, fspa, now) == text.replace("the middle", "different places")
@@ -210,7 +210,7 @@ def test_ends_as_before_say_so(level: Level, fspa: Fspa) -> None:
     now = [made(index, index >= 10, states=to(fspa, 3 if index >= 10 else 2)) for index in range(25)]
     texts = told(level, fspa, now, now)
     assert texts[0] == "reaches `s1`, `s2` as before"
-    assert texts[1].startswith("is in the middle when time is up in 10 of 25 episodes; before: in 10 of 25 episodes; ")
+    assert texts[1].startswith("runs out of time in the middle in 10 of 25 episodes; before: in 10 of 25 episodes; ")
 
 
 def test_the_state_in_which_they_failed_is_told_with_what_remained(level: Level, fspa: Fspa) -> None:
@@ -340,7 +340,7 @@ def test_killers_are_the_same_in_any_order(level: Level, fspa: Fspa) -> None:
 
 def test_what_is_in_the_way_is_named(level: Level, fspa: Fspa) -> None:
     now = [made(index, False, states=to(fspa, 0), place=(9.5, 5.0, 0.0)) for index in range(25)]
-    assert "is in the east when time is up, at `outer_east`, in 25 of 25" in told(level, fspa, now)[1]
+    assert "runs out of time in the east, at `outer_east`, in 25 of 25" in told(level, fspa, now)[1]
 
 
 @pytest.mark.parametrize(

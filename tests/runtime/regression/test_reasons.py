@@ -98,7 +98,7 @@ def test_what_nobody_can_reach_is_told_for_certain() -> None:
 
 def test_which_files_have_changed() -> None:
     now = replace(PLAYED, files=(("room.toml", "d" * 64), ("assets/guard.toml", "0" * 64), ("overlays/x.toml", "1")))
-    assert list(edits(now, PLAYED, [])) == ["changed since the baseline: assets/guard.toml, overlay overlays/x.toml"]
+    assert list(edits(now, PLAYED, [])) == ["changed since the baseline: assets/guard.toml, overlays/x.toml"]
     gone = replace(PLAYED, files=PLAYED.files[:1])
     assert list(edits(gone, PLAYED, [])) == ["changed since the baseline: assets/guard.toml"]
     assert list(edits(PLAYED, PLAYED, [])) == []
@@ -109,25 +109,25 @@ def test_which_keys_have_changed() -> None:
     new = (("room.toml", "size = 3"), ("assets/guard.toml", "walk_speed = 2.6"), ("overlays/x.toml", "a = 1"))
     old = (("room.toml", "size = "), ("assets/guard.toml", "walk_speed = 1.6"))
     assert list(edits(now, PLAYED, [], new, old)) == [
-        "changed since the baseline: room.toml, assets/guard.toml (`walk_speed` 1.6 → 2.6), overlay overlays/x.toml"
+        "changed since the baseline: room.toml, assets/guard.toml (`walk_speed` 1.6 → 2.6), overlays/x.toml"
     ]
 
 
 def test_another_variant_differs_by_its_overlays_which_have_not_changed() -> None:
     now = replace(PLAYED, variant="v1", files=(*PLAYED.files, ("overlays/x.toml", "1")))
     assert list(edits(now, PLAYED, ["The way is shut."])) == [
-        "differs from `v0` by overlay overlays/x.toml",
+        "differs from `v0` by overlays/x.toml",
         "The way is shut.",
     ]
-    assert list(edits(PLAYED, now, [])) == ["differs from `v1` by overlay overlays/x.toml"]
+    assert list(edits(PLAYED, now, [])) == ["differs from `v1` by overlays/x.toml"]
     both = replace(now, files=(("room.toml", "2"), *now.files[1:]))
     assert list(edits(both, PLAYED, [])) == [
         "changed since the baseline: room.toml",
-        "differs from `v0` by overlay overlays/x.toml",
+        "differs from `v0` by overlays/x.toml",
     ]
     # An overlay that both have was read twice, and differs.
     other = replace(now, variant="v2", files=(*PLAYED.files, ("overlays/x.toml", "2")))
-    assert list(edits(other, now, [])) == ["changed since the baseline: overlay overlays/x.toml"]
+    assert list(edits(other, now, [])) == ["changed since the baseline: overlays/x.toml"]
 
 
 def test_a_baseline_of_other_versions() -> None:

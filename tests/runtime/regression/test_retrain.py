@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
@@ -142,6 +143,20 @@ def test_episodes_of_the_case_itself_show_that_there_is_a_way(game: Suite) -> No
     accounts = (replace(hopeless.report.accounts[0], success=True), *hopeless.report.accounts[1:])
     lucky = replace(hopeless, report=replace(hopeless.report, accounts=accounts))
     assert retrained(game, lucky, training_of(game, hopeless), 1, lambda *_: None).outcome == "feasible"
+
+
+def test_of_a_lost_worker_it_is_told_what_plays_its_episode_with_the_new_policy(game: Suite) -> None:
+    *_, hopeless = judged(game)
+    run = training_of(game, hopeless)
+
+    def kill(*_: object) -> None:
+        for child in active_children():
+            child.kill()
+
+    with pytest.raises(TltlError, match="TLT0850") as error:
+        retrained(game, hopeless, run, 2, kill)
+    (found,) = error.value.diagnostics
+    assert f"tltlc evaluate {run.folder} --level room.toml:v0 --seed {game.seed + 1} --first " in (found.help or "")
 
 
 def test_what_is_kept_and_what_is_not(game: Suite) -> None:

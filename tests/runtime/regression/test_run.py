@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 from collections.abc import Callable, Iterator
@@ -255,7 +256,10 @@ def test_what_is_wrong_with_the_workers_ends_the_run(game: Path, monkeypatch: py
     monkeypatch.setattr("tltl_runtime.regression.run.ready", deadly)
     with pytest.raises(TltlError) as error:
         list(regress(suite, suite.cases, baseline_of(suite), Path("new"), 2, Played()))
-    assert [found.code for found in error.value.diagnostics] == ["TLT0850"]
+    (found,) = error.value.diagnostics
+    assert found.code == "TLT0850"
+    alone = "tltlc evaluate easy.safetensors --level room.toml:v0 --seed 3 --first"
+    assert re.fullmatch(rf"to play that one alone: {alone} [01] --episodes 1", found.help)
     assert not (Path("new") / CASES).exists()
 
 
@@ -263,8 +267,8 @@ def test_no_verdict_rests_on_episodes_with_a_gap(game: Path, monkeypatch: pytest
     """Before an error come all episodes that are over, and the slow ones are missing among them."""
     lost = TltlError([Diagnostic("TLT0850", "a worker was lost", help="play it alone")])
 
-    def with_gap(*given: Any) -> Iterator[Any]:
-        yield from (each for each in islice(results(*given), 6) if each.task.index != 2)
+    def with_gap(*given: Any, **named: Any) -> Iterator[Any]:
+        yield from (each for each in islice(results(*given, **named), 6) if each.task.index != 2)
         raise lost
 
     monkeypatch.setattr("tltl_runtime.regression.play.results", with_gap)
@@ -422,6 +426,10 @@ def test_a_policy_that_does_not_fit_fails_its_case(game: Path) -> None:
     (report,) = (done.report for done in found if done.report.name == "hall:v0")
     assert report.verdict == "fail"
     assert "TLT0843, the policy senses the entity `exit`, which the level `hall` does not have" in report.reasons[1]
+    assert "(let it play `room`, where it was trained, or train one for `hall`)" in report.reasons[1]
+    edit("room.toml", 'name = "exit"', 'name = "way_out"')
+    report = run("new")[0][0].report
+    assert "(put back what was there when it was trained, or train one for `room`)" in report.reasons[1]
 
 
 def test_a_level_that_a_player_leaves_fails_its_case_and_the_others_go_on(game: Path) -> None:

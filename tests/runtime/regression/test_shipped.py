@@ -65,7 +65,7 @@ def test_a_corridor_that_was_shut_is_named(judged: Mapping[str, CaseReport]) -> 
     report = judged["navigation:v2"]
     assert report.verdict == "fail"
     assert any("nobody reaches `s2`" in each and "ends at `corridor_block_2`" in each for each in report.reasons)
-    stuck = "is in the corridor when time is up, mostly at `corridor_block_2`"
+    stuck = "runs out of time in the corridor, mostly at `corridor_block_2`"
     ends = [each for each in report.explanation if each.text.startswith(stuck)]
     assert [len(each.episodes) for each in ends] == [len(report.accounts)]
 

@@ -180,6 +180,13 @@ def test_a_policy_that_cannot_be_read_is_the_suites_mistake(tmp_path: Path, monk
     assert len(read(Path(), f'[[case]]\n{folder}/vault"')) == 1
 
 
+def test_a_policy_that_there_is_not_may_be_one_beside_the_suite(tmp_path: Path) -> None:
+    (tmp_path / "mine.safetensors").touch()
+    ((code, title, help_),) = refused(tmp_path, 'level = "navigation"\npolicy = "mine"')
+    assert (code, title) == ("TLT0805", "there is no policy `mine`")
+    assert help_ == "there are: `branching`, `cover_and_hide`, `navigation`, `mine.safetensors`"
+
+
 @pytest.mark.parametrize(
     ("level", "meant"),
     [

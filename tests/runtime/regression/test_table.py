@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import closing
 from multiprocessing import active_children
 from pathlib import Path
@@ -77,6 +78,7 @@ def test_what_a_policy_played_is_kept_until_it_is_another_one(tmp_path: Path, mo
     assert kept.read_bytes() != before
 
 
+@pytest.mark.slow
 def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) -> None:
     alone = measured(tmp_path, "expert", "cover_and_hide", "v0", None, 1)
     assert [each.success for each in alone] == [True] * 3
@@ -90,8 +92,12 @@ def test_a_process_of_the_expert_that_is_lost_is_reported(monkeypatch: pytest.Mo
         assert next(playing).success
         for child in active_children():
             child.kill()
-        with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode"):
+        with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode") as error:
             list(playing)
+    said = re.search(r"\(seed (\d+) of the level\)", str(error.value))
+    assert said is not None
+    (found,) = error.value.diagnostics
+    assert found.help == f"to play that one alone: tltlc demonstrate cover_and_hide:v0 --seed {said[1]}"
 
 
 def test_the_expert_plays_again_where_the_spec_or_the_code_is_another(

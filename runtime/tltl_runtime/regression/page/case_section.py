@@ -10,19 +10,19 @@ from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.page.automaton import Drawn, counts_table, picture
 from tltl_runtime.regression.page.case_maps import case_maps
-from tltl_runtime.regression.page.contents import ReportedCase
+from tltl_runtime.regression.page.contents import NotRun, ReportedCase
 from tltl_runtime.regression.page.curves import progress_curves, progress_distribution
 from tltl_runtime.regression.page.episode_links import episode_links
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose
 from tltl_runtime.regression.page.player_panel import player_panel
-from tltl_runtime.regression.page.summary import badge
+from tltl_runtime.regression.page.summary import NOT_RUN, badge
 from tltl_runtime.regression.page.traffic import Traffic, traffic
 from tltl_runtime.stealth.episodes.episode import Episode
 from tltlc.automaton.fspa import Fspa
 
 _KEY: Final = (
     "In blue how many episodes visited a state, in red how many failed in it; the more episodes took an edge, the "
-    "thicker it is. The figure in a state's upper right corner is its distance, the least number of steps to "
+    "thicker it is. The figure in a state's upper right corner is its distance, the least number of transitions to "
     "acceptance."
 )
 _SHOWN: Final = (("ways", "ways"), ("time", "time spent"), ("failed", "failed ends"))
@@ -65,6 +65,21 @@ def case_section(case: ReportedCase, slug: str, drawn: Drawn | None) -> Markup:
     )
 
 
+def not_run_section(case: NotRun, slug: str) -> Markup:
+    """The section of a case that was not judged now, and why."""
+    earlier = element("p", "An earlier run said ", badge(case.earlier), " of it.") if case.earlier else None
+    return element(
+        "section",
+        element("h2", case.name, " ", badge(NOT_RUN), id=f"title:{slug}"),
+        element("p", prose(case.why)),
+        earlier,
+        id=slug,
+        class_="case",
+        data_verdict=case.earlier or NOT_RUN,
+        aria_labelledby=f"title:{slug}",
+    )
+
+
 def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
     facts = [f"{report.level} {report.variant}"]
     if report.reference:
@@ -72,7 +87,7 @@ def _facts(report: CaseReport, fspa: Fspa | None) -> Markup:
     if report.played:
         facts += [f"spec {report.played.spec}", f"policy {report.played.policy[:12]}"]
     if report.figures and not report.certain:
-        facts.append("not certain after all of its episodes")
+        facts.append("not certain, though all of its episodes were played")
     goal = element("p", fspa.formula.english, class_="goal") if fspa else None
     return joined((element("p", " · ".join(facts), class_="facts"), goal))
 

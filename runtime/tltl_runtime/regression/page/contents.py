@@ -33,12 +33,21 @@ class ReportedCase:
 
 
 @record
+class NotRun:
+    """A case of the suite that was not judged now: ``why``, as a sentence, and what an ``earlier`` run said of it."""
+
+    name: str
+    why: str
+    earlier: Verdict | None = None
+
+
+@record
 class SuiteReport:
     """What a suite came to: its name, the seed and the error bound of its verdicts, and its cases in their order.
 
     ``versions`` are those of what played, by name; ``complete`` says whether all cases were judged, and trained anew,
-    that were asked for.  ``missing`` are the names of those that were not judged, ``left_out`` of those that no change
-    concerns, ``earlier`` what an earlier run said of such.  ``note`` is what whoever reads the page should know first.
+    that were asked for.  ``not_run`` are the other cases of the suite.  ``note`` is what whoever reads the page should
+    know first.
     """
 
     suite: str
@@ -47,7 +56,5 @@ class SuiteReport:
     versions: Mapping[str, str]
     cases: tuple[ReportedCase, ...]
     complete: bool = True
-    missing: tuple[str, ...] = ()
-    left_out: tuple[str, ...] = ()
-    earlier: Mapping[str, Verdict] = EMPTY
+    not_run: tuple[NotRun, ...] = ()
     note: str = ""

@@ -2,7 +2,7 @@
 
 const MARKS = {
   success: { name: "succeeded", path: "M0,-6L6,0L0,6L-6,0Z" },
-  violation: { name: "violated", path: "M-5,-7L0,-2L5,-7L7,-5L2,0L7,5L5,7L0,2L-5,7L-7,5L-2,0L-7,-5Z" },
+  violation: { name: "broke the spec", path: "M-5,-7L0,-2L5,-7L7,-5L2,0L7,5L5,7L0,2L-5,7L-7,5L-2,0L-7,-5Z" },
   limit: { name: "ran out of time", path: "M-5,-5H5V5H-5Z" },
 };
 const RAYS = 48;

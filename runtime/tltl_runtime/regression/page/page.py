@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from tltl_runtime.regression.page.automaton import Drawn, drawn
 from tltl_runtime.regression.page.case_data import case_data
-from tltl_runtime.regression.page.case_section import case_section
+from tltl_runtime.regression.page.case_section import case_section, not_run_section
 from tltl_runtime.regression.page.contents import SuiteReport
 from tltl_runtime.regression.page.markup import as_script, element, joined
 from tltl_runtime.regression.page.style import colours
@@ -28,8 +28,9 @@ def html_report(suite: SuiteReport) -> str:
 
     Equal reports give equal pages, provided that the layout of the automata is done in time.
     """
-    names = slugs([case.report.name for case in suite.cases])
-    pairs = list(zip(suite.cases, names, strict=True))
+    names = slugs([*(case.report.name for case in suite.cases), *(each.name for each in suite.not_run)])
+    pairs = list(zip(suite.cases, names, strict=False))
+    not_run = zip(suite.not_run, names[len(pairs) :], strict=True)
     # Variants of a level share their spec: each is laid out once.
     automata = {case.fspa: None for case in suite.cases}
     pictures: dict[Fspa | None, Drawn] = {fspa: drawn(fspa) for fspa in automata if fspa is not None}
@@ -39,7 +40,12 @@ def html_report(suite: SuiteReport) -> str:
         policy=f"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'sha256-{_digest(script)}'",
         style=f"{colours()}\n{_asset('report.css')}",
         summary=summary(suite, names),
-        sections=joined(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
+        sections=joined(
+            (
+                *(case_section(case, slug, pictures.get(case.fspa)) for case, slug in pairs),
+                *(not_run_section(case, slug) for case, slug in not_run),
+            )
+        ),
         data=as_script(_data([case_data(case, slug) for case, slug in pairs])),
         script=script,
     )

@@ -21,6 +21,9 @@ _BUTTONS: Final = (
 )
 """Class, what it does, and the icons: paths in a square of 16 units, so that no font has to have them."""
 
+_FAILED: Final = {"violation": "broke the spec", "limit": "ran out of time"}
+"""How episodes fail, in the words of the map's key."""
+
 
 def player_panel(fspa: Fspa, episodes: Mapping[int, Episode]) -> Markup:
     """The player of a case, whose episodes the page gives to it; where none is recorded, it says so."""
@@ -99,4 +102,4 @@ def _atoms(fspa: Fspa) -> Markup:
 
 
 def _outcome(episode: Episode) -> str:
-    return "success" if episode.success else f"failed, {episode.end}"
+    return "succeeded" if episode.success else _FAILED.get(episode.end, "failed")

@@ -7,7 +7,7 @@ from typing import Final
 
 from tltl_runtime.evaluation.figures import Figures
 from tltl_runtime.regression.case_report import CaseReport
-from tltl_runtime.regression.page.contents import SuiteReport
+from tltl_runtime.regression.page.contents import NotRun, SuiteReport
 from tltl_runtime.regression.page.markup import Markup, element, joined, prose, short
 from tltl_runtime.regression.retrained import OUTCOMES
 from tltl_runtime.regression.verdict import Verdict
@@ -17,33 +17,38 @@ _VERDICTS: tuple[Verdict, ...] = ("pass", "review", "fail")
 _HEADS = ("Verdict", "Met", "Progress", "Reward", "Why")
 """Of the columns behind the name of the case."""
 
-_WHISKER: Final = "Whisker: 95 % interval, for reading; verdicts use the rule's own."
+_WHISKER: Final = "The thin line on a bar is the 95 % interval of its share, for reading; verdicts are by a wider one."
+
+NOT_RUN: Final = "not run"
+"""What stands in place of a verdict where a case was not judged now."""
 
 
 def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
-    """Suite, counts of verdicts, versions and the table of verdicts, whose rows lead to the sections ``slugs``."""
+    """Suite, counts of verdicts, versions and the table of verdicts, whose rows lead to the sections ``slugs``, of
+    cases that were judged and of those that were not.
+    """
     reports = [case.report for case in suite.cases]
     verdicts = [report.verdict for report in reports]
     counts = [
         element("li", badge(verdict), f" {verdicts.count(verdict)}") for verdict in _VERDICTS if verdict in verdicts
     ]
+    if suite.not_run:
+        counts.append(element("li", badge(NOT_RUN), f" {len(suite.not_run)}"))
     least = element("p", "The run was stopped before all was judged and trained that was asked for.", class_="warning")
     facts = [
         f"seed {suite.seed}",
-        f"that a certain fail or review is wrong, or a pass rate too low for a pass, has a probability of at most "
+        f"probability that any certain fail or review is wrong, or any pass has too low a rate: at most "
         f"{suite.error:.3g}",
         *(f"{name} {version}" for name, version in suite.versions.items()),
     ]
-    rows = [_row(report, slug) for report, slug in zip(reports, slugs, strict=True)]
-    rows += [_earlier(name, suite.earlier[name]) for name in suite.left_out if name in suite.earlier]
+    rows = [_row(report, slug) for report, slug in zip(reports, slugs, strict=False)]
+    rows += [_row_not_run(case, slug) for case, slug in zip(suite.not_run, slugs[len(reports) :], strict=True)]
     head = element("thead", element("tr", *(element("th", each, scope="col") for each in ("Case", *_HEADS))))
     return joined(
         (
             element("h1", f"Regression report: {suite.suite}"),
             element("p", suite.note) if suite.note else None,
             None if suite.complete else least,
-            _named("Not judged", suite.missing),
-            _named("Left out, since none of the named files concerns them", suite.left_out),
             element("ul", *counts, class_="counts-of-verdicts", aria_label="Verdicts"),
             element("p", " · ".join(facts), class_="facts"),
             element("h2", "Verdicts"),
@@ -58,13 +63,8 @@ def summary(suite: SuiteReport, slugs: Sequence[str]) -> Markup:
     )
 
 
-def _named(what: str, names: Sequence[str]) -> Markup | None:
-    """Cases that are not on the page."""
-    return element("p", f"{what}: {', '.join(names)}.", class_="facts") if names else None
-
-
-def badge(verdict: Verdict) -> Markup:
-    """A verdict, as a coloured word."""
+def badge(verdict: str) -> Markup:
+    """A verdict, or what stands in its place, as a coloured word."""
     return element("span", verdict, class_=f"verdict {verdict}")
 
 
@@ -78,18 +78,26 @@ def _row(report: CaseReport, slug: str) -> Markup:
         _against(now.reward.mean, before.reward.mean if before else None) if now else "–",
         prose(report.headline),
     )
-    name = element("th", element("a", report.name, href=f"#{slug}"), scope="row")
     written = [
         element("td", inside, data_head=head, class_=f"cell-{head.lower()}")
         for head, inside in zip(_HEADS, cells, strict=True)
     ]
-    return element("tr", name, *written, data_verdict=report.verdict)
+    return element("tr", _name(report.name, slug), *written, data_verdict=report.verdict)
 
 
-def _earlier(name: str, verdict: Verdict) -> Markup:
-    """A row for a case that was left out, and what an earlier run said of it."""
-    said = element("td", f"not played now; earlier: {verdict}", colspan=len(_HEADS))
-    return element("tr", element("th", name, scope="row"), said, class_="earlier", data_verdict=verdict)
+def _row_not_run(case: NotRun, slug: str) -> Markup:
+    """A row for a case that was not judged now, and what an earlier run said of it."""
+    earlier = element("small", f"earlier: {case.earlier}") if case.earlier else None
+    cells = (
+        element("td", badge(NOT_RUN), earlier, data_head=_HEADS[0]),
+        element("td", prose(case.why), data_head=_HEADS[-1], colspan=len(_HEADS) - 1),
+    )
+    return element("tr", _name(case.name, slug), *cells, data_verdict=case.earlier or NOT_RUN)
+
+
+def _name(name: str, slug: str) -> Markup:
+    """The name of a case, which leads to its section."""
+    return element("th", element("a", name, href=f"#{slug}"), scope="row")
 
 
 def _met(now: Figures, before: Figures | None) -> Markup:

@@ -76,7 +76,7 @@ def within(box: Box, other: Box) -> bool:
 
 def test_what_sentences_speak_of_stands_out() -> None:
     level = load_level("navigation", "v2")
-    said = "nobody reaches `s2`: the way ends at `corridor_block_2`\nis in the corridor when time is up"
+    said = "nobody reaches `s2`: the way ends at `corridor_block_2`\nruns out of time in the corridor"
     root = ElementTree.fromstring(level_map(level, said))
     outlined = [each.findtext("title") for each in root.iter("rect") if "spoken" in each.get("class", "").split()]
     assert outlined == ["corridor_block_2"]

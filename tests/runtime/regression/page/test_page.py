@@ -18,7 +18,7 @@ from tests.runtime.regression.page.test_packing import unstepped
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.regression.case_report import CaseReport
 from tltl_runtime.regression.explain import Finding
-from tltl_runtime.regression.page.contents import ReportedCase, SuiteReport
+from tltl_runtime.regression.page.contents import NotRun, ReportedCase, SuiteReport
 from tltl_runtime.regression.page.page import html_report
 from tltl_runtime.regression.retrained import Retrained, Trained
 from tltl_runtime.stealth.level import Box
@@ -73,16 +73,23 @@ def test_there_is_a_row_and_a_section_for_each_case() -> None:
         assert case.report.name in page().texts
         assert set(case.report.reasons[0].split("`")[:1]) <= set(page().texts)
     assert [text for text in page().texts if text.startswith("seed 7")] == [
-        "seed 7 · that a certain fail or review is wrong, or a pass rate too low for a pass, "
-        "has a probability of at most 0.05 · tltlc 0.1 · python 3.11"
+        "seed 7 · probability that any certain fail or review is wrong, or any pass has too low a rate: at most 0.05 · "
+        "tltlc 0.1 · python 3.11"
     ]
 
 
-def test_cases_that_are_not_on_the_page_are_named() -> None:
-    found = Page(html_report(replace(samples.suite(), complete=False, missing=("a", "b"), left_out=("<c>",))))
-    assert "Not judged: a, b." in found.texts
-    assert "Left out, since none of the named files concerns them: <c>." in found.texts
-    assert not [text for text in page().texts if text.startswith(("Not judged", "Left out"))]
+def test_cases_that_were_not_run_have_a_row_and_a_section_that_say_why() -> None:
+    not_run = (NotRun("<a>", "the run was stopped"), NotRun("b", "no file concerns it", "review"))
+    found = Page(html_report(replace(samples.suite(), not_run=not_run)))
+    for kind in ("tr", "section"):
+        assert [each["data-verdict"] for each in found.all(kind) if "data-verdict" in each][3:] == ["not run", "review"]
+    texts = [text.strip() for text in found.texts]
+    assert [texts.count(said) for said in ("<a>", "the run was stopped", "b", "no file concerns it")] == [2] * 4
+    assert texts.count("not run") == 1 + 2 + 2, "their number, rows and sections"
+    assert texts.count("earlier: review") == 1 and texts.count("An earlier run said") == 1
+    links = [each["href"] for each in found.all("a")]
+    assert {f"#{each['id']}" for each in found.all("section") if "case" in (each["class"] or "")} <= set(links)
+    assert "not run" not in page().texts
 
 
 def test_every_link_leads_to_something() -> None:
@@ -204,7 +211,7 @@ def test_outcomes_of_trainings_stand_below_their_verdicts() -> None:
 
 
 def test_whiskers_are_told_of_where_there_are_any() -> None:
-    said = "Whisker: 95 % interval, for reading; verdicts use the rule's own."
+    said = "The thin line on a bar is the 95 % interval of its share, for reading; verdicts are by a wider one."
     assert page().texts.count(said) == 1
     none = SuiteReport("none", 0, 0.05, {}, tuple(case for case in samples.suite().cases if not case.report.figures))
     assert none.cases and said not in Page(html_report(none)).texts
@@ -217,13 +224,8 @@ def test_pass_rates_are_told_in_percent() -> None:
     assert "121 of 300 · 40 %" in texts and "before 299 of 300 · 99 %" in texts
 
 
-def test_what_an_earlier_run_said_stands_in_the_table() -> None:
-    suite = replace(samples.suite(), left_out=("a", "b"), earlier={"b": "review"}, note="As planned.")
-    found = Page(html_report(suite))
-    assert "As planned." in found.texts
-    (row,) = [each for each in found.all("tr") if each.get("class") == "earlier"]
-    assert row["data-verdict"] == "review"
-    assert "not played now; earlier: review" in found.texts and "not played now; earlier: pass" not in found.texts
+def test_what_is_to_be_known_first_is_told() -> None:
+    assert "As planned." in Page(html_report(replace(samples.suite(), note="As planned."))).texts
 
 
 def test_there_is_a_second_map_where_the_level_of_the_baseline_looks_otherwise() -> None:
