@@ -48,6 +48,7 @@ test "t" for leave { step near(s1)  expect pending }
         ("import stealth", "import"),
         ("entity s1", "entity , s1"),
         ("clock 20 Hz", "clock"),
+        ("expect pending", "expect"),
     ],
 )
 def test_what_cannot_be_read_is_not_missed_elsewhere(read: str, unread: str) -> None:
@@ -61,12 +62,20 @@ def test_what_cannot_be_read_is_not_missed_elsewhere(read: str, unread: str) -> 
     assert [each.code for each in document.said][1:] == ([] if unread == "import" else ["TLT0201"])
 
 
+def test_what_is_wrong_in_a_test_is_said_while_another_text_cannot_be_read() -> None:
+    document, _, _ = opened(f'let let\n{WHOLE}test "u" for leave {{ expect progress > 2  expect pending }}\n')
+    assert [each.code for each in document.said] == ["TLT0106", "TLT0217"]
+
+
 def test_the_levels_of_a_project_silence_remarks() -> None:
     text = "signal n: ratio\npredicate p = when n > 0: 1 otherwise: -1\nspec a { limit 3 steps reach p }"
     found = analyse(Request(SourceFile("/nowhere/a.tltl", text), (), {}, {})).findings
     assert {"TLT0402"} <= {each.diagnostic.code for each in found}
     levels = {each.diagnostic.code: "allow" for each in found}
     assert analyse(Request(SourceFile("/nowhere/a.tltl", text), (), levels, {})).findings == ()
+    # Beside errors, too.
+    wrong = SourceFile("/nowhere/a.tltl", f"{text}\npredicate q in [-1, 1] = 3 * n\n")
+    assert [each.code for each in analyse(Request(wrong, (), levels, {})).said] == ["TLT0306"]
 
 
 def test_examples_have_figures_and_nothing_to_say() -> None:

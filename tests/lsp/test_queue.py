@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import io
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import pytest
+from lsprotocol import types
 
 from tests.lsp.client import Client
 from tests.lsp.test_server import codes
 from tests.lsp.texts import SLOW
 from tltlc.lsp import queue
 from tltlc.lsp.analysis import Analysis
+from tltlc.lsp.server import create
 
 FOUND = Analysis(())
 
@@ -141,6 +144,18 @@ async def test_an_analysis_that_fails_does_not_stop_the_next(desk: Desk) -> None
     assert asked.result() is None
     await desk.open("b")
     assert desk.begun == ["a", "b"]
+
+
+@on_a_desk(AT_ONCE)
+async def test_nothing_gives_way_to_what_is_closed(desk: Desk) -> None:
+    server = create()
+    server.queue = desk.queue
+    server.protocol.set_writer(io.BytesIO())
+    await desk.open("file:///small.tltl", "file:///large.tltl")
+    document = types.TextDocumentIdentifier("file:///small.tltl")
+    server.protocol.fm.features[types.TEXT_DOCUMENT_DID_CLOSE](types.DidCloseTextDocumentParams(document))
+    await settled()
+    assert desk.begun == ["file:///large.tltl"]
 
 
 def test_a_small_file_does_not_wait_for_a_large_one(client: Client, tmp_path: Path) -> None:

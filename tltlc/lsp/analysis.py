@@ -69,7 +69,7 @@ def analyse(request: Request) -> Analysis:
         try:
             view = view_of(request.source, options)
         except TltlError as error:
-            return Analysis(tuple(map(Finding, error.diagnostics)))
+            return Analysis(levelled(map(Finding, error.diagnostics), request.levels))
         if _seems_unused(view):
             # Only now is it worth while to read the files around.
             view = replace(view, elsewhere=_elsewhere(request))

@@ -70,7 +70,7 @@ class Protocol(LanguageServerProtocol):
         if ("id" in content or "method" not in content) and not content.keys() & _ANSWERS:
             number = content.get("id")
             told = {"code": error.code, "message": error.message}
-            self._send_data({"jsonrpc": self.VERSION, "id": number if _is_number(number) else None, "error": told})
+            self._send_data({"jsonrpc": self.VERSION, "id": number if _is_id(number) else None, "error": told})
 
     def _understood(self, message: Any) -> Any:
         if not isinstance(message, dict) or message.get("jsonrpc") != self.VERSION:
@@ -95,7 +95,7 @@ class Protocol(LanguageServerProtocol):
     def _check_request(self, message: dict[str, Any]) -> None:
         """Whether a request, or what an editor tells, has a form, and comes at a time, at which it can be looked at."""
         method = message["method"]
-        if not isinstance(method, str) or ("id" in message and not _is_number(message["id"])):
+        if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
             raise JsonRpcInvalidRequest("a method is a text, an id is a number or a text")
         if method == types.INITIALIZE and self._workspace is not None:
             raise JsonRpcInvalidRequest("the server is initialized already")
@@ -108,5 +108,5 @@ class Protocol(LanguageServerProtocol):
             message.setdefault("params", None)
 
 
-def _is_number(number: Any) -> bool:
+def _is_id(number: Any) -> bool:
     return isinstance(number, (int, str))

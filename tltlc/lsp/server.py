@@ -84,15 +84,17 @@ def _guarded(server: Server, handler: Callable[[Server, Any], Any]) -> Callable[
     """A handler that turns what it refuses into the protocol's answer; the user looks at what it is asked about."""
 
     def answer(params: Any) -> Any:
-        document = getattr(params, "text_document", None)
-        if document is not None:
-            server.queue.looked_at(document.uri)
         try:
             return handler(server, params)
         except TltlError as error:
             found = error.diagnostics[0]
             text = f"{found.title}; {found.help}" if found.help else found.title
             raise JsonRpcException(f"{text} ({found.code})", _REFUSED) from None
+        finally:
+            # Only now: what is closed or changed waits no more, so that nothing gives way to it.
+            document = getattr(params, "text_document", None)
+            if document is not None:
+                server.queue.looked_at(document.uri)
 
     return answer
 

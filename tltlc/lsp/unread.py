@@ -7,9 +7,10 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.tree import Import, Module
+from tltlc.grammar.tree import Import, Module, TestDecl
 
 _NO_SUCH_ATOM: Final = "TLT0209"
+_WRONG_TEST: Final = "TLT0217"
 _NO_CLOCK: Final = "TLT0313"
 _NO_SUCH_NAME: Final = ("TLT0201", "TLT0208")
 _HEADS: Final = ("signal", "entity", "param", "predicate", "let", "spec")
@@ -23,6 +24,10 @@ def may_follow(diagnostic: Diagnostic, module: Module, tokens: Sequence[Token]) 
         return True
     if diagnostic.code == _NO_CLOCK:
         return "clock" in words
+    if diagnostic.code == _WRONG_TEST:
+        # Said of a test as a whole, it expects nothing: that may be what is being written.
+        where = diagnostic.labels[0].span
+        return any(isinstance(each, TestDecl) and each.spec.span == where for each in module.declarations)
     if diagnostic.code not in _NO_SUCH_NAME:
         return False
     if words.count("import") > sum(isinstance(each, Import) for each in module.declarations):

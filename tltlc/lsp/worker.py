@@ -25,11 +25,12 @@ class Worker:
         self._pipe: Connection | None = None
 
     async def analyse(self, request: Request) -> Analysis | None:
-        """What is to be said of a text; None where that was given up, or took too long."""
-        pipe = self._started()
-        # A large text does not fit into the pipe before the process reads from it.
-        answer = asyncio.get_running_loop().run_in_executor(None, _exchange, pipe, request)
+        """What is to be said of a text; None where that was given up, took too long, or no process can be started."""
+        pipe = None
         try:
+            pipe = self._started()
+            # A large text does not fit into the pipe before the process reads from it.
+            answer = asyncio.get_running_loop().run_in_executor(None, _exchange, pipe, request)
             return await asyncio.wait_for(answer, LONGEST_S)
         except (EOFError, OSError, asyncio.TimeoutError):
             if pipe is self._pipe:
@@ -52,10 +53,11 @@ class Worker:
         if self._pipe is None or self._process is None or not self._process.is_alive():
             self.abandon()
             context = multiprocessing.get_context("spawn")
-            self._pipe, theirs = context.Pipe()
-            self._process = context.Process(target=answer_all, args=(theirs,), daemon=True)
-            self._process.start()
+            ours, theirs = context.Pipe()
+            process = context.Process(target=answer_all, args=(theirs,), daemon=True)
+            process.start()
             theirs.close()
+            self._process, self._pipe = process, ours
         return self._pipe
 
 

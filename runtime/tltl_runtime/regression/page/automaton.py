@@ -110,13 +110,12 @@ def _taken(seen: Traffic, runs: Collection[tuple[int, ...]], drawn: Set[Ends]) -
 def _mark_state(
     group: ElementTree.Element, title: ElementTree.Element, states: tuple[int, ...], now: Traffic, before: Traffic
 ) -> None:
-    group.set("data-states", " ".join(map(str, states)))
     left, top, right, bottom = _extent(group)
     name = f"State {states[0]}" if len(states) == 1 else f"States {states[0]} to {states[-1]}"
     _name(group, name.lower(), left, top, right)
     said = []
     for when, seen in (("now", now), ("before", before)):
-        visited = max(seen.visited.get(state, 0) for state in states)
+        visited = _visits(seen, states)
         failed = sum(seen.failed.get(state, 0) for state in states)
         said.append(f"{when}: visited by {visited} of {seen.episodes} episodes, {failed} failed in it")
         badges = ElementTree.SubElement(group, "g", {"class": f"counts {when}"})
@@ -126,11 +125,15 @@ def _mark_state(
     title.text = f"{name}; {'; '.join(said)}"
 
 
+def _visits(seen: Traffic, states: tuple[int, ...]) -> int:
+    """How many episodes came to a state, or to any of those that are drawn as one: a run may be entered anywhere."""
+    if len(states) == 1:
+        return seen.visited.get(states[0], 0)
+    return sum(any(target in states for _, target in edges) for edges in seen.took)
+
+
 def _mark_edge(
-    group: ElementTree.Element,
-    title: ElementTree.Element,
-    ends: Ends,
-    taken: Sequence[tuple[int, int]],
+    group: ElementTree.Element, title: ElementTree.Element, ends: Ends, taken: Sequence[tuple[int, int]]
 ) -> None:
     """Thickness and title by how many episodes took the edge, of how many, now and before."""
     if ends[0] == ends[1]:

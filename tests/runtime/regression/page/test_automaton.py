@@ -136,10 +136,25 @@ def test_runs_of_states_that_count_are_one_group() -> None:
         for each in root.iter("g")
         if each.get("data-states")
     }
-    assert texts[folded[0]][0] == str(max(seen.visited.get(int(state), 0) for state in folded))
+    assert texts[folded[0]][0] == "4"
     titles = [title.text or "" for title in root.iter("title")]
     (leaving,) = (title for title in titles if title.startswith("From state 2 to state 1;"))
     assert "; now: taken by 4 of 5 episodes" in leaving
+
+
+def test_episodes_that_enter_a_run_at_different_states_have_all_visited_it() -> None:
+    (fspa,) = compile_text("clock 1 Hz  signal a: bool  signal b: bool  spec both = F[0,9] a & F[0,9] b")
+    # In which one of the two is still to come.
+    inner = {state.id for state in shown(fspa).folded[4]}
+    entering = [(edge.source, edge.target) for edge in fspa.edges if edge.source not in inner and edge.target in inner]
+    assert len({target for _, target in entering}) == len(entering) == 7
+    took = tuple(frozenset({edge}) for edge in entering)
+    seen = Traffic(len(took), Counter(target for _, target in entering), {}, took)
+    made = drawn(fspa)
+    assert made.svg is not None
+    root = ElementTree.fromstring(picture(fspa, made.svg, seen, traffic([])))
+    (group,) = (each for each in root.iter("g") if (each.get("data-states") or "").startswith("4 "))
+    assert f"now: visited by {len(took)} of {len(took)} episodes" in (group.findtext("title") or "")
 
 
 def test_an_edge_between_the_ends_of_two_runs_counts_where_it_is_drawn() -> None:
