@@ -72,14 +72,15 @@ def compile_source(source: SourceFile, options: CompileOptions | None = None) ->
     stop_at_errors(found)
     resolved = resolution(module, ResolveOptions(library_dirs=options.library_dirs, params=options.params))
     program, modules = resolved.program, [loaded.module for loaded in resolved.modules]
-    found += unsilenced(modules, resolved.diagnostics)
-    stop_at_errors(found)
+    found += resolved.diagnostics
+    stop_at_errors(unsilenced(modules, found))
     automata: list[Fspa] = []
     for spec in pick_specs(program.specs, options.specs, source.name):
         fspa, remarks = build_spec(spec, options)
-        found += unsilenced(modules, remarks)
+        found += remarks
         if fspa is not None:
             automata.append(fspa)
+    found = unsilenced(modules, found)
     stop_at_errors(found)
     return Compiled(program, tuple(automata), found)
 

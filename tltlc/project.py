@@ -13,7 +13,8 @@ allow = ["TLT0419"]                   # what nothing is said of; note, warning a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -51,6 +52,14 @@ class Project:
         """What the compiler says, with the severities of ``lint``, less what that allows."""
         left = [each for each in found if self.lint.get(each.code) != "allow"]
         return tuple(replace(each, severity=self.lint.get(each.code, each.severity)) for each in left)
+
+    @contextmanager
+    def levelling(self) -> Iterator[None]:
+        """Within it, what a :class:`TltlError` says beside its errors is :meth:`levelled`, too."""
+        try:
+            yield
+        except TltlError as error:
+            raise TltlError(self.levelled(error.diagnostics)) from None
 
 
 def project_for(path: str) -> Project:

@@ -42,6 +42,20 @@ def test_comments_beside_errors(tltlc: Command, inside: Path) -> None:
         assert "error[TLT0201]" in done.err and "TLT0411" not in done.err
 
 
+@pytest.mark.parametrize("command", ["check", "compile", "lint", "lint --fix", "import"])
+def test_the_levels_of_a_project_beside_errors(tltlc: Command, inside: Path, command: str) -> None:
+    head = 'HOA: v1\nname: "again"\nStates: 1\nStart: 0\nAP: 2 "p" "q"\nacc-name: Buchi\nAcceptance: 1 Inf(0)\n'
+    Path("again.hoa").write_text(f"{head}--BODY--\nState: 0\n[0&1] 0 {{0}}\n[!0|!1] 0\n--END--\n")
+    Path("bad.tltl").write_text(f"{JUMPY}\npredicate q in [-1, 1] = x\nspec s = F (p & q)\n")
+    name, *options = command.split()
+    files = ("again.hoa", "--predicates", "bad.tltl") if name == "import" else ("bad.tltl",)
+    assert "warning[TLT0402]" in tltlc(name, *files, *options).err
+    Path("tltl.toml").write_text('[lint]\nallow = ["TLT0402"]\n')
+    done = tltlc(name, *files, *options)
+    assert done.status == 1
+    assert "error[TLT0306]" in done.err and "TLT0402" not in done.err
+
+
 def test_only_lint_says_that_a_comment_allows_nothing(tltlc: Command, inside: Path) -> None:
     Path("a.tltl").write_text(f"signal seen: bool\nspec s = F seen  {ALLOW} TLT0411\n")
     assert "TLT" not in tltlc("check", "a.tltl").err

@@ -185,3 +185,15 @@ def test_what_cannot_be_watched(process, folder: Path) -> None:  # type: ignore[
         2,
         "error[TLT0700]: `tltlc watch` takes files and folders: standard input does not change",
     )
+
+
+def test_the_levels_of_a_project_beside_errors(folder: Path) -> None:
+    jumpy = "signal x in [0, 9]\npredicate p in [-1, 1] = when x < 5: x / 9 - 1 otherwise: 1\n"
+    (folder / "lib.tltl").write_text(f"{jumpy}predicate q in [-1, 1] = x\nsignal seen: bool\n")
+    (folder / "tltl.toml").write_text('[lint]\nallow = ["TLT0402"]\n')
+    running = Watching("lib.tltl")
+    try:
+        said = "\n".join(running.said())
+    finally:
+        running.end()
+    assert "error[TLT0306]" in said and "TLT0402" not in said

@@ -442,6 +442,16 @@ def test_what_a_library_says_of_all_specs(tltlc: Run, tmp_path: Path, monkeypatc
         ("error", "specs are sampled by no clock now, and were sampled every 0.05 s"),
     ]
     assert said(ruled, ruled.replace("a, b", "b, a").replace("20 Hz", "50 ms")) == []
+    # What a wider group says already is no news.
+    wide = f"{plain}exclusive a, b, c\n"
+    narrow = wide.replace("a, b, c", "a, b")
+    assert said(narrow, wide) == [("error", "`a`, `b` and `c` are exclusive now")]
+    assert said(wide, narrow) == [("warning", "`a`, `b` and `c` are no longer exclusive")]
+    assert said(wide, f"{narrow}exclusive b, c\nexclusive c, a\n") == []
+    # So it is in specs.
+    spec = "spec s = F (a | b | c)\n"
+    assert said(wide + spec, narrow + spec) == [("warning", "`a`, `b` and `c` are no longer exclusive in `s`")]
+    assert said(narrow + spec, wide + spec) == [("error", "`a`, `b` and `c` are exclusive in `s` now")]
     # Of what is imported, the file that declares it tells.
     assert said(plain, "let d = true\n") == [("error", f"the signal `{name}` is gone") for name in "abc"]
     Path("old/mine.tltl").unlink()

@@ -19,7 +19,7 @@ from tests.cli.conftest import ROOT, Outcome, inside, tltlc  # noqa: F401
 from tests.logic.strategies import formulas
 from tltlc import TltlError, compile_text
 from tltlc.diff.document import document
-from tltlc.diff.pairs import diff, diff_files
+from tltlc.diff.pairs import FileDiff, diff, diff_files
 from tltlc.diff.text import text
 from tltlc.diff.traces import block, told
 from tltlc.logic.formula import Formula
@@ -27,6 +27,7 @@ from tltlc.logic.notation import ASCII, write
 from tltlc.monitor.tests import run_tests
 from tltlc.pipeline import compile_source
 from tltlc.source import SourceFile
+from tltlc.spec_file import STDIN_NAME
 
 GOLDEN = Path(__file__).parent / "golden"
 CASES = sorted(path for path in GOLDEN.iterdir() if path.is_dir())
@@ -228,6 +229,11 @@ def test_one_side_names_the_spec_of_both(tltlc: Run, inside: Path) -> None:  # n
     Path("three.tltl").write_text("signal seen: bool\nspec a = F seen\nspec b = G seen\n", encoding="utf-8")
     several = tltlc("diff", "three.tltl", "two.tltl:hide")
     assert several.status == 2 and "TLT0721" in several.err
+
+
+def test_specs_of_other_names_are_named_as_arguments() -> None:
+    found = FileDiff(STDIN_NAME, "b.tltl", (), ("one", "two"), ("other",))
+    assert "name both, e.g. `-:one` and `b.tltl:other`" in text(found)
 
 
 def test_what_cannot_be_read(tltlc: Run, inside: Path) -> None:  # noqa: F811

@@ -68,7 +68,8 @@ def open_input(argument: str, settings: Settings, specs: Sequence[str] = ()) -> 
         return _artefact(source, settings, wanted, project)
     from tltlc.pipeline import compile_source
 
-    compiled = compile_source(source, compile_settings(settings, project, wanted))
+    with project.levelling():
+        compiled = compile_source(source, compile_settings(settings, project, wanted))
     found = project.levelled(compiled.diagnostics)
     stop_at_errors(found)
     return Input(source.name, compiled.automata, compiled.program, project, found)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
+from itertools import combinations
 from typing import TYPE_CHECKING, Final, Literal, Union
 
 from tltlc.diff.values import Apart, apart, meaning
@@ -68,6 +69,12 @@ def named(
             yield Difference(what, name, before, after)
 
 
+def are_exclusive(names: Collection[str], groups: Iterable[Collection[str]]) -> bool:
+    """Whether groups of ``exclusive`` say that no two of these atoms hold together, each two in one of them."""
+    pairs = {frozenset(pair) for group in groups for pair in combinations(group, 2)}
+    return all(frozenset(pair) in pairs for pair in combinations(names, 2))
+
+
 def plain(value: Value) -> object:
     """A signal or param without its name and documentation."""
     if not isinstance(value, (Signal, Param)):
@@ -81,8 +88,8 @@ def _all(a: Fspa, b: Fspa) -> Iterator[Difference]:
         if one != other:
             yield Difference(what, "", one, other)
     groups, others = _groups(a), _groups(b)
-    yield from (Difference("exclusive", "", names, None) for group, names in groups.items() if group not in others)
-    yield from (Difference("exclusive", "", None, names) for group, names in others.items() if group not in groups)
+    yield from (Difference("exclusive", "", names, None) for names in groups if not are_exclusive(names, others))
+    yield from (Difference("exclusive", "", None, names) for names in others if not are_exclusive(names, groups))
     places = {atom.name: index for index, atom in enumerate(b.atoms)}
     for index, atom in enumerate(a.atoms):
         if atom.name in places:
@@ -94,7 +101,7 @@ def _all(a: Fspa, b: Fspa) -> Iterator[Difference]:
     yield from named("param", a.params, b.params)
 
 
-def _groups(fspa: Fspa) -> dict[frozenset[str], tuple[str, ...]]:
-    """The groups of ``exclusive``, each with its names in order."""
+def _groups(fspa: Fspa) -> list[tuple[str, ...]]:
+    """The groups of ``exclusive``, each once, with its names in order."""
     names = [tuple(fspa.atoms[atom].name for atom in group) for group in fspa.exclusive]
-    return {frozenset(group): group for group in names}
+    return list({frozenset(group): group for group in names}.values())

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.diff import findings as say
+from tltlc.diff.differences import are_exclusive
 from tltlc.grammar.tree import ClockDecl, ExclusiveDecl
 from tltlc.record import EMPTY, record
 
@@ -45,10 +46,10 @@ def rules(module: Module, program: Program) -> Rules:
 def changed_rules(old: Rules, new: Rules) -> Iterator[Diagnostic]:
     """What changed for all specs that import the file."""
     for names, place in old.exclusive.items():
-        if names not in new.exclusive:
+        if not are_exclusive(names, new.exclusive):
             yield say.no_longer_exclusive(names, place)
     for names, place in new.exclusive.items():
-        if names not in old.exclusive:
+        if not are_exclusive(names, old.exclusive):
             yield say.exclusive_now(names, place)
     clock = new.clock or (old.clock and say.was(old.clock))
     if clock is not None and old.clock_s != new.clock_s:

@@ -12,6 +12,7 @@ from tltlc.diff.traces import block, step_lines, told
 from tltlc.diff.wording import listed, sample_text, type_text, unrelated, value_text, values_text
 from tltlc.resolve.spec import Param, Signal
 from tltlc.resolve.values import number_text
+from tltlc.spec_file import STDIN, STDIN_NAME
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import State
@@ -48,8 +49,9 @@ def text(found: FileDiff) -> str:
         if names:
             paragraphs.append(f"only in {side}: {listed(names, len(names))}")
     if found.only_a and found.only_b:
-        one, other = f"{found.a}:{found.only_a[0]}", f"{found.b}:{found.only_b[0]}"
-        paragraphs.append(f"to compare specs of different names, name both, e.g. `{one}` and `{other}`")
+        a, b = (STDIN if name == STDIN_NAME else name for name in (found.a, found.b))
+        both = f"`{a}:{found.only_a[0]}` and `{b}:{found.only_b[0]}`"
+        paragraphs.append(f"to compare specs of different names, name both, e.g. {both}")
     if len(paragraphs) == 1:
         paragraphs.append("there is no spec in either of them")
     return "\n\n".join(paragraphs) + "\n"

@@ -44,7 +44,7 @@ def silenced(view: View, found: Iterable[Finding]) -> list[Finding]:
 
 def _undecided(view: View) -> list[Span]:
     """The specs that no trace satisfies, or every one: until they are mended, most rules say nothing."""
-    return [spec.declaration.span for spec in view.specs if spec.fspa.states[0].verdict in ("violated", "satisfied")]
+    return [spec.declaration.span for spec in view.specs if spec.is_settled]
 
 
 def _speaks_of_any(specs: Iterable[Span], each: Allowed) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import tltlc
-from tests.lint.helpers import SIGNALS, block, codes, found, of
+from tests.lint.helpers import PLACES, SIGNALS, block, codes, found, of
 from tltlc.comparison import are_equivalent
 
 
@@ -49,8 +49,12 @@ def test_what_stands_behind_a_temporal_word_and_is_outside_of_it(
         # As a goal it would be met by a not holding.
         ("a implies b", "at every step is `keep a implies b`"),
         ("(a implies b)", "at every step is `keep a implies b`"),
+        ("(a implies b) and (b -> c)", "at every step is `keep (a implies b) and (b -> c)`"),
+        ("all e in (x, y): at(e) -> a", "at every step is `keep all e in (x, y): at(e) -> a`"),
+        ("a and (a -> b)", "at every step is `keep a and (a -> b)`, at some step `reach a and (a -> b)`"),
     ],
 )
 def test_what_is_named_is_no_goal_that_is_met_by_nothing(formula: str, way_out: str) -> None:
-    (said,) = (each for each in found(block("reach c", f"require {formula}")) if each.diagnostic.code == "TLT0429")
+    text = block("reach c", f"require {formula}", before=SIGNALS + PLACES)
+    (said,) = (each for each in found(text) if each.diagnostic.code == "TLT0429")
     assert said.diagnostic.help == way_out

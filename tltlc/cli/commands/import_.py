@@ -93,7 +93,8 @@ def command(
         resolve = ResolveOptions((*settings.libraries, *project.libraries), settings.params)
         budget = settings.state_budget or DEFAULT_STATE_BUDGET
         options = ImportOptions(atoms, name, level, limit, judge, resolve, budget)
-        fspa, found = load(source, library, options)
+        with project.levelling():
+            fspa, found = load(source, library, options)
         found = project.levelled(found)
         stop_at_errors(found)
         report.add(found)

@@ -78,9 +78,10 @@ def _of_file(
     check_text(source)
     check_libraries(settings.libraries)
     options = compile_settings(settings, project)
-    if not fixing:
-        return _diagnostics(levelled(lint(source, options, elsewhere), project.lint))
-    mended = fix(source, options, project.lint, elsewhere)
+    with project.levelling():
+        if not fixing:
+            return _diagnostics(levelled(lint(source, options, elsewhere), project.lint))
+        mended = fix(source, options, project.lint, elsewhere)
     if mended.source != source:
         rewrite(Path(path), mended.source.text)
     for each in mended.fixed:

@@ -102,6 +102,7 @@ def _file(
     project = project_for(path)
     source = read_source(path)
     check_text(source)
-    view = view_of(source, compile_settings(settings, project))
+    with project.levelling():
+        view = view_of(source, compile_settings(settings, project))
     found = levelled(findings(replace(view, elsewhere=elsewhere)), project.lint)
     return found, run_tests(view.program, (each.fspa for each in view.specs))

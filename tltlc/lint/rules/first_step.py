@@ -8,8 +8,9 @@ from itertools import takewhile
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import Binary, Group, Unary
 from tltlc.grammar.walk import conjuncts
+from tltlc.lint import goals
 from tltlc.lint.rule import Remark, Rule
-from tltlc.lint.view import Expression, View, inner, operand
+from tltlc.lint.view import Expression, View, operand
 
 
 def check(view: View) -> Iterator[Remark]:
@@ -23,7 +24,7 @@ def check(view: View) -> Iterator[Remark]:
             if spec.declaration.block and all(map(Expression.is_of_one_step, parts)):
                 label = Label(value.source, clause.span, "asked at the first step, and never again")
                 way_out = f"at every step is `keep {value.text}`"
-                if not _is_implication(value):
+                if not _is_of_implications(value):
                     way_out += f", at some step `reach {value.text}`"
                 yield Remark("this speaks of the first step alone", (label,), way_out)
                 continue
@@ -33,10 +34,10 @@ def check(view: View) -> Iterator[Remark]:
                     yield _outside(part, part.tree, behind)
 
 
-def _is_implication(value: Expression) -> bool:
-    """Whether it is one, which as a goal would be met by its condition not holding."""
-    tree = inner(value.tree)
-    return isinstance(tree, Binary) and tree.op == "implies"
+def _is_of_implications(value: Expression) -> bool:
+    """Whether it asks for nothing else: as a goal it would be met by their conditions not holding."""
+    trees = (part.tree for part in goals.conjuncts(value))
+    return all(isinstance(tree, Binary) and tree.op == "implies" for tree in trees)
 
 
 def _is_bare(tree: Unary) -> bool:

@@ -23,8 +23,9 @@ def check(view: View) -> Iterator[Remark]:
 
 
 def _is_flat(atom: Atom, fspa: Fspa) -> bool:
-    found = can_be("negative", atom, fspa) or not can_be("not positive", atom, fspa)
-    return not found and is_always("not negative", atom, fspa)
+    """Whether the value of an atom is proved never to be negative, and is 0 somewhere."""
+    can_fail = can_be("not positive", atom, fspa)
+    return can_fail and not can_be("negative", atom, fspa) and is_always("not negative", atom, fspa)
 
 
 def _awaited(fspa: Fspa, flat: Set[int]) -> list[int]:
