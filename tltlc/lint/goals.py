@@ -32,6 +32,12 @@ def conjuncts(goal: Expression) -> list[Expression]:
     return found
 
 
+def is_of_implications(value: Expression) -> bool:
+    """Whether it asks for nothing else: as a goal it would be met by their conditions not holding."""
+    trees = (part.tree for part in conjuncts(value))
+    return all(isinstance(tree, Binary) and tree.op == "implies" for tree in trees)
+
+
 def _inside(value: Expression) -> Iterator[Expression]:
     """The goals in an expression, outer before inner; takes no recursion."""
     waiting = [value]

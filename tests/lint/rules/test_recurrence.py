@@ -88,6 +88,22 @@ def test_what_is_said_of_all_entities_is_said_once() -> None:
     assert of("TLT0412", "require all e in (x, y): F (at(z) -> at(e))", before=PLACES) == ["at(z) -> at(e)"]
 
 
+@pytest.mark.parametrize(
+    ("clause", "goal"),
+    [
+        ("reach always a", "; once is `reach a`"),
+        ("reach always (a and (b -> c))", "; once is `reach a and (b -> c)`"),
+        # As a goal it would be met by a not holding.
+        ("reach always (a implies b)", ""),
+        ("keep F ((a -> b) and (b -> c))", ""),
+        ("avoid G (a -> b)", "; once is `reach not (a -> b)`"),
+    ],
+)
+def test_what_is_named_is_no_goal_that_is_met_by_nothing(clause: str, goal: str) -> None:
+    (said,) = (each for each in found(block(clause)) if each.diagnostic.code == "TLT0424")
+    assert (said.diagnostic.help or "").partition(" say `semantics infinite`")[2] == goal
+
+
 def test_lets_are_looked_at_where_all_specs_are_finite() -> None:
     text = "signal a: bool let often = G F a spec s = often"
     assert marked(text, "TLT0424") == ["G F"]

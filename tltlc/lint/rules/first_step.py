@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import takewhile
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Binary, Group, Unary
+from tltlc.grammar.tree import Group, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.lint import goals
 from tltlc.lint.rule import Remark, Rule
@@ -24,7 +24,7 @@ def check(view: View) -> Iterator[Remark]:
             if spec.declaration.block and all(map(Expression.is_of_one_step, parts)):
                 label = Label(value.source, clause.span, "asked at the first step, and never again")
                 way_out = f"at every step is `keep {value.text}`"
-                if not _is_of_implications(value):
+                if not goals.is_of_implications(value):
                     way_out += f", at some step `reach {value.text}`"
                 yield Remark("this speaks of the first step alone", (label,), way_out)
                 continue
@@ -32,12 +32,6 @@ def check(view: View) -> Iterator[Remark]:
                 behind = list(takewhile(Expression.is_of_one_step, parts[place + 1 :]))
                 if behind and isinstance(part.tree, Unary) and _is_bare(part.tree):
                     yield _outside(part, part.tree, behind)
-
-
-def _is_of_implications(value: Expression) -> bool:
-    """Whether it asks for nothing else: as a goal it would be met by their conditions not holding."""
-    trees = (part.tree for part in goals.conjuncts(value))
-    return all(isinstance(tree, Binary) and tree.op == "implies" for tree in trees)
 
 
 def _is_bare(tree: Unary) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.grammar.tree import Binary, Expr, LetDecl, Unary
 from tltlc.grammar.walk import operands, parts
+from tltlc.lint.goals import is_of_implications
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.view import Expression, View, inner, operand
 from tltlc.source import Span
@@ -61,7 +62,7 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Ite
         elif isinstance(part, Unary) and part.op in _OTHER and part.bound is None:
             op = part.op if sign else _OTHER[part.op]
             if op == _OTHER[outer]:
-                yield _remark(Span(begin, part.op_span.end), op, _awaited(part.operand, sign, view), view)
+                yield _remark(Span(begin, part.op_span.end), op, Expression(part.operand, view.env), sign)
         elif isinstance(part, Binary) and part.op in ("and", "or") and (part.op == "and") == ((outer == "G") == sign):
             waiting += (part.right, sign), (part.left, sign)
         elif isinstance(part, Binary) and part.op == "U" and sign and outer == "G":
@@ -73,15 +74,13 @@ def _remarks(start: int, tree: Expr, outer: str, holds: bool, view: View) -> Ite
             yield Remark("this `until` starts anew at every step", (label,), f"once is `require {once}`")
 
 
-def _awaited(tree: Expr, sign: bool, view: View) -> str:
-    """What holds at the last step."""
-    awaited = Expression(tree, view.env)
-    return awaited.text if sign else f"not {operand(awaited)}"
-
-
-def _remark(place: Span, op: str, goal: str, view: View) -> Remark:
-    label = Label(view.source, place, f"where the trace ends, this is `{goal}` at its last step and no more")
-    way_out = f"where play has no end and {_WORDS[op]}, say `semantics infinite`; once is `reach {goal}`"
+def _remark(place: Span, op: str, awaited: Expression, sign: bool) -> Remark:
+    """``sign``: whether what is awaited, or its negation, is to hold."""
+    goal = awaited.text if sign else f"not {operand(awaited)}"
+    label = Label(awaited.source, place, f"where the trace ends, this is `{goal}` at its last step and no more")
+    way_out = f"where play has no end and {_WORDS[op]}, say `semantics infinite`"
+    if not (sign and is_of_implications(awaited)):
+        way_out += f"; once is `reach {goal}`"
     return Remark("this speaks of the last step alone", (label,), way_out)
 
 
