@@ -113,6 +113,14 @@ def test_who_does_not_wait_for_an_answer_is_no_problem(server: Server, capfd: py
     assert capfd.readouterr().err == ""
 
 
+def test_a_large_text_arrives_whole_at_a_child_that_is_slow_to_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(children, "_LOOK_S", 0.001)
+    text = f"// {'far more than a pipe holds ' * 10_000}\nsignal a: bool\nspec x = F a"
+    with serving(limit_s=20.0) as server:
+        status, _, answer = ask(server, "POST", "/api", json.dumps({"text": text}), JSON)
+    assert (status, json.loads(answer)["diagnostics"]) == (200, [])
+
+
 def test_a_text_that_nobody_waits_for_any_more_is_given_up() -> None:
     with serving(limit_s=120.0) as server:
         # More than are answered at once: those that wait for their turn give it up as well.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable
-from threading import BoundedSemaphore, Lock
+from threading import BoundedSemaphore, Lock, Thread
 from time import monotonic
 from typing import Final
 
@@ -87,16 +87,21 @@ class Children:
 def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_abandoned: Callable[[], bool]) -> bytes:
     """What a child says; raises AbandonedError, and TimeoutExpired after so many seconds."""
     end = monotonic() + limit_s
-    asked: bytes | None = request
-    while True:
-        _check(is_abandoned)
-        try:
-            return child.communicate(asked, timeout=min(_LOOK_S, limit_s))[0]
-        except subprocess.TimeoutExpired:
-            if monotonic() >= end:
-                raise
-            # It has the request by now, or the rest is kept.
-            asked = None
+    said: list[bytes] = []
+    # Where `communicate` has a limit of its own and passes it, what a pipe does not hold of the request is never sent.
+    talk = Thread(target=lambda: said.append(child.communicate(request)[0]))
+    talk.start()
+    try:
+        while talk.is_alive():
+            _check(is_abandoned)
+            if (left := end - monotonic()) <= 0:
+                raise subprocess.TimeoutExpired(child.args, limit_s)
+            talk.join(min(_LOOK_S, left))
+    finally:
+        if talk.is_alive():
+            child.kill()
+            talk.join()
+    return said[0]
 
 
 def _check(is_abandoned: Callable[[], bool]) -> None:
