@@ -74,7 +74,7 @@ def write(page: Page, text: str) -> None:
 
 
 def summary(page: Page, text: str) -> None:
-    expect(page.locator("#summary")).to_have_text(re.compile(text), timeout=20_000)
+    expect(page.locator("#summary")).to_have_text(re.compile(text), timeout=60_000)
 
 
 def current(page: Page) -> str | None:
