@@ -10,14 +10,12 @@ from contextvars import ContextVar
 from typing import Final, Union
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.limits import ARTEFACT, SOURCE
 from tltlc.record import EMPTY
 from tltlc.source import SourceFile, Span
 
-MAX_SOURCE_BYTES: Final = 1 << 20
-"""Greatest size of a source file: one mebibyte."""
-
-MAX_ARTEFACT_BYTES: Final = 1 << 28
-"""Greatest size of an artefact, well above that of an automaton with the default state budget."""
+MAX_SOURCE_BYTES: Final = SOURCE.size
+MAX_ARTEFACT_BYTES: Final = ARTEFACT.size
 
 _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 

@@ -61,8 +61,11 @@ def _document(source: SourceFile) -> dict[str, Any]:
     """The parsed text, once it is known to be an artefact of this version and to fit the schema."""
     import json
 
+    from tltlc.json_text import parse
+    from tltlc.limits import ARTEFACT
+
     try:
-        document = json.loads(source.text, parse_constant=_no_constant)
+        document = parse(source, ARTEFACT, _no_constant)
     except json.JSONDecodeError as error:
         where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _remark(error.msg))
         raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,), RECOMPILE)]) from None

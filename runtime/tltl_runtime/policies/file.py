@@ -24,6 +24,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
+from tltlc.limits import POLICY
 from tltlc.pipeline import read_artefact
 from tltlc.source import SourceFile
 from tltlc.writing import write_file
@@ -31,7 +32,7 @@ from tltlc.writing import write_file
 SUFFIX: Final = ".safetensors"
 FORMAT: Final = "tltl-policy"
 VERSION: Final = 1
-MAX_BYTES: Final = 1 << 26
+MAX_BYTES: Final = POLICY.size
 """Greatest size of a file, thirty million weights: 64 MiB."""
 _RECORD_BYTES: Final = 1 << 20
 """What is enough for all in a card but the artefact."""

@@ -18,12 +18,13 @@ from tltl_runtime.stealth.levels.made_for import shown
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
+from tltlc.limits import REPORT
 from tltlc.record import EMPTY, record
 from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-baseline"
 VERSION: Final = 3
-MAX_BYTES: Final = 1 << 28
+MAX_BYTES: Final = REPORT.size
 
 _ROUNDING: Final = 1e-6
 """By which a sum of rewards may exceed what it can be."""

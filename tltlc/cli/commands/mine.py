@@ -15,6 +15,7 @@ from tltlc.cli import exits
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings, check_libraries, compile_settings, source_options
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.limits import MINED_TRACE
 from tltlc.source import SourceFile
 from tltlc.spec_file import STDIN, STDIN_NAME
 
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 ENDINGS: Final = (".csv", ".jsonl")
 """Of the traces in a folder."""
-_MOST_BYTES: Final = 1 << 28
+_MOST_BYTES: Final = MINED_TRACE.size
 _TELL_EVERY_S: Final = 1.0
 
 

@@ -23,6 +23,7 @@ from tltl_runtime.stealth.snapshot import BRANCHES
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.files import read_bytes
+from tltlc.limits import RECORDING
 from tltlc.monitor import RewardOptions
 from tltlc.pipeline import read_artefact
 from tltlc.record import record, replace
@@ -32,7 +33,7 @@ from tltlc.writing import write_file
 SUFFIX: Final = ".episode.npz"
 FORMAT: Final = "tltl-episode"
 VERSION: Final = 1
-MAX_BYTES: Final = 1 << 28
+MAX_BYTES: Final = RECORDING.size
 """Greatest size of a file and of what it holds unpacked, about half a million decisions: 256 MiB."""
 
 _TEXTS: Final = ("meta", "artefact")

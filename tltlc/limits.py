@@ -1,0 +1,82 @@
+"""The limits of everything that is read or checked: one table, so that no reader of foreign input is without one.
+
+A reader takes its row from here. It reports input that is larger with TLT0004 (bytes) or TLT0006 (nesting, number of
+values), or with the error of its own format. A checker counts its steps against a row of :data:`WORK`. Steps, not
+seconds, decide, so that every machine gives the same answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.record import record
+from tltlc.source import SourceFile, Span
+
+
+@record
+class Limit:
+    """How much a reader takes of one kind of input.
+
+    ``size`` is in bytes, as the input lies on the disk; ``depth`` counts levels of nesting; ``values`` counts values,
+    keys and separators; ``unpacked`` is in bytes, after decompression. None where the format has no such thing.
+    """
+
+    size: int
+    depth: int | None = None
+    values: int | None = None
+    unpacked: int | None = None
+
+
+SOURCE: Final = Limit(size=1 << 20)
+"""A source text; the grammar has more limits of its own, on words and on nesting."""
+
+TOML: Final = Limit(size=1 << 20, depth=32, values=50_000)
+"""A level, an asset, an overlay, a suite, settings, ``tltl.toml``."""
+
+ARTEFACT: Final = Limit(size=1 << 27, depth=900, values=10_000_000)
+"""An artefact, an automaton of another tool, or a run of a training, which holds an artefact."""
+
+REPORT: Final = Limit(size=1 << 27, depth=100, values=10_000_000)
+"""A baseline or a record of a training."""
+
+MESSAGE: Final = Limit(size=1 << 22, depth=100, values=1_000_000)
+"""A request to the playground or to the language server."""
+
+TRACE_LINE: Final = Limit(size=1 << 20, depth=32, values=50_000)
+"""A line of a trace; the number of lines has no limit, since traces are read as a stream."""
+
+MINED_TRACE: Final = Limit(size=1 << 28)
+"""A trace that `tltlc mine` holds in memory."""
+
+RECORDING: Final = Limit(size=1 << 28, unpacked=1 << 28)
+"""A recorded episode."""
+
+POLICY: Final = Limit(size=1 << 26)
+"""A trained policy."""
+
+CHECKPOINT: Final = Limit(size=1 << 30, unpacked=1 << 30)
+"""A checkpoint of a training."""
+
+WORK: Final[Mapping[str, int]] = {
+    "predicate cases": 200_000,
+    "guard literals": 1_500_000,
+}
+"""How many steps a checker may take, by what it counts."""
+
+
+def too_deep(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
+    """TLT0006: a text nests deeper than a reader takes; ``span`` is where, if that is known."""
+    return _structure(source, f"nests deeper than {limit.depth} levels", "flatten it", span)
+
+
+def too_many(source: SourceFile, limit: Limit, span: Span | None = None) -> TltlError:
+    """TLT0006: a text holds more values than a reader takes; ``span`` is where, if that is known."""
+    what = f"holds more than {limit.values:,} values"
+    return _structure(source, what, "split it, or leave out what nothing reads", span)
+
+
+def _structure(source: SourceFile, what: str, help_: str, span: Span | None) -> TltlError:
+    labels = (Label(source, span),) if span is not None else ()
+    return TltlError([Diagnostic("TLT0006", f"`{source.name}` {what}", labels, help_)])
