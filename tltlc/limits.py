@@ -59,6 +59,11 @@ POLICY: Final = Limit(size=1 << 26)
 CHECKPOINT: Final = Limit(size=1 << 30, unpacked=1 << 30)
 """A checkpoint of a training."""
 
+REVISION: Final = Limit(size=1 << 28, values=20_000)
+"""The files of a git revision that are read; :data:`REVISION_PATHS` counts all paths that are looked at."""
+
+REVISION_PATHS: Final = 5_000_000
+
 WORK: Final[Mapping[str, int]] = {
     "predicate cases": 200_000,
     "guard literals": 1_500_000,

@@ -117,7 +117,7 @@ def earlier(against: str, paths: Collection[str]) -> Iterator[Tree]:
 
     with tempfile.TemporaryDirectory(prefix="tltlc-") as folder:
         root = Path(os.path.realpath(folder))
-        git.write_out(repository, commit, is_wanted, root)
+        git.write_out(repository, commit, against, is_wanted, root)
         yield Tree(root, repository, f"{against}:", is_revision=True)
 
 

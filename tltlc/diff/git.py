@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import IO, TYPE_CHECKING, Final
 
+from tltlc.archive import unpack
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.limits import REVISION, REVISION_PATHS
+from tltlc.record import record
 
 if TYPE_CHECKING:
     from subprocess import CompletedProcess
 
 _OF_HOOKS: Final = {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX", "GIT_COMMON_DIR"}
 _PLAIN_FILES: Final = (b"100644", b"100755")
+
+
+@record
+class _File:
+    """A plain file of a revision: the name of its content in git, its path, and its size in bytes."""
+
+    name: str
+    path: str
+    size: int
 
 
 def repository(folder: Path, revision: str) -> Path:
@@ -36,34 +49,76 @@ def commit(repository: Path, revision: str) -> str:
     return done.decode().strip()
 
 
-def write_out(repository: Path, commit: str, is_wanted: Callable[[str], bool], folder: Path) -> None:
-    """Write the plain files of a commit that are wanted, by their paths, into a folder.
+def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[[str], bool], folder: Path) -> None:
+    """Write the plain files of a commit that are wanted into a folder, each at its path; links are left out.
 
-    Links and submodules are left out.  Error TLT0751 where git does not give them.
+    ``revision`` is what messages call the commit.
+
+    Raises:
+        TltlError: TLT0751, git does not give the files; TLT0764, they are more than :data:`tltlc.limits.REVISION`
+            allows; TLT0009, a path leads out of the folder; TLT0005, the system refuses to write.
     """
-    files = [(name, path) for name, path in _files(repository, commit) if is_wanted(path)]
-    contents = _run(repository, "cat-file", "--batch", given="".join(f"{name}\n" for name, _ in files).encode())
+    files = _wanted(_files(repository, commit), is_wanted, revision)
+    unpack(folder, _contents(repository, files, revision), f"the revision `{revision}`")
+
+
+def _wanted(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: str) -> list[_File]:
+    """Those of the files that are wanted; error TLT0764 where they, or all of them, are too many."""
+    wanted: list[_File] = []
+    size = 0
+    for count, file in enumerate(files):
+        if count >= REVISION_PATHS:
+            raise _too_large(revision, f"more than {REVISION_PATHS:,} paths")
+        if is_wanted(file.path):
+            wanted.append(file)
+            size += file.size
+            if len(wanted) > (REVISION.values or 0):
+                raise _too_large(revision, f"more than {REVISION.values:,} specs and artefacts")
+            if size > REVISION.size:
+                raise _too_large(revision, f"more than {REVISION.size >> 20} MiB of specs and artefacts")
+    return wanted
+
+
+def _files(repository: Path, commit: str) -> Iterator[_File]:
+    """The plain files of a commit, as git lists them; the caller may stop before the end."""
+    with _listing(repository, commit) as stream:
+        rest = b""
+        while block := stream.read(1 << 16):
+            *lines, rest = (rest + block).split(b"\0")
+            for line in lines:
+                about, _, path = line.partition(b"\t")
+                mode, kind, name, size = about.split()
+                if mode in _PLAIN_FILES and kind == b"blob" and size.isdigit():
+                    yield _File(name.decode(), os.fsdecode(path), int(size))
+
+
+@contextmanager
+def _listing(repository: Path, commit: str) -> Iterator[IO[bytes]]:
+    """What git prints of the tree of a commit, while it prints it; git is ended with the block."""
+    from subprocess import DEVNULL, PIPE, Popen
+
+    command = ["git", "-C", str(repository), "ls-tree", "-r", "-l", "-z", "--full-tree", commit]
+    with Popen(command, stdin=DEVNULL, stdout=PIPE, stderr=DEVNULL, env=_environment()) as git:
+        assert git.stdout is not None
+        try:
+            yield git.stdout
+        finally:
+            git.kill()
+
+
+def _contents(repository: Path, files: Sequence[_File], revision: str) -> Iterator[tuple[str, bytes]]:
+    """The path and the content of each file; error TLT0751 where git does not give one."""
+    given = "".join(f"{file.name}\n" for file in files).encode()
+    contents = _run(repository, "cat-file", "--batch", given=given) or b""
     start = 0
-    for _, path in files:
-        end = (contents or b"").find(b"\n", start)
-        header = (contents or b"")[start:end].split()
-        if contents is None or end < 0 or len(header) != 3:
-            raise _no_version(f"git does not give `{path}` of that revision", "fetch it: `git fetch`")
+    for file in files:
+        end = contents.find(b"\n", start)
+        header = contents[start:end].split()
+        if end < 0 or len(header) != 3:
+            raise _no_version(f"git does not give `{file.path}` of the revision `{revision}`", "fetch it: `git fetch`")
         size = int(header[2])
-        target = folder / path
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(contents[end + 1 : end + 1 + size])
+        yield file.path, contents[end + 1 : end + 1 + size]
         start = end + size + 2
-
-
-def _files(repository: Path, commit: str) -> Iterator[tuple[str, str]]:
-    """The plain files of a commit: the name of the contents, and the path."""
-    listed = _run(repository, "ls-tree", "-r", "-z", "--full-tree", commit) or b""
-    for line in listed.split(b"\0"):
-        about, _, path = line.partition(b"\t")
-        mode, _, name = about.partition(b" blob ")
-        if mode in _PLAIN_FILES:
-            yield name.decode(), os.fsdecode(path)
 
 
 def _run(folder: Path, *arguments: str, given: bytes = b"") -> bytes | None:
@@ -76,15 +131,18 @@ def _git(folder: Path, *arguments: str, given: bytes = b"") -> CompletedProcess[
     """What became of a git command in a folder; error TLT0730 where there is no git."""
     from subprocess import run
 
-    # In a hook, git names the repository of the hook by these.
-    environment = {name: value for name, value in os.environ.items() if name not in _OF_HOOKS}
     command = ["git", "-C", str(folder), *arguments]
     try:
-        return run(command, input=given, capture_output=True, env={**environment, "LC_ALL": "C"}, check=False)
+        return run(command, input=given, capture_output=True, env=_environment(), check=False)
     except FileNotFoundError:
         title = "comparing with a revision needs `git`, which is not installed"
         way_out = "install git, or name a folder that holds the old files: `--against DIR`"
         raise TltlError([Diagnostic("TLT0730", title, help=way_out)]) from None
+
+
+def _environment() -> dict[str, str]:
+    """The environment for git: without the names by which a hook's git points at the repository of the hook."""
+    return {name: value for name, value in os.environ.items() if name not in _OF_HOOKS} | {"LC_ALL": "C"}
 
 
 def _way_out(repository: Path, revision: str) -> str:
@@ -97,6 +155,11 @@ def _way_out(repository: Path, revision: str) -> str:
     if (_run(repository, "rev-parse", "--is-shallow-repository") or b"").strip() == b"true":
         return "this clone is shallow: fetch the revision, e.g. `git fetch --unshallow`"
     return "`git log` and `git tag` list revisions"
+
+
+def _too_large(revision: str, what: str) -> TltlError:
+    help_ = "take out the part to compare, and name its folder: `--against DIR`"
+    return TltlError([Diagnostic("TLT0764", f"the revision `{revision}` holds {what}", help=help_)])
 
 
 def _no_version(title: str, way_out: str) -> TltlError:

@@ -13,6 +13,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.levels.place import overlays_of
+from tltlc.archive import unpack
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.files import is_file, read_source
 
@@ -50,16 +51,16 @@ def designed(reference: Reference) -> Level | None:
     # Two overlays of one name cannot lie in one folder, and names that lead out of it are none of a level.
     if len(texts) != len(played.files) or not texts or not all(map(_NAME.fullmatch, texts)):
         return None
+    name = played.files[0][0]
+    if name not in texts:
+        return None
+    # The spec of the level lies elsewhere, and nothing here shows it.
+    texts[name] = _SPEC.sub("", texts[name], count=1)
+    files = [(file, text.encode("utf-8", "surrogatepass")) for file, text in texts.items()]
     with TemporaryDirectory() as folder:
-        for name, text in texts.items():
-            path = Path(folder, name)
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(text, encoding="utf-8", newline="\n")
-        level = Path(folder, played.files[0][0])
-        # What it was made for lies elsewhere, and is no part of what is to be seen.
-        level.write_text(_SPEC.sub("", texts[level.name], count=1), encoding="utf-8", newline="\n")
         try:
-            return load_level(str(level), played.variant)
+            unpack(Path(folder), files, "the baseline")
+            return load_level(str(Path(folder, name)), played.variant)
         except TltlError:
             return None
 
