@@ -56,7 +56,7 @@ RECORDING: Final = Limit(size=1 << 28, unpacked=1 << 28)
 POLICY: Final = Limit(size=1 << 26)
 """A trained policy."""
 
-CHECKPOINT: Final = Limit(size=1 << 30, unpacked=1 << 30)
+CHECKPOINT: Final = Limit(size=1 << 30, depth=32, values=1_000_000)
 """A checkpoint of a training."""
 
 REVISION: Final = Limit(size=1 << 28, values=20_000)

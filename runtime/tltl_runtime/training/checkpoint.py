@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
@@ -16,9 +15,11 @@ from tltl_runtime.training.report import StopReason
 from tltl_runtime.training.run import resume_command
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import Stop
+from tltl_runtime.training.torch_archive import TorchArchiveError, read_torch
 from tltl_runtime.training.windows import Score
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reading_error
+from tltlc.files import read_bytes
+from tltlc.limits import CHECKPOINT
 from tltlc.record import record
 from tltlc.writing import write_file
 
@@ -98,12 +99,11 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
         TltlError: TLT0001 it cannot be read; TLT0864 it is none, is damaged, is of another version, or of another
             training than ``run``; TLT0868, of ``run`` on another level; TLT0922, of ``run`` with other demonstrations.
     """
-    try:
-        data = path.read_bytes()
-    except FileNotFoundError:
+    if not path.exists():
         return None
-    except OSError as error:
-        raise reading_error(str(path), error) from None
+    data = read_bytes(path, str(path), CHECKPOINT.size)
+    if len(data) > CHECKPOINT.size:
+        raise _refused(path, f"it is larger than {CHECKPOINT.size >> 20} MiB")
     content = _content(data, path)
     if content.get("version") != VERSION:
         raise _other_version(path, content.get("version"))
@@ -128,16 +128,11 @@ def copied(value: Any) -> Any:
 
 
 def _content(data: bytes, path: Path) -> Mapping[str, Any]:
-    """What torch wrote, its sums checked: torch itself would take changed bytes for numbers."""
+    """The content of a checkpoint's file; error TLT0864 where it is not one."""
     try:
-        with zipfile.ZipFile(BytesIO(data)) as archive:
-            broken = archive.testzip()
-        content = None if broken else torch.load(BytesIO(data), map_location="cpu", weights_only=True)
-    except Exception as error:
-        # torch tells what it finds in strange files by exceptions of many classes.
-        raise _refused(path, f"it is damaged, or no checkpoint ({type(error).__name__})") from None
-    if broken:
-        raise _refused(path, "it is damaged")
+        content = read_torch(data)
+    except TorchArchiveError as error:
+        raise _refused(path, str(error)) from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise _refused(path, "it is no checkpoint of a training")
     return content
