@@ -4,24 +4,39 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
-from tltlc.limits import Limit, too_deep, too_many
-from tltlc.source import SourceFile
+from tltlc.limits import Limit
 
 
-def parse(source: SourceFile, limit: Limit, parse_constant: Callable[[str], Any] | None = None) -> Any:
+class JsonLimitError(ValueError):
+    """JSON that is larger than its reader takes; the message says how."""
+
+
+def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] | None = None) -> Any:
     """The value in a text; ``parse_constant`` is called for ``NaN`` and ``Infinity``, as :func:`json.loads` has it.
 
     Raises:
-        TltlError: TLT0006, it nests deeper or holds more values than ``limit`` allows.
+        JsonLimitError: it nests deeper than Python can read, or holds more values than ``limit`` allows.
         json.JSONDecodeError: it is not JSON.
-        ValueError: a whole number in it has thousands of digits.
+        ValueError: it is not UTF-8, or a whole number in it has thousands of digits.
+        TypeError: it is no text.
     """
     # Commas inside strings count, too: that errs by little, and takes no time.
-    if limit.values is not None and source.text.count(",") >= limit.values:
-        raise too_many(source, limit)
+    commas = text.count(b",") if isinstance(text, bytes) else str.count(text, ",")
+    if limit.values is not None and commas >= limit.values:
+        raise JsonLimitError(f"it holds more than {limit.values:,} values")
     try:
-        return json.loads(source.text, parse_constant=parse_constant)
+        return json.loads(text, parse_constant=parse_constant)
     except RecursionError:
-        raise too_deep(source, limit) from None
+        raise JsonLimitError("it nests too deep") from None
+
+
+def load(path: Path, limit: Limit) -> Any:
+    """The value in a file; raises what :func:`loads` raises, and OSError."""
+    with path.open("rb") as file:
+        data = file.read(limit.size + 1)
+    if len(data) > limit.size:
+        raise JsonLimitError(f"it is larger than {limit.size >> 20} MiB")
+    return loads(data, limit)

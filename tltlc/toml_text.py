@@ -13,7 +13,7 @@ from tltlc.source import SourceFile, Span
 _PART: Final = r"(?:[A-Za-z0-9_-]+|\"(?:\\.|[^\"\\\n])*\"|'[^'\n]*')"
 _DOTTED: Final = rf"{_PART}(?:[ \t]*\.[ \t]*{_PART})*"
 _TOKEN: Final = re.compile(
-    r"(?P<long>\"\"\"(?:\\.|(?!\"\"\").)*\"{3,5}|'''(?:(?!''').)*'{3,5})"
+    r"(?P<long>\"\"\"(?:\\.|(?!\"\"\")[^\\])*\"{3,5}|'''(?:(?!''').)*'{3,5})"
     r"|(?P<unclosed_long>\"\"\"|''')"
     rf"|(?P<key>{_DOTTED})"
     r"|(?P<unclosed>[\"'])|(?P<comment>#[^\n]*)|(?P<open>[\[{])|(?P<close>[\]}])|(?P<value>[,=])",

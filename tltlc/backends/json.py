@@ -51,7 +51,7 @@ def read(text: str, name: str) -> Fspa:
             if len(found) == MOST_PROBLEMS:
                 break
     except RecursionError:
-        raise TltlError([Diagnostic("TLT0601", f"`{name}` is nested too deeply", help=RECOMPILE)]) from None
+        raise TltlError([Diagnostic("TLT0006", f"`{name}` cannot be read: it nests too deep", help=RECOMPILE)]) from None
     if found:
         raise TltlError(found)
     return fspa
@@ -61,17 +61,19 @@ def _document(source: SourceFile) -> dict[str, Any]:
     """The parsed text, once it is known to be an artefact of this version and to fit the schema."""
     import json
 
-    from tltlc.json_text import parse
+    from tltlc.json_text import JsonLimitError, loads
     from tltlc.limits import ARTEFACT
 
     try:
-        document = parse(source, ARTEFACT, _no_constant)
+        document = loads(source.text, ARTEFACT, _no_constant)
     except json.JSONDecodeError as error:
         where = Label(source, Span(error.pos, min(error.pos + 1, len(source.text))), _remark(error.msg))
         raise TltlError([Diagnostic("TLT0601", f"`{source.name}` is not JSON", (where,), RECOMPILE)]) from None
     except _NoNumberError as error:
         title = f"`{source.name}` is not JSON: {error} is no number"
         raise TltlError([Diagnostic("TLT0601", title, help=RECOMPILE)]) from None
+    except JsonLimitError as error:
+        raise TltlError([Diagnostic("TLT0006", f"`{source.name}` cannot be read: {error}", help=RECOMPILE)]) from None
     except ValueError:
         # Python refuses to convert whole numbers of thousands of digits.
         title = f"a number in `{source.name}` has too many digits"

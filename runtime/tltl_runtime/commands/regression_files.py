@@ -25,6 +25,8 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.texts import listed
 from tltl_runtime.training.versions import versions
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.json_text import load
+from tltlc.limits import REPORT
 from tltlc.record import record
 from tltlc.writing import write_file, write_files
 
@@ -108,7 +110,7 @@ def _earlier(outcome: Outcome, name: str) -> Verdict | None:
     """What an earlier run in the folder said of a case, if that is there."""
     path = case_folder(outcome.suite, name, outcome.folder / CASES) / _REPORT
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
-        verdict = json.loads(path.read_text(encoding="utf-8"))["content"]["verdict"]
+        verdict = load(path, REPORT)["content"]["verdict"]
         if verdict in get_args(Verdict):
             return cast(Verdict, verdict)
     return None

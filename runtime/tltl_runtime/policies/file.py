@@ -24,7 +24,8 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
-from tltlc.limits import POLICY
+from tltlc.json_text import loads
+from tltlc.limits import ARTEFACT, POLICY
 from tltlc.pipeline import read_artefact
 from tltlc.source import SourceFile
 from tltlc.writing import write_file
@@ -120,7 +121,7 @@ def _header(data: bytes, name: str) -> dict[str, Any]:
     """What the file says of itself: a JSON object, of as many bytes as its first eight say."""
     length = int.from_bytes(data[:8], "little")
     try:
-        header = json.loads(data[8 : 8 + length]) if length <= len(data) - 8 else None
+        header = loads(data[8 : 8 + length], ARTEFACT) if length <= len(data) - 8 else None
     except (ValueError, RecursionError):
         header = None
     if not isinstance(header, dict):
@@ -130,7 +131,7 @@ def _header(data: bytes, name: str) -> dict[str, Any]:
 
 def _card(header: dict[str, Any], name: str) -> Card:
     try:
-        document = json.loads(header["__metadata__"][_KEY])
+        document = loads(header["__metadata__"][_KEY], ARTEFACT)
     except (KeyError, TypeError):
         document = None
     except (ValueError, RecursionError):

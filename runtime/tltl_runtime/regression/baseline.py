@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from shlex import join
-from typing import Any, Final
+from typing import Final
 
 from tltl_runtime.record_json import RecordJsonError, from_json, to_json
 from tltl_runtime.refusals import Refusals
@@ -18,6 +18,7 @@ from tltl_runtime.stealth.levels.made_for import shown
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
+from tltlc.json_text import loads
 from tltlc.limits import REPORT
 from tltlc.record import EMPTY, record
 from tltlc.writing import write_file
@@ -87,7 +88,7 @@ def read_baseline(path: Path) -> tuple[Reference, ...]:
     """
     name = str(path)
     try:
-        document: Any = json.loads(read_bytes(path, name, MAX_BYTES))
+        document = loads(read_bytes(path, name, MAX_BYTES), REPORT)
     except (ValueError, RecursionError) as error:
         raise _REFUSALS.unreadable(name, f"it is not JSON: {error!s:.60}") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:

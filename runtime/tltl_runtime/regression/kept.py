@@ -10,6 +10,8 @@ from typing import Any, TypeVar
 
 from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.sources import sources_hash
+from tltlc.json_text import load
+from tltlc.limits import REPORT
 
 T = TypeVar("T")
 
@@ -29,7 +31,7 @@ def read_kept(kind: type[T], path: Path, inputs: str) -> T | None:
     something else, cannot be read or is not there, and so has to be made again.
     """
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        document = load(path, REPORT)
         return from_json(kind, document["content"], "content") if document["identity"] == inputs else None
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None

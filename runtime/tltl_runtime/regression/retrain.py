@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from itertools import count
@@ -30,6 +29,8 @@ from tltl_runtime.training.settings import read_settings
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
+from tltlc.json_text import load
+from tltlc.limits import REPORT
 from tltlc.record import replace
 from tltlc.writing import remove_file, write_files
 
@@ -179,7 +180,7 @@ def trained_of(run: Run) -> Trained:
     """How the training in ``run.folder`` went, which is over; raises TltlError for its checkpoint."""
     state = read_checkpoint(run.folder / CHECKPOINT, identity(run))
     assert state is not None
-    record_ = json.loads((run.folder / RECORD).read_text(encoding="utf-8"))
+    record_ = load(run.folder / RECORD, REPORT)
     # The agent's own successes are ways, too, be they shorter or the first.
     lengths = [int(each) for process in state.processes for each in process.get("way_lengths", ())]
     return Trained(

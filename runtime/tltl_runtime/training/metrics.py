@@ -16,6 +16,8 @@ from tltl_runtime.training.report import Report, Window
 from tltlc.automaton.fspa import Fspa, State
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reading_error, reason
+from tltlc.json_text import loads
+from tltlc.limits import TRACE_LINE
 from tltlc.writing import write_file
 
 METRICS: Final = "metrics.jsonl"
@@ -125,7 +127,7 @@ def _line(measured: Mapping[str, Any]) -> str:
 def _measured(line: str) -> dict[str, Any] | None:
     """What a line says; None where it lacks what is read again."""
     try:
-        measured = json.loads(line)
+        measured = loads(line, TRACE_LINE)
     except (ValueError, RecursionError):
         return None
     if not isinstance(measured, dict) or not measured.keys() >= _READ:

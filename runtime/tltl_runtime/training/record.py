@@ -20,6 +20,8 @@ from tltl_runtime.training.metrics import METRICS, OF_THE_WINDOW, means, read_me
 from tltl_runtime.training.report import Report
 from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, read_run
 from tltl_runtime.training.versions import versions
+from tltlc.json_text import load
+from tltlc.limits import REPORT
 from tltlc.record import replace
 from tltlc.writing import write_files
 
@@ -118,7 +120,7 @@ def ended_as(run: Run) -> dict[str, Any] | None:
     Its ``end`` is the limit of ``run`` that it has reached, whichever it ended by.
     """
     try:
-        made = json.loads((run.folder / RECORD).read_text(encoding="utf-8"))
+        made = load(run.folder / RECORD, REPORT)
         stop, steps, seconds = run.settings.stop, int(made["steps"]), float(made["seconds"])
         if made["end"] == "met":
             return {**made}

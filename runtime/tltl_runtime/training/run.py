@@ -26,6 +26,8 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import MAX_ARTEFACT_BYTES, read_bytes, read_source
+from tltlc.json_text import loads
+from tltlc.limits import ARTEFACT
 from tltlc.pipeline import read_artefact
 from tltlc.record import record, replace
 from tltlc.source import SourceFile
@@ -152,7 +154,7 @@ def read_level_hash(folder: Path) -> str | None:
 def _document(folder: Path) -> tuple[SourceFile, Mapping[str, Any]]:
     source = read_source(folder / RUN, max_bytes=MAX_ARTEFACT_BYTES)
     try:
-        document = json.loads(source.text)
+        document = loads(source.text, ARTEFACT)
     except (ValueError, RecursionError):
         raise _unfit(source, "it is no JSON") from None
     if not isinstance(document, dict) or document.get("format") != _FORMAT:

@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from tltlc.expression import Condition, Const, Expression, Op, When
+from tltlc.json_text import load
+from tltlc.limits import REPORT
 from tltlc.resolve.predicate_check.cases import variables
 from tltlc.resolve.predicate_check.region import Box, Variable
 
@@ -67,7 +69,7 @@ def cache_folder() -> Path | None:
 def _read(path: Path) -> dict[str, bool]:
     """The answers in a file; none where it is missing, damaged or of another version."""
     try:
-        content = json.loads(path.read_text("utf-8"))
+        content = load(path, REPORT)
     except (OSError, ValueError, RecursionError):
         return {}
     if not isinstance(content, dict) or content.get("version") != CHECKER_VERSION:

@@ -23,7 +23,8 @@ from tltl_runtime.stealth.snapshot import BRANCHES
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.files import read_bytes
-from tltlc.limits import RECORDING
+from tltlc.json_text import loads
+from tltlc.limits import ARTEFACT, RECORDING
 from tltlc.monitor import RewardOptions
 from tltlc.pipeline import read_artefact
 from tltlc.record import record, replace
@@ -198,7 +199,7 @@ def _members(data: bytes, name: str) -> dict[str, bytes]:
 
 def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
     try:
-        document = json.loads(_text(members, "meta", name))
+        document = loads(_text(members, "meta", name), ARTEFACT)
     except (ValueError, RecursionError):
         raise _REFUSALS.broken(name, "`meta` is not JSON") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:

@@ -1,0 +1,59 @@
+"""JSON is read within limits."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.json_text import JsonLimitError, load, loads
+from tltlc.limits import Limit
+from tltlc.pipeline import read_artefact
+from tltlc.source import SourceFile
+
+SMALL = Limit(size=100, values=10)
+
+VALUES = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
+    lambda values: st.lists(values) | st.dictionaries(st.text(), values),
+)
+
+
+@given(VALUES)
+def test_a_value_comes_back(value: object) -> None:
+    text = json.dumps(value)
+    limit = Limit(size=1, values=text.count(",") + 1)
+    assert loads(text, limit) == loads(text.encode(), limit) == value
+
+
+def test_too_many_values_are_refused_before_they_are_made() -> None:
+    assert len(loads("[" + "0," * 9 + "0]", SMALL)) == 10
+    with pytest.raises(JsonLimitError, match="more than 10 values"):
+        loads("[" + "[]," * 10 + "[]]", SMALL)
+
+
+@pytest.mark.parametrize("opening", ["[", '{"a":'])
+def test_deep_nesting_is_refused(opening: str) -> None:
+    with pytest.raises(JsonLimitError, match="nests too deep"):
+        loads(opening * 100_000, SMALL)
+
+
+def test_a_large_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    path.write_text(" " * 99 + "1")
+    assert load(path, SMALL) == 1
+    path.write_text(" " * 100 + "1")
+    with pytest.raises(JsonLimitError, match="larger than"):
+        load(path, SMALL)
+
+
+@pytest.mark.parametrize(
+    "text", ["[" * 100_000, '{"format": "fspa", "a":' + "[" * 5000, "[" + "[]," * 10_000_000 + "[]]"]
+)
+def test_an_artefact_that_would_fill_the_memory_is_refused(text: str) -> None:
+    with pytest.raises(TltlError, match="TLT0006"):
+        read_artefact(SourceFile("x.fspa.json", text))
