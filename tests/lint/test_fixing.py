@@ -42,6 +42,37 @@ def test_what_is_left(before: str, after: str) -> None:
     assert mended(before).source.text == after
 
 
+NO_LIMIT = "// tltlc: allow TLT0419\n"
+BLOCK = "spec s {\n    reach a\n}\n"
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        # Without the first declaration, the comment would speak of the whole file.
+        ("import core\nsignal a: bool\n" + BLOCK, "signal a: bool\n" + BLOCK),
+        ("import core\n" + NO_LIMIT + BLOCK + "signal a: bool\n", None),
+        (
+            "signal b: bool\nsignal c: bool\n" + NO_LIMIT + BLOCK + "signal a: bool\n",
+            "signal c: bool\n" + NO_LIMIT + BLOCK + "signal a: bool\n",
+        ),
+        # A comment goes with the one declaration that it speaks of, and does not pass to the next one.
+        (
+            "signal a: bool\n" + NO_LIMIT + "signal b: bool\n" + BLOCK,
+            "signal a: bool\n" + BLOCK,
+        ),
+        (
+            "signal a: bool\nsignal b: bool\n" + NO_LIMIT + BLOCK,
+            "signal a: bool\n" + NO_LIMIT + BLOCK,
+        ),
+        # A comment on the whole file stays one.
+        (NO_LIMIT + "signal b: bool\nsignal a: bool\n" + BLOCK, NO_LIMIT + "signal a: bool\n" + BLOCK),
+    ],
+)
+def test_no_fix_changes_what_a_comment_allows(before: str, after: str | None) -> None:
+    assert mended(before).source.text == (before if after is None else after)
+
+
 def test_a_part_of_a_clause_is_left_to_the_author() -> None:
     text = "signal a: bool\nspec s = F a & F a\n"
     assert codes(text) == ["TLT0425"]

@@ -51,7 +51,8 @@ def read(text: str, name: str) -> Fspa:
             if len(found) == MOST_PROBLEMS:
                 break
     except RecursionError:
-        raise TltlError([Diagnostic("TLT0006", f"`{name}` cannot be read: it nests too deep", help=RECOMPILE)]) from None
+        title = f"`{name}` cannot be read: it nests too deep"
+        raise TltlError([Diagnostic("TLT0006", title, help=RECOMPILE)]) from None
     if found:
         raise TltlError(found)
     return fspa

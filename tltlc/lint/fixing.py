@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.grammar.allowed import spoken_of
+from tltlc.grammar.parser import parse
 from tltlc.lint.rule import Edit, Finding
 from tltlc.lint.run import levelled, lint
+from tltlc.lint.scopes import after, keeping_scopes
 from tltlc.pipeline import CompileOptions
 from tltlc.record import EMPTY, record
 from tltlc.source import SourceFile
@@ -53,19 +56,23 @@ def fix(
 
 
 def _applied(source: SourceFile, found: tuple[Finding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
-    """The text with all fixes that do not touch each other, and what they mend."""
-    edits: list[Edit] = []
+    """The text with all fixes that do not overlap and keep the scopes of comments, and what they mend."""
+    fixable = [finding for finding in found if finding.fix]
+    if not fixable:
+        return source, []
+    module, _ = parse(source)
+    has_scopes = bool(spoken_of(module))
+    edits: tuple[Edit, ...] = ()
     applied: list[Diagnostic] = []
-    for finding in found:
-        if not finding.fix:
+    for finding in fixable:
+        new = tuple(edit for edit in finding.fix if edit not in edits)
+        if any(_meet(edit, other) for edit in new for other in edits):
             continue
-        if all(edit in edits or not any(_meet(edit, other) for other in edits) for edit in finding.fix):
-            edits += [edit for edit in finding.fix if edit not in edits]
+        together = keeping_scopes(module, edits + new) if has_scopes else edits + new
+        if together is not None:
+            edits = together
             applied.append(finding.diagnostic)
-    text = source.text
-    for edit in sorted(edits, key=lambda edit: edit.span.start, reverse=True):
-        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
-    return SourceFile(source.name, text), applied
+    return after(source, edits), applied
 
 
 def _meet(one: Edit, other: Edit) -> bool:
