@@ -10,7 +10,7 @@ from typing import Final
 import click
 
 from docs_site.page import Page
-from tltlc.cli.main import OF_THE_RUNTIME, cli
+from tltlc.cli.command_line import OF_THE_RUNTIME, cli
 from tltlc.diagnostics.diagnostic import TltlError
 
 FOLDER: Final = "commands"

@@ -12,10 +12,8 @@
 Importing this package loads nothing else: each name below is loaded when it is first used.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+# Type checkers take it for true; to import it from `typing` would cost each start some milliseconds.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa as Fspa
     from tltlc.automaton.graph import to_networkx as to_networkx

@@ -1,7 +1,9 @@
 """``python -m tltlc``."""
 
-from __future__ import annotations
+try:
+    from tltlc.cli.main import main
 
-from tltlc.cli.main import main
-
-main()
+    main()
+except KeyboardInterrupt:
+    # Ctrl-C came before `main` could handle it.
+    raise SystemExit(130) from None

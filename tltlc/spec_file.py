@@ -8,6 +8,7 @@ import sys
 from errno import EBADF
 from typing import TYPE_CHECKING, Final
 
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, note, read_bytes, reading_error
 from tltlc.source import SourceFile
 
@@ -43,14 +44,15 @@ def read(path: str) -> tuple[SourceFile, bool]:
 
     Errors: those of :func:`tltlc.files.read_source`.
     """
-    if path == STDIN:
-        return _read_stream(_standard_input(), STDIN_NAME)
-    note(path)
+    name = STDIN_NAME if path == STDIN else path
     try:
+        if path == STDIN:
+            return _read_stream(standard_input(), STDIN_NAME)
+        note(path)
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             return _read_stream(file, path)
     except (OSError, ValueError) as error:
-        raise reading_error(path, error) from None
+        raise input_error(name, error) from None
 
 
 def read_text(path: str, max_bytes: int) -> SourceFile:
@@ -62,16 +64,27 @@ def read_text(path: str, max_bytes: int) -> SourceFile:
 def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
     """The bytes of a file or of standard input, and what messages call it; errors as of :func:`read_bytes`."""
     if path == STDIN:
-        return _standard_input().read(max_bytes + 1), STDIN_NAME
+        try:
+            return standard_input().read(max_bytes + 1), STDIN_NAME
+        except OSError as error:
+            raise input_error(STDIN_NAME, error) from None
     return read_bytes(path, path, max_bytes), path
 
 
-def _standard_input() -> BinaryIO:
-    """Standard input; error TLT0001 where it is closed."""
+def standard_input() -> BinaryIO:
+    """Standard input, as bytes; error TLT0001 where it is closed."""
     # A process may be started without one.
     if sys.stdin is None:
-        raise reading_error(STDIN_NAME, OSError(EBADF, "it is closed"))
+        raise input_error(STDIN_NAME, OSError(EBADF, "it is closed"))
     return sys.stdin.buffer
+
+
+def input_error(name: str, error: OSError | ValueError) -> TltlError:
+    """TLT0001 for a file, or for standard input, that cannot be read."""
+    if name == STDIN_NAME and isinstance(error, OSError) and error.errno == EBADF:
+        help_ = "send it something, as in `tltlc check - < level.tltl`, or name a file"
+        return TltlError([Diagnostic("TLT0001", "cannot read standard input: it is closed", help=help_)])
+    return reading_error(name, error)
 
 
 def _read_stream(stream: BinaryIO, name: str) -> tuple[SourceFile, bool]:

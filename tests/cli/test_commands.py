@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tltlc.cli.main import BUILT_IN
+from tltlc.cli.command_line import BUILT_IN
 
 
 @pytest.mark.parametrize("command", BUILT_IN)

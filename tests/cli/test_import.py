@@ -122,7 +122,7 @@ def test_other_commands_say_what_to_do_with_it(tltlc, files: Path) -> None:  # t
 def test_standard_input_that_is_closed(files: Path) -> None:
     command = f'"{sys.executable}" -m tltlc import - --predicates game.tltl <&-'
     done = subprocess.run(["/bin/sh", "-c", command], capture_output=True, check=False, env=environment(), text=True)
-    assert (done.returncode, "cannot read `<stdin>`" in done.stderr) == (3, True)
+    assert (done.returncode, "cannot read standard input: it is closed" in done.stderr) == (3, True)
 
 
 def environment() -> dict[str, str]:

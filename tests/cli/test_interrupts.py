@@ -27,7 +27,7 @@ except BaseException:
 def _ended(folder: Path, script: str, told: str) -> tuple[int, str, str]:
     """What becomes of a process that is interrupted as soon as it prints ``told``: status, output, messages."""
     (folder / "slow.py").write_text(_SLOW, encoding="utf-8")
-    script = f"from tltlc.cli.interrupts import interrupts_end\n{script}"
+    script = f"from tltlc.cli.interrupts import signals_end\n{script}"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
     command = [sys.executable, "-c", script]
     with subprocess.Popen(command, env=environment, stdout=-1, stderr=-1, text=True) as running:
@@ -39,7 +39,7 @@ def _ended(folder: Path, script: str, told: str) -> tuple[int, str, str]:
 
 
 def test_an_import_is_over_before_its_interrupt_comes(tmp_path: Path) -> None:
-    script = "import time\nwith interrupts_end():\n    import slow\n    print('imported')\n    time.sleep(60)"
+    script = "import time\nwith signals_end():\n    import slow\n    print('imported')\n    time.sleep(60)"
     status, out, err = _ended(tmp_path, script, "imports\n")
     assert (status, err) == (130, "")
     # Where the machine is slow, the interrupt may come right behind the import.
@@ -48,7 +48,7 @@ def test_an_import_is_over_before_its_interrupt_comes(tmp_path: Path) -> None:
 
 def test_an_import_that_does_not_end_ends_with_the_process(tmp_path: Path) -> None:
     (tmp_path / "endless.py").write_text("import slow, time\nwhile True:\n    time.sleep(0.01)\n", encoding="utf-8")
-    script = "with interrupts_end():\n    print('begins', flush=True)\n    import endless"
+    script = "with signals_end():\n    print('begins', flush=True)\n    import endless"
     status, _, err = _ended(tmp_path, script, "begins\n")
     assert (status, err) == (130, "")
 
@@ -57,7 +57,7 @@ def test_an_interrupt_at_the_very_end_changes_nothing(tmp_path: Path) -> None:
     script = (
         "import atexit, sys, time\n"
         "atexit.register(lambda: (print('ends', flush=True), time.sleep(0.5)))\n"
-        "with interrupts_end():\n    sys.exit(1)"
+        "with signals_end():\n    sys.exit(1)"
     )
     assert _ended(tmp_path, script, "ends\n") == (1, "", "")
 
@@ -65,19 +65,19 @@ def test_an_interrupt_at_the_very_end_changes_nothing(tmp_path: Path) -> None:
 def test_what_is_ignored_stays_ignored(tmp_path: Path) -> None:
     script = (
         "import signal, time\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\n"
-        "with interrupts_end():\n    print('works', flush=True)\n    time.sleep(0.5)\n    print('over')"
+        "with signals_end():\n    print('works', flush=True)\n    time.sleep(0.5)\n    print('over')"
     )
     assert _ended(tmp_path, script, "works\n") == (0, "over\n", "")
 
 
 def test_a_fault_after_an_interrupt_is_no_bug(tmp_path: Path) -> None:
     script = (
-        "import time\nfrom tltlc.cli import main\n"
+        "import time\nfrom tltlc.cli import command_line, main\n"
         "def broken(*_):\n"
         "    print('works', flush=True)\n"
         "    try:\n        time.sleep(60)\n"
         "    except KeyboardInterrupt:\n        raise SystemError('an exception is set') from None\n"
-        "main.CommandLine.get_command = broken\n"
+        "command_line.CommandLine.get_command = broken\n"
         "import sys; sys.argv = ['tltlc', 'check']\n"
         "main.main()"
     )

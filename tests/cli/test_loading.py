@@ -77,7 +77,15 @@ def test_only_infinite_traces_load_what_is_for_them(tmp_path: Path) -> None:
 
 def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
     modules = {name for name in loaded("--help", folder=tmp_path) if name.startswith("tltlc")}
-    line = {"tltlc", "tltlc.cli", "tltlc.cli.main", "tltlc.cli.exits", "tltlc.cli.interrupts", "tltlc.cli.plugins"}
+    line = {
+        "tltlc",
+        "tltlc.cli",
+        "tltlc.cli.main",
+        "tltlc.cli.command_line",
+        "tltlc.cli.exits",
+        "tltlc.cli.interrupts",
+        "tltlc.cli.plugins",
+    }
     shared = {"tltlc.diagnostics", "tltlc.diagnostics.diagnostic", "tltlc.record", "tltlc.source"}
     assert modules <= line | shared
 

@@ -12,7 +12,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, ROOT, blocks
 from tests.docs.test_pages import PAGES
-from tltlc.cli.main import OF_THE_RUNTIME, cli
+from tltlc.cli.command_line import OF_THE_RUNTIME, cli
 from tltlc.diagnostics.diagnostic import TltlError
 
 # The page of TLT0700 shows wrong usage.

@@ -16,7 +16,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, ROOT
 from tests.runtime.regression.page import chromium
-from tltlc.cli.main import BUILT_IN
+from tltlc.cli.command_line import BUILT_IN
 from tltlc.diagnostics.codes import codes, title
 
 MISSING = [name for name in ("mkdocs", "material", "pymdownx") if find_spec(name) is None]

@@ -45,7 +45,10 @@ _COMPONENTS: Final = {"graphviz", "pygraphviz", "sympy", "networkx", "rich", "to
 """Modules that come with tltlc, and that an installation by parts may lack."""
 
 
-_NO_ROOM: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
+heard: Final[list[int]] = []
+"""The numbers of the signals that have ended the work of this process, the first one first."""
+
+_NO_OUTPUT: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF}
 """What standard output may say to a write; files that a command names have their own messages."""
 
 _NO_LOOK: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP}
@@ -68,6 +71,11 @@ def status_of(diagnostics: Iterable[Diagnostic]) -> int:
     return max((_STATUS_OF_CODE.get(code, FINDINGS) for code in errors), default=CLEAN)
 
 
+def interrupted() -> int:
+    """The exit status of a command that a signal has ended: 128 and the signal's number, by default that of Ctrl-C."""
+    return 128 + heard[0] if heard else INTERRUPTED
+
+
 def missing_component(wanted_by: str, module: str, requirement: str) -> TltlError:
     """The error for a part that is not installed; extras of tltlc itself are installed from its clone."""
     title = f"{wanted_by} needs `{module}`, which is not installed"
@@ -87,22 +95,24 @@ def report(error: Exception) -> int:
     if isinstance(error, click.exceptions.Exit):
         return error.exit_code
     if isinstance(error, click.Abort):
-        return INTERRUPTED
+        return interrupted()
     if isinstance(error, click.ClickException):
         error = TltlError([_usage(error)])
     if isinstance(error, ModuleNotFoundError) and (component := (error.name or "").partition(".")[0]) in _COMPONENTS:
         error = missing_component("this command", component, component)
-    if isinstance(error, OSError) and error.filename is None and error.errno in _NO_ROOM:
+    if isinstance(error, OSError) and error.filename is None and error.errno in _NO_OUTPUT:
         _discard_output()
-        error = _full_output(error)
+        error = _no_output(error)
     if isinstance(error, OSError) and error.filename is not None and error.errno in _NO_LOOK:
         error = _refused_path(error)
     if isinstance(error, TltlError):
         from tltlc.cli.report import show
 
-        show(error.diagnostics, "text", sys.stderr)
+        # Standard error may be full, too.
+        with suppress(OSError):
+            show(error.diagnostics, "text", sys.stderr)
         return status_of(error.diagnostics)
-    return INTERRUPTED if is_interrupted(error) else _bug(error)
+    return interrupted() if is_interrupted(error) else _bug(error)
 
 
 def is_interrupted(error: BaseException | None) -> bool:
@@ -133,11 +143,21 @@ def _number_wanted(text: str, kind: str) -> str:
     return f"{wanted}; write {pointed}" if kind == "float" and re.fullmatch(r"-?\d+\.\d+", pointed) else wanted
 
 
-def _full_output(error: OSError) -> TltlError:
+def flush() -> None:
+    """Flush standard output and drop what it does not take: at the end of Python that would change the exit status."""
+    try:
+        sys.stdout.flush()
+    except (OSError, ValueError):
+        _discard_output()
+
+
+def _no_output(error: OSError) -> TltlError:
     from tltlc.files import reason
 
-    title = f"cannot write to standard output: {reason(error)}"
-    return TltlError([Diagnostic("TLT0005", title, help="make room, or send it to another place")])
+    closed = error.errno == errno.EBADF
+    title = f"cannot write to standard output: {'it is closed' if closed else reason(error)}"
+    help_ = "send it to a file, or to /dev/null" if closed else "make room, or send it to another place"
+    return TltlError([Diagnostic("TLT0005", title, help=help_)])
 
 
 def _refused_path(error: OSError) -> TltlError:

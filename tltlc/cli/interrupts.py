@@ -1,4 +1,4 @@
-"""Ctrl-C, at whatever moment it comes, ends a command as an interrupt, and never as a fault of what it interrupted."""
+"""Signals end a command in order: Ctrl-C, SIGTERM and SIGHUP clean up, and are never taken for a fault of tltlc."""
 
 from __future__ import annotations
 
@@ -14,6 +14,10 @@ from types import FrameType
 from typing import Final, NoReturn
 
 from tltlc.cli import exits
+from tltlc.cli.main import end_at_once
+
+REQUESTS: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+"""The signals by which other programs, and a terminal that is closed, ask a process to end."""
 
 _AGAIN_S: Final = 0.05
 """From an interrupt that came in the middle of an import to the next attempt."""
@@ -26,20 +30,39 @@ _came: Final[dict[int, float]] = {}
 
 
 @contextmanager
-def interrupts_end() -> Iterator[None]:
-    """Within, the process is one command: Ctrl-C ends it with 130, and no more once its own end has begun.
+def signals_end() -> Iterator[None]:
+    """Within, the process is one command: SIGINT, SIGTERM and SIGHUP end it with 128 and the signal's number.
 
-    Where Ctrl-C is ignored, as in the background of a shell, it stays so.
+    They raise KeyboardInterrupt, so that temporary files are removed on the way out.  A signal that is ignored, as
+    SIGINT in the background of a shell or SIGHUP under ``nohup``, stays ignored.  Child processes begin with the
+    defaults.  After the command, SIGINT is ignored: its own end has begun.
     """
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, interrupt)
     try:
+        _listen()
         yield
     except KeyboardInterrupt:
-        sys.exit(exits.INTERRUPTED)
+        sys.exit(exits.interrupted())
     finally:
         # Python's own end would turn it into a death by the signal, or into a crash of a library's threads.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
+        _stop_listening()
+
+
+def _listen() -> None:
+    if hasattr(os, "register_at_fork"):
+        # Programs that are started get the defaults from the system.
+        os.register_at_fork(after_in_child=_stop_listening)
+    if signal.getsignal(signal.SIGINT) in (signal.default_int_handler, end_at_once):
+        signal.signal(signal.SIGINT, interrupt)
+    for number in REQUESTS:
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, interrupt)
+
+
+def _stop_listening() -> None:
+    for number in REQUESTS:
+        if signal.getsignal(number) not in (signal.SIG_DFL, signal.SIG_IGN, None):
+            signal.signal(number, signal.SIG_DFL)
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
@@ -49,6 +72,7 @@ def interrupt(number: int, frame: FrameType | None) -> None:
     """
     if not _is_importing(frame):
         _came.pop(number, None)
+        exits.heard.append(number)
         raise KeyboardInterrupt
     if monotonic() - _came.setdefault(number, monotonic()) > _PATIENCE_S:
         _end(128 + number)

@@ -21,7 +21,6 @@ from tltlc.lsp.session import Server
 
 _REFUSED: Final = -32803
 """The protocol's code of a request that failed for a reason that the user is to read."""
-_INTERRUPTED: Final = 130
 _NOBODY_READS: Final = 141
 
 
@@ -34,9 +33,10 @@ def serve() -> bool:
     logging.getLogger("pygls").setLevel(logging.ERROR)
     for part in ("pygls.protocol.json_rpc", "pygls.server"):
         logging.getLogger(part).addFilter(_is_unforeseen)
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        # A thread waits for the editor's next line, and Python would wait for the thread.
-        signal.signal(signal.SIGINT, lambda *_: os._exit(_INTERRUPTED))
+    for number in (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])):
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            # A thread waits for the editor's next line, and Python would wait for the thread.
+            signal.signal(number, lambda number, _: os._exit(128 + number))
     server = create()
     try:
         server.start_io(cast("BinaryIO", lines_in), cast("BinaryIO", lines_out))

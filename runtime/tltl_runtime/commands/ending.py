@@ -8,9 +8,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 from tltlc.cli import exits
-from tltlc.cli.interrupts import interrupt
-
-_REQUESTS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+from tltlc.cli.interrupts import REQUESTS, interrupt
 
 
 @contextmanager
@@ -22,7 +20,9 @@ def requests_heard() -> Iterator[None]:
         heard.append(number)
         interrupt(number, frame)
 
-    before = {number: signal.signal(number, request) for number in _REQUESTS}
+    # Under `nohup`, SIGHUP stays ignored.
+    listened = [number for number in REQUESTS if signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, request) for number in listened}
     try:
         yield
     except BaseException as error:

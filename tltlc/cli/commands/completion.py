@@ -18,7 +18,7 @@ def command(shell: str) -> int:
     """Print the completion script of a shell."""
     from click.shell_completion import get_completion_class
 
-    from tltlc.cli.main import COMPLETE_VARIABLE, cli
+    from tltlc.cli.command_line import COMPLETE_VARIABLE, cli
 
     complete = get_completion_class(shell)
     assert complete is not None, "click knows these three"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from time import monotonic
@@ -17,7 +16,7 @@ from tltlc.cli.settings import Settings, check_libraries, compile_settings, sour
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.limits import MINED_TRACE
 from tltlc.source import SourceFile
-from tltlc.spec_file import STDIN, STDIN_NAME
+from tltlc.spec_file import STDIN, STDIN_NAME, read_data
 
 if TYPE_CHECKING:
     from tltlc.mine.confirm import Proposal
@@ -137,7 +136,7 @@ def command(
             print(json.dumps(document(proposals, evidence, search, whole=whole), indent=2, ensure_ascii=False))
         elif proposals:
             print(shown(proposals, evidence, search.bits))
-    return exits.INTERRUPTED if interrupted else report.status
+    return exits.interrupted() if interrupted else report.status
 
 
 def _left_out(words: Words, predicates: str | None) -> Iterator[str]:
@@ -163,7 +162,7 @@ def _files(arguments: Sequence[str]) -> list[TraceFile]:
     found = []
     for argument in arguments:
         if argument == STDIN:
-            found.append(TraceFile(STDIN_NAME, sys.stdin.buffer.read()))
+            found.append(TraceFile(STDIN_NAME, read_data(STDIN, _MOST_BYTES)[0]))
         else:
             paths = _of_folder(argument) if is_dir(argument) else [argument]
             found += [TraceFile(path, read_bytes(path, path, _MOST_BYTES)) for path in paths]

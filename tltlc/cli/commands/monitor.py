@@ -17,8 +17,7 @@ from tltlc.cli.inputs import open_input
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings, source_options
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reading_error
-from tltlc.spec_file import STDIN, STDIN_NAME, split
+from tltlc.spec_file import STDIN, STDIN_NAME, input_error, split, standard_input
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -65,18 +64,24 @@ def command(spec: str, trace: str, as_json: bool, settings: Settings, format: st
 
 
 @contextmanager
-def _opened(trace: str) -> Iterator[BinaryIO]:
-    """The lines of the trace as they come in; error TLT0001."""
+def _opened(trace: str) -> Iterator[Iterator[bytes]]:
+    """The lines of the trace as they come in; error TLT0001, now or while they are read."""
     if trace == STDIN:
-        yield sys.stdin.buffer
+        yield _lines(standard_input(), STDIN_NAME)
         return
     try:
         file = Path(trace).open("rb")  # noqa: SIM115 (closed below; only the opening may fail with TLT0001)
     except (OSError, ValueError) as error:
-        raise reading_error(trace, error) from None
+        raise input_error(trace, error) from None
     with file:
-        # A folder opens on some systems, and only reading it fails.
-        yield file
+        yield _lines(file, trace)
+
+
+def _lines(file: BinaryIO, name: str) -> Iterator[bytes]:
+    try:
+        yield from file
+    except OSError as error:
+        raise input_error(name, error) from None
 
 
 def _shown(trace: str) -> str:

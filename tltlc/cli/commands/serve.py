@@ -78,7 +78,7 @@ def _serve(port: int, opening: bool) -> None:
         try:
             server.serve_forever()
         except KeyboardInterrupt:
-            raise exits.StopQuietlyError(exits.INTERRUPTED) from None
+            raise exits.StopQuietlyError(exits.interrupted()) from None
 
 
 def _open(address: str) -> None:
