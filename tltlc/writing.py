@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
+from tltlc.temporary import temporaries
 
 _OPTION: Final = "name another place with -o"
 _WRITABLE: Final = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
@@ -26,7 +27,10 @@ def write_files(
     they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005, with ``advice`` on where else to write.
 
     Each ``durable`` file is a whole one after a loss of power, too, and is not lost once this has returned, as long as
-    its folder is not.  No other process may write it meanwhile: what one left that was killed is written over.
+    its folder is not.
+
+    A process that is killed may leave temporary files; the next one that writes into the same folder removes them.
+    Between two renames, it leaves some files new and some as they were, and none of them half written.
     """
     try:
         for place in {(folder / name).parent: None for name in files}:
@@ -64,62 +68,58 @@ def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
 
     What is there at the end becomes ``path``; where anything is raised, Ctrl-C too, it is removed.  Error: TLT0005.
     """
-    place = Path(os.path.realpath(path))
-    temporary = place.with_name(f".tltlc-{os.getpid()}{place.suffix}")
-    try:
-        # The place may refuse: better to know before an hour of work.
-        temporary.touch()
-        yield temporary
-        temporary.replace(place)
-    except (OSError, ValueError) as error:
-        raise _error(path, error, advice) from None
-    finally:
-        temporary.unlink(missing_ok=True)
+    with temporaries() as made:
+        try:
+            place = Path(os.path.realpath(path))
+            temporary = made.path(place, place.suffix)
+            # The place may refuse: better to know before an hour of work.
+            temporary.touch()
+            yield temporary
+            temporary.replace(place)
+        except (OSError, ValueError) as error:
+            raise _error(path, error, advice) from None
 
 
 def _write(files: Mapping[Path, str | bytes], advice: str, durable: bool) -> tuple[Path, ...]:
     waiting: list[tuple[Path, Path]] = []
-    unsynced: set[Path] = set()
     written: list[Path] = []
     shown = Path()
-    try:
-        for shown, content in files.items():
-            data = content.encode() if isinstance(content, str) else content
-            mode = _mode(shown)
-            # Nobody knows whether what is there would outlast a loss of power.
-            if not durable and mode is not None and _holds(shown, mode, data):
-                continue
-            written.append(shown)
-            if mode is not None and not stat.S_ISREG(mode):
-                # A device or a pipe keeps its place, which a link of `/dev/fd` alone may name; a folder refuses.
-                with shown.open("wb") as file:
-                    file.write(data)
-                continue
-            place = Path(os.path.realpath(shown))
-            name = place.name if durable else f"tltlc-{os.getpid()}-{len(waiting)}"
-            temporary = place.with_name(f".{name}.tmp")
-            waiting.append((temporary, place))
-            with temporary.open("wb") as file:
-                file.write(data)
-                if durable:
-                    file.flush()
-                    os.fsync(file.fileno())
-                    unsynced.add(place.parent)
-            if mode is not None:
-                temporary.chmod(stat.S_IMODE(mode))
-        while waiting:
-            temporary, shown = waiting[0]
-            temporary.replace(shown)
-            waiting.pop(0)
-        for shown in unsynced:
-            _sync_folder(shown)
-    except (OSError, ValueError) as error:
-        raise _error(shown, error, advice) from None
-    finally:
-        for temporary, _ in waiting:
-            with suppress(OSError):
-                temporary.unlink(missing_ok=True)
+    with temporaries() as made:
+        try:
+            for shown, content in files.items():
+                data = content.encode() if isinstance(content, str) else content
+                mode = _mode(shown)
+                # Nobody knows whether what is there would outlast a loss of power.
+                if not durable and mode is not None and _holds(shown, mode, data):
+                    continue
+                written.append(shown)
+                if mode is not None and not stat.S_ISREG(mode):
+                    # A device or a pipe keeps its place, which a link of `/dev/fd` alone may name; a folder refuses.
+                    with shown.open("wb") as file:
+                        file.write(data)
+                    continue
+                place = Path(os.path.realpath(shown))
+                temporary = made.path(place)
+                _fill(temporary, data, mode, durable)
+                waiting.append((temporary, place))
+            for temporary, shown in waiting:
+                temporary.replace(shown)
+            for shown in {place.parent for _, place in waiting} if durable else ():
+                _sync_folder(shown)
+        except (OSError, ValueError) as error:
+            raise _error(shown, error, advice) from None
     return tuple(written)
+
+
+def _fill(temporary: Path, data: bytes, mode: int | None, durable: bool) -> None:
+    """Write a temporary file, with the permissions of the one that it is to replace."""
+    with temporary.open("wb") as file:
+        file.write(data)
+        if durable:
+            file.flush()
+            os.fsync(file.fileno())
+    if mode is not None:
+        temporary.chmod(stat.S_IMODE(mode))
 
 
 def _holds(path: Path, mode: int, data: bytes) -> bool:

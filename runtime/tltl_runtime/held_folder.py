@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Final
+from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
+from tltlc.locking import try_lock
 
 _LOCK: Final = ".lock"
 
@@ -29,25 +30,6 @@ def held(folder: Path, busy: Diagnostic, advice: str) -> Iterator[None]:
         title = f"cannot write into `{folder}`: {reason(error)}"
         raise TltlError([Diagnostic("TLT0005", title, help=advice)]) from None
     with file:
-        if not _locked(file):
+        if not try_lock(file):
             raise TltlError([busy])
         yield
-
-
-def _locked(file: IO[bytes]) -> bool:
-    """Lock the file, until it is closed; False where another process has."""
-    try:
-        import fcntl
-    except ModuleNotFoundError:  # Windows
-        import msvcrt
-
-        try:
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
-        except OSError:
-            return False
-        return True
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True

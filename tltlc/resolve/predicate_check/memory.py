@@ -10,6 +10,7 @@ import json
 import os
 import sys
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from tltlc.expression import Condition, Const, Expression, Op, When
@@ -17,6 +18,7 @@ from tltlc.json_text import load
 from tltlc.limits import REPORT
 from tltlc.resolve.predicate_check.cases import variables
 from tltlc.resolve.predicate_check.region import Box, Variable
+from tltlc.temporary import temporaries
 
 CHECKER_VERSION = 1  # raise it whenever an answer may change
 
@@ -81,16 +83,12 @@ def _read(path: Path) -> dict[str, bool]:
 
 
 def _write(path: Path, answers: Mapping[str, bool]) -> None:
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
+    # Without it, the answers only take longer the next time.
+    with suppress(OSError), temporaries() as made:
         path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            temporary.write_text(json.dumps({"version": CHECKER_VERSION, "answers": answers}, indent=1), "utf-8")
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
-    except OSError:
-        pass  # the answer is only slower the next time
+        temporary = made.path(path)
+        temporary.write_text(json.dumps({"version": CHECKER_VERSION, "answers": answers}, indent=1), "utf-8")
+        temporary.replace(path)
 
 
 def _text(node: Expression | Condition, names: Mapping[Variable, str]) -> str:

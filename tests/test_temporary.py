@@ -1,0 +1,163 @@
+"""Temporary files: those of killed processes are removed, those of others and everything else stay."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tltlc.temporary import remove_abandoned, temporaries
+from tltlc.writing import write_files
+
+ROOT = Path(__file__).parents[1]
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs signals that reach one process alone")
+
+SPECS = "signal a: bool\n" + "".join(f"spec s{number} = F a\n" for number in range(14))
+FILES = 42
+
+STOPPED = """
+import sys
+from pathlib import Path
+replace = Path.replace
+def told(path, target):
+    print("renames", flush=True)
+    sys.stdin.readline()
+    Path.replace = replace
+    return replace(path, target)
+Path.replace = told
+from tltlc.cli.main import main
+main()
+"""
+"""Compiles, and waits for a line on standard input between writing its temporary files and renaming them."""
+
+
+@contextmanager
+def stopped_before_renaming(folder: Path, *, ignoring: str = "") -> Iterator[subprocess.Popen[str]]:
+    (folder / "specs.tltl").write_text(SPECS, encoding="utf-8")
+    program = f"import signal; signal.signal(signal.{ignoring}, signal.SIG_IGN)\n{STOPPED}" if ignoring else STOPPED
+    command = [sys.executable, "-c", program, "compile", "specs.tltl", "-o", "out"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TLTLC_CACHE_DIR": ""}
+    with subprocess.Popen(
+        command, cwd=folder, env=environment, stdin=-1, stdout=-1, stderr=subprocess.STDOUT, text=True
+    ) as running:
+        try:
+            assert running.stdout is not None
+            assert running.stdout.readline() == "renames\n"
+            yield running
+        finally:
+            running.kill()
+
+
+def temporary(folder: Path) -> list[str]:
+    return sorted(path.name for path in (folder / "out").iterdir() if path.name.startswith("."))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_command_in_order(number: signal.Signals, tmp_path: Path) -> None:
+    with stopped_before_renaming(tmp_path) as running:
+        assert len(temporary(tmp_path)) == FILES + 1
+        running.send_signal(number)
+        out, _ = running.communicate(timeout=60)
+    assert (running.returncode, out) == (128 + number, "")
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_a_signal_that_is_ignored_stays_ignored(tmp_path: Path) -> None:
+    with stopped_before_renaming(tmp_path, ignoring="SIGHUP") as running:
+        running.send_signal(signal.SIGHUP)
+        running.communicate("go on\n", timeout=60)
+    assert running.returncode == 0
+    assert (len(list((tmp_path / "out").iterdir())), temporary(tmp_path)) == (FILES, [])
+
+
+def test_the_next_write_removes_what_a_killed_process_has_left(tmp_path: Path) -> None:
+    with stopped_before_renaming(tmp_path) as running:
+        running.kill()
+    assert len(temporary(tmp_path)) == FILES + 1
+    write_files(tmp_path / "out", {"other": "text"})
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["other"]
+
+
+def test_a_living_process_keeps_its_temporary_files(tmp_path: Path) -> None:
+    with stopped_before_renaming(tmp_path) as running:
+        before = temporary(tmp_path)
+        write_files(tmp_path / "out", {"other": "text"})
+        assert temporary(tmp_path) == before
+        running.communicate("go on\n", timeout=60)
+    assert running.returncode == 0
+    assert (len(list((tmp_path / "out").iterdir())), temporary(tmp_path)) == (FILES + 1, [])
+
+
+def test_two_writers_of_one_process_leave_each_other_alone(tmp_path: Path) -> None:
+    with temporaries() as one:
+        kept = one.path(tmp_path / "a")
+        kept.write_text("one")
+        write_files(tmp_path, {"b": "two"})
+        assert kept.read_text() == "one"
+    assert [path.name for path in tmp_path.iterdir()] == ["b"]
+
+
+BEGINNING = ".tltlc-1-0123456789abcdef"
+
+
+def test_only_regular_files_with_names_of_our_own_are_removed(tmp_path: Path) -> None:
+    folder, elsewhere = tmp_path / "folder", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.write_text("precious")
+    gone = [f"{BEGINNING}.lock", f"{BEGINNING}-0.tmp", f"{BEGINNING}-17.mp4", f"{BEGINNING}-3"]
+    other_owner = ".tltlc-2-0123456789abcdef"
+    stays = [f"{BEGINNING}-x.tmp", f"{BEGINNING}-1.tmp.bak", f"{BEGINNING}0-1.tmp", f"a{BEGINNING}-1.tmp"]
+    # A temporary file without a lock file: nobody knows whether its owner is gone.
+    stays += [f"{other_owner}-0.tmp", ".tltlc-3-0123456789ABCDEF.lock", ".tltlc-3.lock", ".tltlc-12-0.tmp"]
+    for name in (*gone, *stays):
+        (folder / name).write_text("text")
+    (folder / f"{BEGINNING}-8.tmp").symlink_to(elsewhere)
+    (folder / f"{BEGINNING}-9.tmp").mkdir()
+    # Lock files that are none.
+    (folder / ".tltlc-4-0123456789abcdef.lock").symlink_to(elsewhere)
+    (folder / ".tltlc-4-0123456789abcdef-0.tmp").write_text("text")
+    os.mkfifo(folder / ".tltlc-5-0123456789abcdef.lock")
+    (folder / ".tltlc-6-0123456789abcdef.lock").mkdir()
+    before = {path.name for path in folder.iterdir()}
+    remove_abandoned(folder)
+    assert {path.name for path in folder.iterdir()} == before - set(gone)
+    assert elsewhere.read_text() == "precious"
+
+
+def test_a_file_system_without_locks_is_written_to_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import fcntl
+
+    def none(*_: object) -> None:
+        raise OSError(95, "Operation not supported")
+
+    monkeypatch.setattr(fcntl, "flock", none)
+    (tmp_path / f"{BEGINNING}.lock").touch()
+    write_files(tmp_path, {"a": "text"})
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"{BEGINNING}.lock", "a"]
+
+
+def test_a_lock_file_that_is_taken_away_is_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another process may take a lock file for an abandoned one before it is locked."""
+    from tltlc import temporary as module
+
+    attempts = []
+
+    def taken_once(path: Path, file: object) -> bool:
+        attempts.append(path)
+        if len(attempts) == 1:
+            path.unlink()
+        return path.exists()
+
+    monkeypatch.setattr(module, "_is_there", taken_once)
+    write_files(tmp_path, {"a": "text"})
+    assert len(set(attempts)) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]

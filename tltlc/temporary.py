@@ -1,0 +1,146 @@
+"""Temporary files beside the files that they are to become; those of killed processes are removed later.
+
+A process that writes into a folder creates a lock file there, ``.tltlc-PID-TOKEN.lock``, and holds a lock on it for as
+long as it has temporary files ``.tltlc-PID-TOKEN-NUMBER.ENDING`` there. The system releases the lock when the process
+ends, even if it is killed. So whoever gets the lock knows that the owner is gone, and may remove its files.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO, Final
+
+from tltlc.locking import try_lock
+
+_LOCK: Final = re.compile(r"(\.tltlc-[0-9]{1,20}-[0-9a-f]{16})\.lock")
+_ATTEMPTS: Final = 100
+"""To get a lock file before another process that cleans up removes it; each failure takes such a process."""
+
+
+class Temporaries:
+    """Temporary files in several folders, until :meth:`close` removes those that still have their temporary names."""
+
+    def __init__(self) -> None:
+        self._owned: dict[Path, tuple[str, IO[bytes] | None]] = {}
+        """By folder: how names of temporary files begin there, and the lock file."""
+        self._made: list[Path] = []
+
+    def path(self, place: Path, ending: str = ".tmp") -> Path:
+        """A path for a new temporary file in the folder of ``place``.
+
+        Raises:
+            OSError: nothing can be written into that folder.
+        """
+        folder = place.parent
+        if folder not in self._owned:
+            remove_abandoned(folder)
+            self._owned[folder] = _lock_file(folder)
+        beginning, _ = self._owned[folder]
+        self._made.append(folder / f"{beginning}-{len(self._made)}{ending}")
+        return self._made[-1]
+
+    def close(self) -> None:
+        """Remove what is left, the lock files last: files without a lock file would stay for ever."""
+        for path in self._made:
+            with suppress(OSError):
+                path.unlink(missing_ok=True)
+        for folder, (beginning, lock) in self._owned.items():
+            if lock is not None:
+                _remove_lock(folder / f"{beginning}.lock", lock)
+        self._made.clear()
+        self._owned.clear()
+
+
+@contextmanager
+def temporaries() -> Iterator[Temporaries]:
+    """Within, there are temporary files; at the end, those that were not renamed are removed."""
+    made = Temporaries()
+    try:
+        yield made
+    finally:
+        made.close()
+
+
+def remove_abandoned(folder: Path) -> None:
+    """Remove the temporary files in a folder whose owners are gone; what cannot be removed stays.
+
+    Only regular files with names of our own are touched, and no link is followed.
+    """
+    with suppress(OSError):
+        names = [entry.name for entry in os.scandir(folder) if entry.name.startswith(".tltlc-")]
+        for found in filter(None, map(_LOCK.fullmatch, names)):
+            with suppress(OSError):
+                _remove_of(folder, found[1], names)
+
+
+def _remove_of(folder: Path, beginning: str, names: list[str]) -> None:
+    lock = folder / f"{beginning}.lock"
+    file = _open_lock(lock)
+    if file is None:
+        return
+    if not try_lock(file):
+        file.close()
+        return
+    try:
+        for name in names:
+            if re.fullmatch(rf"{re.escape(beginning)}-[0-9]+(\.[A-Za-z0-9]+)?", name) and _is_file(folder / name):
+                (folder / name).unlink(missing_ok=True)
+    except BaseException:
+        file.close()
+        raise
+    _remove_lock(lock, file)
+
+
+def _open_lock(path: Path) -> IO[bytes] | None:
+    """The lock file of another process, opened; None if it is a link, a pipe, or anything else but a file."""
+    if not _is_file(path):
+        return None
+    flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+    file = os.fdopen(os.open(path, flags), "r+b")
+    if stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+        return file
+    file.close()
+    return None
+
+
+def _is_file(path: Path) -> bool:
+    return stat.S_ISREG(path.lstat().st_mode)
+
+
+def _lock_file(folder: Path) -> tuple[str, IO[bytes] | None]:
+    """How names of temporary files are to begin in a folder, and the lock file, None where there are no locks."""
+    for _ in range(_ATTEMPTS):
+        beginning = f".tltlc-{os.getpid()}-{os.urandom(8).hex()}"
+        path = folder / f"{beginning}.lock"
+        file = path.open("xb")
+        try:
+            locked = try_lock(file)
+        except OSError:
+            _remove_lock(path, file)
+            return beginning, None
+        # Until it is locked, another process may take it for one of an owner that is gone.
+        if locked and _is_there(path, file):
+            return beginning, file
+        file.close()
+    return beginning, None
+
+
+def _is_there(path: Path, file: IO[bytes]) -> bool:
+    try:
+        return os.path.samestat(path.lstat(), os.fstat(file.fileno()))
+    except FileNotFoundError:
+        return False
+
+
+def _remove_lock(path: Path, file: IO[bytes]) -> None:
+    """Remove a lock file that this process holds.  Windows removes only files that are closed."""
+    if os.name == "nt":
+        file.close()
+    with suppress(OSError):
+        path.unlink(missing_ok=True)
+    file.close()
