@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tltlc.cli.paths import OutputPath
+
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.backends import Files
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
     from tltlc.project import Project
 
 output_option = click.option(
-    "--output", "-o", "folder", metavar="DIR", type=click.Path(path_type=Path), default=".", help="Write here."
+    "--output", "-o", "folder", metavar="DIR", type=OutputPath("folder"), default=".", help="Write here."
 )
 
 target_option = click.option(

@@ -21,6 +21,7 @@ from tltl_runtime.commands.options import output_folder, seed_option
 from tltl_runtime.commands.workers import WorkersType
 from tltl_runtime.commands.writable import check_writable
 from tltl_runtime.texts import listed
+from tltlc.cli.paths import OutputPath, is_stdout
 from tltlc.cli.report import Report
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ Examples:
     help="Processes that play (0: one a core), or those of a Ray cluster.",
 )
 @click.option(
-    "--json", "json_file", metavar="FILE", type=click.Path(path_type=Path, allow_dash=True, dir_okay=False),
+    "--json", "json_file", metavar="FILE", type=OutputPath("file", stdout=True, checked=True),
     help="Write the report as JSON, too; `-` prints it in place of the text.",
 )  # fmt: skip
 @output_folder("Write recordings, their plans, a picture of all ways and the report to this folder.")
@@ -123,7 +124,7 @@ def command(
         again = _command(policy, level, spec, seed)
         files = EvaluationFiles(setup, path, sha256, first, again, folder, json_file)
         # The folder, which is there by now, may be that of the report, too.
-        check_writable({"--json": None if str(json_file) == "-" else json_file})
+        check_writable({"--json": None if is_stdout(json_file) else json_file})
         tasks = [Task(index, sampled) for sampled in (True, False) for index in range(first, first + episodes)]
         try:
             with closing(results(setup, tasks, workers, _waiting)) as playing:
@@ -185,7 +186,7 @@ def _tell(files: EvaluationFiles, json_file: Path | None, folder: Path | None, w
         counts = " and ".join(f"{count} of {wanted} {name}" for name, count in played.items())
         click.echo(f"stopped: {counts} episodes were played", err=True)
     text = json.dumps(files.document(complete), indent=2, ensure_ascii=False) + "\n"
-    if json_file is None or str(json_file) != "-":
+    if not is_stdout(json_file):
         click.echo(files.text(), nl=False)
     else:
         click.echo(text, nl=False)

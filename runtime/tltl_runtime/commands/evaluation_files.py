@@ -22,6 +22,7 @@ from tltl_runtime.stealth.levels.made_for import shown
 from tltl_runtime.stealth.pictures.plan import draw_episode
 from tltl_runtime.stealth.pictures.trajectories import draw_trajectories
 from tltl_runtime.stealth.recording import writable_folder
+from tltlc.cli.paths import is_stdout
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.writing import write_file, write_files
 
@@ -53,7 +54,7 @@ class EvaluationFiles:
     ) -> None:
         self._setup, self._path, self._sha256, self._first, self._folder = setup, path, sha256, first, folder
         self._command = command
-        self._json = None if str(json_file) == "-" else json_file
+        self._json = None if is_stdout(json_file) else json_file
         self._level = load_level(setup.level, setup.variant)
         self._played: dict[bool, list[Played]] = {True: [], False: []}
         self._trajectories: dict[bool, list[Trajectory]] = {True: [], False: []}

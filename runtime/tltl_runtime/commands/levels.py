@@ -22,6 +22,7 @@ from tltl_runtime.stealth.supply.supply import check_supply, given_params, used_
 from tltlc.automaton.fspa import Fspa
 from tltlc.cli.exits import CLEAN, status_of
 from tltlc.cli.inputs import Input, open_input
+from tltlc.cli.paths import OutputPath
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -33,7 +34,7 @@ from tltlc.writing import write_file
 @click.option(
     "--plan",
     metavar="FILE.png",
-    type=click.Path(path_type=Path),
+    type=OutputPath("file"),
     help="Draw the level from above, red where nobody can stand (for one level and variant).",
 )
 def command(

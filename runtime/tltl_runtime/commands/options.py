@@ -9,6 +9,8 @@ from typing import Any, Final, TypeVar
 
 import click
 
+from tltlc.cli.paths import OutputPath
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 _OUTPUT: Final = ("--output", "--out", "-o")
@@ -27,13 +29,11 @@ class FiniteRange(click.FloatRange):
 
 def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:
     """``-o DIR``, which the command takes as ``folder``."""
-    path = click.Path(path_type=Path, file_okay=False)
     return click.option(
         *_OUTPUT,
         "folder",
         metavar="DIR",
-        type=path,
-        callback=_no_dash("a folder"),
+        type=OutputPath("folder", checked=True),
         default=default,
         show_default=default is not None,
         help=about,
@@ -42,19 +42,7 @@ def output_folder(about: str, default: Path | None = None) -> Callable[[Function
 
 def output_file(metavar: str, about: str) -> Callable[[Function], Function]:
     """``-o FILE``, which the command takes as ``path``."""
-    path = click.Path(path_type=Path, dir_okay=False)
-    return click.option(*_OUTPUT, "path", metavar=metavar, type=path, callback=_no_dash("a file"), help=about)
-
-
-def _no_dash(needed: str) -> Callable[[click.Context, click.Parameter, Path | None], Path | None]:
-    """Refuses `-`, by which other options mean standard output."""
-
-    def named(_: click.Context, parameter: click.Parameter, path: Path | None) -> Path | None:
-        if path == Path("-"):
-            raise click.BadParameter(f"{needed} is needed, and `-` is none", param=parameter)
-        return path
-
-    return named
+    return click.option(*_OUTPUT, "path", metavar=metavar, type=OutputPath("file", checked=True), help=about)
 
 
 def seed_option(about: str) -> Callable[[Function], Function]:

@@ -17,6 +17,7 @@ from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.stealth.pictures.camera import View
 from tltl_runtime.stealth.pictures.hud import KEYS
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltlc.cli.paths import OutputPath
 
 
 @click.command(
@@ -43,7 +44,7 @@ Examples:
     "-o",
     "out",
     metavar="PLACE",
-    type=click.Path(path_type=Path),
+    type=OutputPath("place"),
     help=f"Where to record: NAME{SUFFIX}, or a folder, made where it is missing.  Older recordings stay.",
 )
 @keyboard_options

@@ -16,6 +16,7 @@ from tltl_runtime.commands.options import FiniteRange, Function, output_folder
 from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import is_output
+from tltlc.cli.paths import OutputPath
 from tltlc.cli.report import Report
 
 _MINUTES: Final = 10.0
@@ -23,13 +24,9 @@ _MINUTES: Final = 10.0
 _REPORTS: Final = {"json": "the JSON", "junit": "the XML", "html": "the page"}
 
 
-def _file(*, dash: bool = False) -> click.Path:
-    return click.Path(path_type=Path, allow_dash=dash, dir_okay=False)
-
-
 def _report(name: str, about: str) -> Callable[[Function], Function]:
     about = f"{about}; `-` prints it in place of the text."
-    return click.option(f"--{name}", metavar="FILE", type=_file(dash=True), help=about)
+    return click.option(f"--{name}", metavar="FILE", type=OutputPath("file", stdout=True, checked=True), help=about)
 
 
 @click.command(
@@ -58,7 +55,7 @@ Examples:
 @click.option(
     "--baseline",
     metavar="FILE",
-    type=_file(),
+    type=click.Path(path_type=Path, dir_okay=False),
     help="What they are judged against (default: SUITE.baseline.json, beside the suite).",
 )
 @click.option("--fresh", is_flag=True, help="Play cases again of which nothing has changed since they were played.")

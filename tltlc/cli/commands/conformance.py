@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from tltlc.cli.paths import OutputPath
+
 
 @click.command(
     epilog="""\b
@@ -20,7 +22,7 @@ Examples:
     "-o",
     "folder",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=OutputPath("folder"),
     default="conformance",
     show_default=True,
     help="Write here.",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from tltlc.cli import exits
+from tltlc.cli.paths import OutputPath, is_stdout
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings, check_libraries, compile_settings, source_options
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -79,7 +80,11 @@ Examples:
     help="Search for so many seconds at most, and propose the best so far; so does Ctrl-C.",
 )
 @click.option(
-    "--output", "-o", metavar="FILE.tltl", type=click.Path(path_type=Path), help="Write the proposals as a source file."
+    "--output",
+    "-o",
+    metavar="FILE.tltl",
+    type=OutputPath("file", stdout=True),
+    help="Write the proposals as a source file; `-` prints it in place of the list.",
 )
 @click.option("--json", "as_json", is_flag=True, help="One JSON document, for programs.")
 @source_options
@@ -113,6 +118,8 @@ def command(
 
     if (*traces, *counterexamples).count(STDIN) > 1:
         raise click.UsageError("standard input can be one trace", click.get_current_context())
+    if as_json and is_stdout(output):
+        raise click.UsageError("--json and `-o -` both print: name a file with -o", click.get_current_context())
     interrupted = False
     with Report(format, results=True) as report:
         options = _compile_options(predicates, settings)
@@ -130,11 +137,10 @@ def command(
         if not proposals:
             report.add((_nothing(evidence, whole=whole),))
         elif output is not None:
-            _write(output, proposals, evidence, search, words, predicates)
-            report.say(f"wrote {output}")
+            _write(output, proposals, evidence, search, words, predicates, report)
         if as_json:
             print(json.dumps(document(proposals, evidence, search, whole=whole), indent=2, ensure_ascii=False))
-        elif proposals:
+        elif proposals and not is_stdout(output):
             print(shown(proposals, evidence, search.bits))
     return exits.interrupted() if interrupted else report.status
 
@@ -261,7 +267,9 @@ def _write(
     search: Search,
     words: Words,
     predicates: str | None,
+    report: Report,
 ) -> None:
+    """Write the proposals as a source file, or print it."""
     from tltlc.files import is_same
     from tltlc.fmt import format_text
     from tltlc.mine.written import declarations, source_text
@@ -274,7 +282,12 @@ def _write(
         is_file = words.library.name == predicates
         imported = _import(predicates, path) if is_file else f"import {predicates}\n"
     preamble = declarations(proposals, words, imported)
-    write_file(path, format_text(source_text(proposals, evidence, search.bits, preamble)))
+    text = format_text(source_text(proposals, evidence, search.bits, preamble))
+    if is_stdout(path):
+        click.echo(text, nl=False)
+    else:
+        write_file(path, text)
+        report.say(f"wrote {path}")
 
 
 def _import(library: str, path: Path) -> str:

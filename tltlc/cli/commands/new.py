@@ -10,6 +10,7 @@ from typing import Final
 import click
 
 from tltlc.cli import plugins
+from tltlc.cli.paths import OutputPath
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
@@ -22,7 +23,7 @@ Examples:
   tltlc play my_vault/vault.toml
 """
 )
-@click.argument("folder", metavar="NAME", type=click.Path(path_type=Path))
+@click.argument("folder", metavar="NAME", type=OutputPath("folder"))
 @click.option(
     "--level",
     metavar="LEVEL",

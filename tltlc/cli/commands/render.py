@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tltlc.cli.paths import OutputPath, is_stdout
 from tltlc.cli.settings import Settings, source_options
 
 if TYPE_CHECKING:
@@ -37,8 +38,8 @@ Examples:
     "-o",
     "path",
     metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Write here, not on standard output.",
+    type=OutputPath("file", stdout=True),
+    help="Write here, not on standard output (`-`).",
 )
 @click.option(
     "--target",
@@ -70,6 +71,7 @@ def command(
     from tltlc.cli.report import Report
     from tltlc.writing import write_file
 
+    path = None if is_stdout(path) else path
     kind = target or _kind(path)
     if path is None and kind == "png" and sys.stdout.isatty():
         raise click.UsageError("a PNG is nothing for a terminal: name a file with -o")

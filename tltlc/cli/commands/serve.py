@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from tltlc.cli import exits
+from tltlc.cli.paths import OutputPath
 
 
 @click.command(
@@ -28,7 +29,7 @@ of its tltl.toml.
     "--static",
     "folder",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=OutputPath("folder"),
     help="Write the page there, with the compiler in it, and serve nothing.",
 )
 @click.option(

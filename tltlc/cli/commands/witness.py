@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from tltlc.cli.paths import OutputPath
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings, source_options, work_of
 
@@ -30,7 +31,7 @@ Examples:
 @click.option("--cover", is_flag=True, help="Traces that together take every edge that can be taken.")
 @click.option("--as", "kind", type=click.Choice(("test", "csv")), default="test", help="What to write (default: test).")
 @click.option(
-    "--output", "-o", "folder", metavar="DIR", type=click.Path(path_type=Path), help="Write files here, one per trace."
+    "--output", "-o", "folder", metavar="DIR", type=OutputPath("folder"), help="Write files here, one per trace."
 )
 @source_options
 def command(
