@@ -25,7 +25,8 @@ from tltlc.rabin.lasso import holds_on_lasso
 from tltlc.source import SourceFile
 from tltlc.witness import blocks, written
 from tltlc.witness.cover import Cover, cover
-from tltlc.witness.moves import Moves
+from tltlc.witness.moves import Move, Moves
+from tltlc.witness.nearest import Nearest
 from tltlc.witness.traces import Witness, accepting, rejecting
 
 ROOT = Path(__file__).parents[2]
@@ -177,6 +178,76 @@ def check_csv(fspa: Fspa, trace: Witness) -> None:
         assert (one.state, one.verdict, one.accepting) == (other.state, other.verdict, other.accepting)
         assert {atom.name for atom, value in zip(fspa.atoms, by_signals.values, strict=True) if value > 0} == letter
     assert not by_signals.notices
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    formulas(atoms=("a", "b", "c"), max_leaves=6),
+    st.sampled_from(["", "exclusive a, b\n"]),
+    st.sampled_from(["", "semantics infinite"]),
+)
+def test_a_cover_goes_the_ways_of_a_search_from_each_state(formula: Formula, exclusive: str, how: str) -> None:
+    text = f"{SIGNALS}signal c: bool\n{exclusive}spec s {{ {how}  require {ascii_text(formula)} }}"
+    (fspa,) = tltlc.compile_text(text)
+    moves = Moves(fspa)
+    assert [trace.moves for trace in cover(moves).traces] == searched_cover(moves)
+
+
+def searched_cover(moves: Moves) -> list[tuple[Move, ...]]:
+    """The traces of a cover by a breadth-first search for each way: slow and plain."""
+    left, traces = set(range(len(moves.fspa.edges))), []
+    while True:
+        trace: list[Move] = []
+        while way := moves.way(moves.fspa.edges[trace[-1].edge].target if trace else 0, left.__contains__):
+            trace += way
+            left.difference_update(move.edge for move in way)
+        if not trace:
+            return sorted(traces, key=len)
+        traces.append(tuple(trace))
+
+
+def edges_leaving(fspa: Fspa) -> list[list[tuple[int, int]]]:
+    leaving: list[list[tuple[int, int]]] = [[] for _ in fspa.states]
+    for index, edge in enumerate(fspa.edges):
+        leaving[edge.source].append((index, edge.target))
+    return leaving
+
+
+ANY_ORDER = "F a & F b & F c & F d & F e & F f & F g"
+
+
+@pytest.mark.parametrize("spec", ["F[0,60] a", "F[0,240] a", "G(a -> F[0,120] b)", ANY_ORDER, f"{ANY_ORDER} & F h"])
+def test_a_cover_looks_at_few_edges_for_each_step_of_its_traces(spec: str) -> None:
+    signals = "".join(f"signal {name}: bool  " for name in "abcdefgh")
+    (fspa,) = tltlc.compile_text(f"{signals} spec s = {spec}")
+    nearest, state, steps = Nearest(edges_leaving(fspa)), 0, 0
+    while way := nearest.take(state) or (nearest.take(0) if state else ()):
+        steps += len(way)
+        state = fspa.edges[way[-1]].target
+    # A search from each state looks at each edge of most states again, for each trace.
+    assert nearest.looks <= 5 * (steps + len(fspa.edges))
+
+
+@pytest.mark.parametrize("bound", [20, 80])
+def test_the_tests_of_a_cover_run_and_say_what_is_new_once(bound: int) -> None:
+    (fspa,) = tltlc.compile_text(f"signal a: bool  spec s = F[0,{bound}] a")
+    found = cover(Moves(fspa))
+    together, runs = blocks.Blocks(fspa), []
+    for trace in found.traces:
+        text = written.as_test(fspa, trace, "t", together)
+        assert text == written.as_test(fspa, trace, "t")
+        assert len(text.splitlines()) <= 10
+        runs.append(together.runs)
+    assert sum(len(trace.moves) for trace in found.traces) > bound**2 / 2
+    # Each trace of a bound begins as the one before it does.
+    assert runs[-1] <= 4 * bound
+
+
+def test_the_news_of_a_cover_are_its_edges_once_each() -> None:
+    (fspa,) = tltlc.compile_text("signal a: bool  signal b: bool  spec s = G(a -> F[0,3] b)")
+    found = cover(Moves(fspa))
+    news = [trace.moves[number - 1].edge for trace in found.traces for number in trace.news]
+    assert sorted(news) == list(range(len(fspa.edges)))
 
 
 def test_an_edge_of_atoms_that_exclude_each_other_is_told_and_left_out() -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+
 from tltlc.record import record
 from tltlc.witness.moves import Move, Moves
+from tltlc.witness.nearest import Nearest
 from tltlc.witness.samples import Obstacle
 from tltlc.witness.traces import Witness
 
@@ -29,25 +32,35 @@ def cover(moves: Moves) -> Cover:
 
     A trace ends where no such edge is ahead.  Over infinite traces these are the beginnings of traces.
     """
-    left = {edge for edge in range(len(moves.fspa.edges)) if moves.move(edge) is not None}
-    traces: list[Witness] = []
-    while (trace := _trace(moves, left)) is not None:
-        traces.append(Witness("cover", trace))
-    traces.sort(key=lambda trace: len(trace.moves))
-    untaken = [
-        Untaken(edge, moves.obstacles.get(edge, ()))
-        for edge in range(len(moves.fspa.edges))
-        if edge in left or moves.move(edge) is None
-    ]
-    return Cover(tuple(traces), tuple(untaken))
+    edges = moves.fspa.edges
+    nearest = Nearest([[(edge, edges[edge].target) for edge in there if moves.move(edge)] for there in moves.leaving])
+    traces: list[tuple[Move, ...]] = []
+    while trace := tuple(_trace(moves, nearest)):
+        traces.append(trace)
+    traces.sort(key=len)
+    taken = {move.edge for trace in traces for move in trace}
+    untaken = [Untaken(edge, moves.obstacles.get(edge, ())) for edge in range(len(edges)) if edge not in taken]
+    return Cover(tuple(_with_news(traces)), tuple(untaken))
 
 
-def _trace(moves: Moves, left: set[int]) -> tuple[Move, ...] | None:
-    """A trace from the initial state, whose edges are taken from those that are left; None where there is none."""
-    found: list[Move] = []
+def _trace(moves: Moves, nearest: Nearest) -> Iterator[Move]:
+    """A trace from the initial state that takes edges which no trace has taken; without moves where there is none."""
     state = 0
-    while left and (way := moves.way(state, left.__contains__)) is not None:
-        found += way
-        left.difference_update(move.edge for move in way)
-        state = moves.fspa.edges[way[-1].edge].target
-    return tuple(found) or None
+    while way := nearest.take(state):
+        for edge in way:
+            move = moves.move(edge)
+            assert move is not None
+            yield move
+        state = moves.fspa.edges[way[-1]].target
+
+
+def _with_news(traces: Iterable[tuple[Move, ...]]) -> Iterator[Witness]:
+    """The traces as witnesses, each with the steps that are the first to take their edge."""
+    seen: set[int] = set()
+    for trace in traces:
+        news = []
+        for number, move in enumerate(trace, start=1):
+            if move.edge not in seen:
+                seen.add(move.edge)
+                news.append(number)
+        yield Witness("cover", trace, news=tuple(news))

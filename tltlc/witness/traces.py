@@ -18,11 +18,15 @@ Kind = Literal["accepting", "rejecting", "cover"]
 
 @record
 class Witness:
-    """A trace: its moves, of which those from ``cycle`` on repeat for ever; None over finite traces."""
+    """A trace: its moves, of which those from ``cycle`` on repeat for ever; None over finite traces.
+
+    ``news`` are the steps of a cover's trace, from 1, whose edge no step before them takes, in this trace or another.
+    """
 
     kind: Kind
     moves: tuple[Move, ...]
     cycle: int | None = None
+    news: tuple[int, ...] = ()
 
     @property
     def letters(self) -> tuple[Letter, ...]:

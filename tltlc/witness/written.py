@@ -5,34 +5,37 @@ from __future__ import annotations
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace
-from tltlc.witness.blocks import expectations, test_block, values
+from tltlc.witness.blocks import Blocks
 from tltlc.witness.samples import csv_text
 from tltlc.witness.traces import Witness
 
 
-def as_test(fspa: Fspa, witness: Witness, title: str) -> str:
-    """A ``test`` block that passes: what is said at the end, and where a cover is asked for, at each change of state.
+def as_test(fspa: Fspa, witness: Witness, title: str, blocks: Blocks | None = None) -> str:
+    """A ``test`` block that passes: what is said at the end, and in a cover's trace behind each new change of state.
+
+    ``blocks`` writes several of one automaton, in fewer steps than apart.
 
     Raises:
         ValueError: the spec has no atoms.
     """
-    monitor = Monitor(fspa)
-    _check(fspa, witness, [monitor.step_atoms(values(fspa, letter)).state for letter in witness.letters])
+    blocks = Blocks(fspa) if blocks is None else blocks
+    letters = witness.letters
+    _check(fspa, witness, [step.state for step in blocks.results(letters)])
     edges = [fspa.edges[move.edge] for move in witness.moves]
-    steps = [
-        number
-        for number, edge in enumerate(edges, start=1)
-        if number == len(edges) or (witness.kind == "cover" and edge.source != edge.target)
-    ]
-    block = test_block(title, fspa, witness.letters, expectations(fspa, witness.letters, steps))
+    changes = [number for number in witness.news if edges[number - 1].source != edges[number - 1].target]
+    block = blocks.block(title, letters, blocks.expectations(letters, {*changes, len(letters)}))
     said = cycle_text(witness)
     return f"// {said[0].upper()}{said[1:]}.\n{block}" if said else block
 
 
-def as_csv(fspa: Fspa, witness: Witness) -> str:
-    """A trace of samples, the cycle of an infinite one once, that takes the edges which it should."""
+def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
+    """A trace of samples, the cycle of an infinite one once, that takes the edges which it should.
+
+    ``monitor`` runs several traces of one automaton; making one takes a look at every edge.
+    """
     text = csv_text(fspa, witness.samples)
-    monitor = Monitor(fspa)
+    monitor = Monitor(fspa) if monitor is None else monitor
+    monitor.reset()
     trace = read_trace(text.encode().splitlines(keepends=True), "the witness", fspa.signals)
     _check(fspa, witness, [monitor.step(sample).state for sample in trace])
     return text

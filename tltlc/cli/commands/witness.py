@@ -106,22 +106,24 @@ def _traces(
 
 def _written(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], report: Report) -> dict[str, str]:
     """The texts of the traces, by the names of their files."""
+    from tltlc.monitor import Monitor
     from tltlc.witness import remarks, written
+    from tltlc.witness.blocks import Blocks
 
     if traces and not fspa.atoms:
         report.add([remarks.no_atoms(fspa)])
         return {}
     covers = sum(trace.kind == "cover" for trace in traces)
     found: dict[str, str] = {}
-    number = 0
+    number, blocks, monitor = 0, Blocks(fspa), Monitor(fspa)
     for trace in traces:
         number += trace.kind == "cover"
         which = f"cover_{number}" if trace.kind == "cover" else trace.kind
         if kind == "csv":
-            found[f"{fspa.name}_{which}.csv"] = written.as_csv(fspa, trace)
+            found[f"{fspa.name}_{which}.csv"] = written.as_csv(fspa, trace, monitor)
             if trace.cycle is not None:
                 report.say(f"{fspa.name}, {trace.kind}: {written.cycle_text(trace)}")
         else:
             title = remarks.title(fspa, trace, number, covers)
-            found[f"{fspa.name}_{which}.txt"] = written.as_test(fspa, trace, title)
+            found[f"{fspa.name}_{which}.txt"] = written.as_test(fspa, trace, title, blocks)
     return found
