@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Final, Union
@@ -27,6 +27,45 @@ _noted: Final[list[dict[str, Stamp]]] = []
 
 _unsaved: Final[ContextVar[Mapping[str, str]]] = ContextVar("unsaved", default=EMPTY)
 """The texts that an editor has not saved, by absolute paths."""
+
+_folders: Final[ContextVar[frozenset[str] | None]] = ContextVar("folders", default=None)
+"""The folders that may be read, each as it is written and with its links followed; None where every file may be."""
+
+
+@contextmanager
+def confined(folders: Iterable[str | os.PathLike[str]]) -> Iterator[None]:
+    """Within, only these folders and what is below them can be read; :func:`may_read` says how links count."""
+    ways = (os.path.abspath, os.path.realpath)
+    token = _folders.set(frozenset(os.path.normcase(way(folder)) for folder in folders for way in ways))
+    try:
+        yield
+    finally:
+        _folders.reset(token)
+
+
+def may_read(path: str | os.PathLike[str]) -> bool:
+    """Whether a path is inside the folders of :func:`confined`: as it is written, and after links are followed."""
+    folders = _folders.get()
+    if folders is None:
+        return True
+    try:
+        # The written path comes first, so that nothing outside is even looked at.
+        return _is_inside(os.path.abspath(path), folders) and _is_inside(os.path.realpath(path), folders)  # noqa: PTH100
+    except (OSError, ValueError):
+        return False
+
+
+def _is_inside(path: str, folders: Iterable[str]) -> bool:
+    own = os.path.normcase(path)
+    return any(own == folder or own.startswith(os.path.join(folder, "")) for folder in folders)  # noqa: PTH118
+
+
+def outside(name: str, labels: tuple[Label, ...] = ()) -> Diagnostic:
+    """TLT0777: a file or folder is outside of those that may be read."""
+    title = f"`{name}` is outside the folder of the playground, so it is not read"
+    return Diagnostic(
+        "TLT0777", title, labels, "move it into that folder, or start `tltlc serve` in a folder above both"
+    )
 
 
 @contextmanager
@@ -79,6 +118,8 @@ def stamp(path: str) -> Stamp:
 
 def exists(path: str | os.PathLike[str]) -> bool:
     """Whether something is there, as far as the system tells: where it allows no such name or look, nothing is."""
+    if not may_read(path):
+        return False
     note(path)
     # pathlib's raises there, before Python 3.14.
     return os.path.exists(path)  # noqa: PTH110
@@ -86,12 +127,16 @@ def exists(path: str | os.PathLike[str]) -> bool:
 
 def is_file(path: str | os.PathLike[str]) -> bool:
     """Whether a file is there, as :func:`exists` has it; devices and pipes are none."""
+    if not may_read(path):
+        return False
     note(path)
     return os.path.isfile(path) or _unsaved_text(path) is not None  # noqa: PTH113
 
 
 def is_dir(path: str | os.PathLike[str]) -> bool:
     """Whether a folder is there, as :func:`exists` has it."""
+    if not may_read(path):
+        return False
     note(path)
     return os.path.isdir(path)  # noqa: PTH112
 
@@ -109,7 +154,7 @@ def read_source(
 ) -> SourceFile:
     """The text of a file; ``name`` is what messages call it, by default its path.
 
-    Errors (:class:`TltlError`): TLT0001 where the system cannot read it, and those of :func:`decode`.
+    Errors (:class:`TltlError`): those of :func:`read_bytes` and of :func:`decode`.
     """
     shown = name if name is not None else os.fspath(path)
     return decode(read_bytes(path, shown, max_bytes), shown, max_bytes=max_bytes)
@@ -118,8 +163,10 @@ def read_source(
 def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes:
     """The bytes of a file, which messages call ``name``; of a larger one the first ``max_bytes`` and one more.
 
-    Error (:class:`TltlError`): TLT0001 where the system cannot read it.
+    Errors (:class:`TltlError`): TLT0001 where the system cannot read it, TLT0777 where :func:`confined` forbids it.
     """
+    if not may_read(path):
+        raise TltlError([outside(name)])
     note(path)
     text = _unsaved_text(path)
     if text is not None:

@@ -29,6 +29,29 @@ class Limit:
     unpacked: int | None = None
 
 
+@record
+class Connections:
+    """How many connections a server keeps open, and how long each may take over each part, in seconds.
+
+    ``idle_s`` is the time between requests, ``request_s`` that of a whole request from its first byte to its last,
+    ``write_s`` that in which an answer must be taken, ``linger_s`` that in which the other side hangs up.
+    """
+
+    most: int
+    idle_s: float
+    request_s: float
+    write_s: float
+    linger_s: float
+
+
+@record
+class Process:
+    """What a process may use: ``memory`` in bytes, ``work_s`` in seconds of processor time."""
+
+    memory: int
+    work_s: int
+
+
 SOURCE: Final = Limit(size=1 << 20)
 """A source text; the grammar has more limits of its own, on words and on nesting."""
 
@@ -43,6 +66,18 @@ REPORT: Final = Limit(size=1 << 27, depth=100, values=10_000_000)
 
 MESSAGE: Final = Limit(size=1 << 22, depth=100, values=1_000_000)
 """A request to the playground or to the language server."""
+
+ANSWER: Final = Limit(size=1 << 25)
+"""An answer of the playground; a browser takes far more, but nobody looks at it."""
+
+REQUEST_LINE: Final = Limit(size=1 << 13)
+"""The first line of a request to the playground, with its line end."""
+
+REQUEST_HEAD: Final = Limit(size=1 << 15, values=100)
+"""The first line and the header lines of a request to the playground; ``values`` counts lines."""
+
+MESSAGE_HEAD: Final = Limit(size=1 << 13)
+"""A header line of the language server's protocol."""
 
 TRACE_LINE: Final = Limit(size=1 << 20, depth=32, values=50_000)
 """A line of a trace; the number of lines has no limit, since traces are read as a stream."""
@@ -63,6 +98,12 @@ REVISION: Final = Limit(size=1 << 28, values=20_000)
 """The files of a git revision that are read; :data:`REVISION_PATHS` counts all paths that are looked at."""
 
 REVISION_PATHS: Final = 5_000_000
+
+PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
+"""The connections to the playground's server."""
+
+PLAYGROUND_CHILD: Final = Process(memory=2 << 30, work_s=60)
+"""A process that answers one request to the playground."""
 
 WORK: Final[Mapping[str, int]] = {
     "predicate cases": 200_000,

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.files import is_dir, is_file, read_source
+from tltlc.files import is_dir, is_file, may_read, outside, read_source
 from tltlc.record import EMPTY, record, replace
 from tltlc.source import SourceFile, Span
 
@@ -84,7 +84,8 @@ def project_for(path: str) -> Project:
 def read_project(path: Path) -> Project:
     """The contents of a project file.
 
-    Errors: TLT0701 no TOML; else everything that is wrong: TLT0702 an unknown key, TLT0703 a value of the wrong kind.
+    Errors: TLT0701 no TOML; else everything that is wrong: TLT0702 an unknown key, TLT0703 a value of the wrong kind,
+    TLT0777 a library that :func:`tltlc.files.confined` forbids.
     """
     from tltlc.toml_text import parse
 
@@ -106,7 +107,9 @@ def read_project(path: Path) -> Project:
     lint = _lint(table.get("lint", {}), source, wrong)
     folders = {library: path.parent / library for library in table.get("libraries", [])}
     for library, folder in folders.items():
-        if not is_dir(folder):
+        if not may_read(folder):
+            wrong.append(outside(library, _place(source, "libraries")))
+        elif not is_dir(folder):
             wrong.append(_no_folder(source, library))
     if wrong:
         raise TltlError(wrong)

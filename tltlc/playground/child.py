@@ -5,31 +5,53 @@ A compilation cannot be interrupted from within, so that it runs where it can be
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import suppress
 from typing import Final
 
+from tltlc.files import confined
+from tltlc.limits import ANSWER, PLAYGROUND_CHILD
+
 NO_REQUEST: Final = 2
-MOST_MEMORY: Final = 2 << 30
-MOST_TIME: Final = 60
-"""In bytes, and in seconds of work, where the system can hold a process to it: it may outlive the server."""
 
 
 def main() -> None:
     """Load what a compilation needs, then wait for the request; exit status 2 where it is none."""
-    from tltlc.playground.protocol import RequestError, answer
+    from tltlc.playground.protocol import RequestError, answer, gave_up_on_size
 
-    with suppress(ImportError, OSError, ValueError):
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
-        resource.setrlimit(resource.RLIMIT_CPU, (MOST_TIME, MOST_TIME))
+    limit_resources()
     request = sys.stdin.buffer.read()
-    # A child that is no longer wanted is told nothing.
+    # An empty request means that nobody needs this process any more.
     if not request:
         return
     try:
-        answered = answer(request.decode("utf-8"))
+        with confined(readable_folders()):
+            answered = answer(request.decode("utf-8")).encode("utf-8")
     except (RequestError, UnicodeDecodeError):
         sys.exit(NO_REQUEST)
-    sys.stdout.buffer.write(answered.encode("utf-8"))
+    sys.stdout.buffer.write(answered if len(answered) <= ANSWER.size else gave_up_on_size().encode("utf-8"))
+
+
+def limit_resources() -> None:
+    """Limit memory and processor time where the system can: this process may outlive the server."""
+    with suppress(ImportError):
+        import resource
+
+        for name, most in (("RLIMIT_AS", PLAYGROUND_CHILD.memory), ("RLIMIT_CPU", PLAYGROUND_CHILD.work_s)):
+            with suppress(AttributeError, OSError, ValueError):
+                kind = getattr(resource, name)
+                hard = resource.getrlimit(kind)[1]
+                least = most if hard == resource.RLIM_INFINITY else min(most, hard)
+                resource.setrlimit(kind, (least, least))
+
+
+def readable_folders() -> list[str | os.PathLike[str]]:
+    """The folders that a text may import from: the current one, and the libraries of tltlc."""
+    from tltlc.resolve.imports import standard_library
+
+    folders: list[str | os.PathLike[str]] = [standard_library()]
+    # The current folder may have been deleted.
+    with suppress(FileNotFoundError):
+        folders.append(os.getcwd())  # noqa: PTH109
+    return folders

@@ -5,12 +5,14 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from threading import BoundedSemaphore, Lock, Thread
 from time import monotonic
 from typing import Final
 
+from tltlc.limits import ANSWER
 from tltlc.playground.child import NO_REQUEST
-from tltlc.playground.protocol import TOO_LARGE, gave_up
+from tltlc.playground.protocol import TOO_LARGE, gave_up, gave_up_on_size
 
 LIMIT_S: Final = 10.0
 MOST_AT_ONCE: Final = 4
@@ -36,7 +38,7 @@ class Children:
     def answer(self, request: bytes, is_abandoned: Callable[[], bool] = lambda: False) -> str | None:
         """The answer of :func:`tltlc.playground.protocol.answer`, or None for what is no request.
 
-        Raises AbandonedError as soon as nobody waits any more.
+        Raises AbandonedError as soon as nobody waits any more, and OSError where no process can be started.
         """
         if not request:
             return None
@@ -54,7 +56,9 @@ class Children:
             self._room.release()
         if child.returncode == NO_REQUEST:
             return None
-        # What the system ended, it ended for want of memory.
+        if len(said) > ANSWER.size:
+            return gave_up_on_size()
+        # The system ends a process that takes more memory than it may.
         return gave_up(TOO_LARGE) if child.returncode else said.decode("utf-8")
 
     def close(self) -> None:
@@ -80,16 +84,20 @@ class Children:
         _end(child)
         with self._lock:
             self._running.discard(child)
-            if not self._closed:
-                self._ready = self._ready or _started()
+            if not self._closed and self._ready is None:
+                # Where the system has no room for another process now, the next request tries again.
+                with suppress(OSError):
+                    self._ready = _started()
 
 
 def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_abandoned: Callable[[], bool]) -> bytes:
-    """What a child says; raises AbandonedError, and TimeoutExpired after so many seconds."""
+    """What a child answers, at most one byte more than an answer may have.
+
+    Raises AbandonedError, and TimeoutExpired after ``limit_s`` seconds.
+    """
     end = monotonic() + limit_s
-    said: list[bytes] = []
-    # Where `communicate` has a limit of its own and passes it, what a pipe does not hold of the request is never sent.
-    talk = Thread(target=lambda: said.append(child.communicate(request)[0]))
+    answered: list[bytes] = []
+    talk = Thread(target=lambda: answered.append(_exchange(child, request)))
     talk.start()
     try:
         while talk.is_alive():
@@ -101,7 +109,22 @@ def _answer(child: subprocess.Popen[bytes], request: bytes, limit_s: float, is_a
         if talk.is_alive():
             child.kill()
             talk.join()
-    return said[0]
+    return answered[0] if answered else b""
+
+
+def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
+    """Send all of a request, then read the answer: a child reads everything before it writes."""
+    assert child.stdin is not None
+    assert child.stdout is not None
+    # A child that has ended reads nothing; its exit status says why.
+    with suppress(OSError):
+        child.stdin.write(request)
+        child.stdin.close()
+    answered = child.stdout.read(ANSWER.size + 1)
+    if len(answered) > ANSWER.size:
+        child.kill()
+    child.wait()
+    return answered
 
 
 def _check(is_abandoned: Callable[[], bool]) -> None:

@@ -7,6 +7,7 @@ from typing import Any, Final, get_args
 
 from tltlc.backends import Notation
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.limits import ANSWER
 from tltlc.playground.document import diagnostic, view
 from tltlc.playground.start import start
 
@@ -53,6 +54,11 @@ def gave_up(why: str, way_out: str = "make the spec smaller: bounds and large co
     """The answer where nothing can be said of a text: TLT0775, and why."""
     said = Diagnostic("TLT0775", why, help=way_out)
     return _json({"diagnostics": [diagnostic(said)], "more": 0, "specs": [], "tests": [], "spec": None})
+
+
+def gave_up_on_size() -> str:
+    """The answer in place of one that is larger than :data:`tltlc.limits.ANSWER`."""
+    return gave_up(f"the answer is larger than {ANSWER.size >> 20} MiB, and was given up")
 
 
 def _is_letter(letter: Any) -> bool:

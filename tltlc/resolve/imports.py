@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.files import is_file, read_source
+from tltlc.files import is_file, may_read, outside, read_source
 from tltlc.grammar.tree import Import, Module
 from tltlc.record import record, replace
 from tltlc.resolve.options import ResolveOptions
@@ -124,6 +124,7 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     itself = Path(source.name).name
     if declaration.is_path:
         shown = here / target
+        _check_inside(shown, declaration, source)
         if not is_file(shown):
             raise problem(
                 "TLT0010",
@@ -137,11 +138,18 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
         return Path(_normal(shown.absolute())), _shown(shown)
     name = target.replace(".", "/") + ".tltl"
     for folder in folders:
+        _check_inside(folder / name, declaration, source)
         if is_file(folder / name):
             return Path(_normal((folder / name).absolute())), _shown(folder / name)
     known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
     advice = _similar(target, known) or "a library is a file NAME.tltl beside this one or in a --library folder"
     raise problem("TLT0010", f"there is no library `{target}`", source, declaration.target_span, advice=advice)
+
+
+def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
+    """Raise TLT0777 for a path that may not be read, whether there is a file or not: that is not said either."""
+    if not may_read(path):
+        raise ResolutionError(outside(declaration.target, (Label(source, declaration.target_span),)))
 
 
 def _similar(target: str, known: list[str]) -> str | None:
@@ -159,6 +167,8 @@ def _unquoted(target: str, folders: tuple[Path, ...]) -> str | None:
 
 
 def _files(folder: Path) -> list[Path]:
+    if not may_read(folder):
+        return []
     try:
         return sorted(folder.glob("*.tltl"))
     except OSError:
