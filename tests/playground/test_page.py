@@ -50,11 +50,20 @@ def page(browser: Browser, address: str) -> Iterator[Page]:
     yield from opened(browser, address)
 
 
-def opened(browser: Browser, address: str, wrong: list[str] | None = None, **context: Any) -> Iterator[Page]:
-    """A page on which nothing goes wrong, and that asks nobody else; ``wrong`` is the list that it writes to."""
+def opened(
+    browser: Browser, address: str, wrong: list[str] | None = None, link: str = "", **context: Any
+) -> Iterator[Page]:
+    """A page on which nothing goes wrong, and that asks nobody else; ``wrong`` is the list that it writes to.
+
+    ``link`` is a fragment to open in place of that of the address, by a browser that knows the token already.
+    """
     made = browser.new_context(**context)
     try:
         page = made.new_page()
+        base, _, token = address.partition("#token=")
+        if link:
+            page.add_init_script(f"localStorage.setItem('token', '{token}')")
+            address = base + link
         wrong = [] if wrong is None else wrong
         asked: list[str] = []
         page.on("console", lambda message: wrong.append(message.text))
@@ -274,7 +283,7 @@ def test_steps_are_walked_to_both_ends_by_keyboard(page: Page) -> None:
         expect(other).to_have_attribute("aria-disabled", "false")
 
 
-def test_a_link_restores_everything(page: Page, browser: Browser) -> None:
+def test_a_link_restores_everything(page: Page, browser: Browser, address: str) -> None:
     write(page, MENDED + "spec other = F a & G !b // ≤ 🎮\n")
     summary(page, "^It compiles")
     page.get_by_role("button", name="other").click()
@@ -283,14 +292,16 @@ def test_a_link_restores_everything(page: Page, browser: Browser) -> None:
     expect(page.locator("#steps .verdict")).to_have_text(["violated"])
     page.get_by_role("button", name="Copy link").click()
     summary(page, "text is in it")
-    for other in opened(browser, page.url):
+    link = page.url.removeprefix(address.partition("#")[0])
+    assert "token" not in link
+    for other in opened(browser, address, link=link):
         expect(other.locator("#steps .verdict")).to_have_text(["violated"])
         expect(other.locator("#english h2")).to_have_text("other")
         expect(other.get_by_label("Specification")).to_have_value(MENDED + "spec other = F a & G !b // ≤ 🎮\n")
 
 
 def test_a_broken_link_shows_an_example(browser: Browser, address: str) -> None:
-    for page in opened(browser, f"{address}#1.nonsense"):
+    for page in opened(browser, address, link="#1.nonsense"):
         expect(page.locator("#english h2")).to_have_text("escape")
 
 
@@ -300,7 +311,7 @@ PACKED = """async (value) => (await import("./share.js")).packed(value)"""
 def test_a_link_may_hold_anything(page: Page, browser: Browser, address: str) -> None:
     letters = [["a", 3, {"b": 1}], None, {"0": "a"}, "a", [["a"]], *([["b"]] * 1200)]
     link = page.evaluate(PACKED, {"text": MENDED, "spec": {"x": 1}, "mode": [], "letters": letters, "current": -7.5})
-    for other in opened(browser, address + link):
+    for other in opened(browser, address, link=link):
         expect(other.locator("#steps tbody tr")).to_have_count(1000)
         expect(other.locator("#steps tr.current .verdict")).to_have_text("pending")
         expect(other.get_by_role("button", name="Add step")).to_be_disabled()
@@ -309,7 +320,7 @@ def test_a_link_may_hold_anything(page: Page, browser: Browser, address: str) ->
 def test_a_link_that_never_ends_is_none(page: Page, browser: Browser, address: str) -> None:
     link = page.evaluate(PACKED, {"text": " " * 20_000_000})
     assert len(link) < 50_000
-    for other in opened(browser, address + link):
+    for other in opened(browser, address, link=link):
         expect(other.locator("#english h2")).to_have_text("escape")
 
 
@@ -343,6 +354,79 @@ def test_a_server_that_is_gone_is_said_to_be(browser: Browser) -> None:
         server.server_close()
         write(page, BROKEN)
         summary(page, "^No answer: the server is gone; start `tltlc serve` again$")
+        made.close()
+
+
+def test_the_token_leaves_the_address_and_is_kept_for_reloads_and_other_tabs(browser: Browser, address: str) -> None:
+    for page in opened(browser, address):
+        assert "token" not in page.url
+        write(page, BROKEN)
+        summary(page, "^1 error")
+        page.reload()
+        summary(page, "^1 error")
+        page.get_by_role("button", name="Copy link").click()
+        summary(page, "text is in it")
+        assert "token" not in page.url
+        other = page.context.new_page()
+        other.goto(page.url)
+        summary(other, "^1 error")
+
+
+def test_without_the_token_the_page_says_which_address_to_open(browser: Browser, address: str) -> None:
+    base, _, token = address.partition("#")
+    made = browser.new_context()
+    page = made.new_page()
+    page.goto(base)
+    summary(page, "^It could not begin: open the address that `tltlc serve` shows: the token in it is missing here")
+    # Only the fragment changes, so that the browser loads nothing anew by itself.
+    page.goto(f"{base}#{token}")
+    summary(page, "^It compiles")
+    made.close()
+
+
+def test_a_server_that_was_started_again_is_asked_with_its_new_token(browser: Browser) -> None:
+    with serving() as server:
+        made = browser.new_context()
+        page = made.new_page()
+        page.goto(server.address)
+        summary(page, "^It compiles")
+        # A new server at the same port has another token.
+        server.page._token = b"new"
+        write(page, BROKEN)
+        summary(page, "^No answer: open the address that `tltlc serve` shows")
+        page.goto(f"{server.address.partition('#')[0]}#token=new")
+        summary(page, "^1 error")
+        expect(page.get_by_label("Specification")).to_have_value(BROKEN)
+        made.close()
+
+
+ATTACK = """async (address) => {
+    const asked = { method: "POST", body: "{}", headers: { "Content-Type": "application/json" } };
+    const outcomes = [];
+    const plain = { ...asked, headers: { "Content-Type": "text/plain" } };
+    for (const request of [asked, plain, { ...plain, mode: "no-cors" }]) {
+        outcomes.push(await fetch(`${address}api`, request).then((answer) => answer.type, () => "refused"));
+    }
+    const script = await new Promise((resolve) => {
+        const made = Object.assign(document.createElement("script"), { src: `${address}main.js` });
+        made.onload = () => resolve("loaded");
+        made.onerror = () => resolve("refused");
+        document.body.append(made);
+    });
+    return [...outcomes, script];
+}"""
+
+
+def test_a_page_from_elsewhere_gets_nothing(browser: Browser) -> None:
+    """A page of another local server, which the browser takes for the same site."""
+    with serving() as server, serving() as other:
+        made = browser.new_context(bypass_csp=True)
+        page = made.new_page()
+        page.goto(other.address)
+        summary(page, "^It compiles")
+        # The browser gives no answer to the page; that of `no-cors` is opaque, and is the server's refusal.
+        outcomes = page.evaluate(ATTACK, server.address.partition("#")[0])
+        assert outcomes == ["refused", "refused", "refused", "refused"]
         made.close()
 
 

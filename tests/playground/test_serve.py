@@ -34,7 +34,7 @@ def served(*options: str, **environment: str) -> Iterator[tuple[subprocess.Popen
     try:
         assert running.stderr is not None
         said = running.stderr.readline()
-        found = re.fullmatch(r"the playground is at http://127\.0\.0\.1:(\d+)/, until Ctrl-C\n", said)
+        found = re.fullmatch(r"the playground is at http://127\.0\.0\.1:(\d+)/#token=[\w-]{32} until Ctrl-C\n", said)
         assert found, said
         yield running, int(found[1])
     finally:

@@ -8,6 +8,7 @@ import os
 import socket
 import struct
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,8 +18,9 @@ from time import monotonic, sleep
 import pytest
 
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.limits import ANSWER, MESSAGE, PLAYGROUND, PLAYGROUND_CHILD, Connections
 from tltlc.playground import children, view
-from tltlc.playground.server import MOST_BYTES, Server
+from tltlc.playground.server import Server
 from tltlc.playground.start import start
 
 JSON = {"Content-Type": "application/json"}
@@ -26,8 +28,8 @@ SLOW = "signal a: bool\nspec x = F[0,4000] a"
 
 
 @contextmanager
-def serving(limit_s: float = children.LIMIT_S) -> Iterator[Server]:
-    with Server(0, limit_s) as server:
+def serving(limit_s: float = children.LIMIT_S, connections: Connections = PLAYGROUND) -> Iterator[Server]:
+    with Server(0, limit_s, connections) as server:
         thread = Thread(target=server.serve_forever)
         thread.start()
         try:
@@ -47,8 +49,9 @@ def server() -> Iterator[Server]:
 def ask(
     server: Server, method: str, path: str, body: str | bytes | None = None, headers: dict[str, str] | None = None
 ) -> tuple[int, dict[str, str], bytes]:
+    """An answer, with the token of the server unless the headers have another one."""
     connection = http.client.HTTPConnection("127.0.0.1", server.server_address[1], timeout=60)
-    connection.request(method, path, body, headers or {})
+    connection.request(method, path, body, {"Tltlc-Token": server.token, **(headers or {})})
     answer = connection.getresponse()
     found = answer.status, dict(answer.getheaders()), answer.read()
     connection.close()
@@ -60,9 +63,9 @@ def test_the_page_is_there_and_asks_nobody_else(server: Server) -> None:
     assert (status, headers["Content-Type"]) == (200, "text/html; charset=utf-8")
     assert "default-src 'none'" in headers["Content-Security-Policy"]
     assert b"http" not in page.replace(b"http-equiv", b"")
-    for name in server.files:
+    for name in server.page.files:
         status, headers, content = ask(server, "GET", f"/{name}")
-        assert (status, content) == (200, server.files[name])
+        assert (status, content) == (200, server.page.files[name])
         assert name.endswith(".svg") or b"://" not in content, name
     assert headers["X-Content-Type-Options"] == "nosniff"
 
@@ -91,9 +94,16 @@ def test_it_answers_as_the_function_does(server: Server) -> None:
         ("POST", "/api", b"\xff", JSON, 400),
         ("POST", "/api", "[" * 100_000, JSON, 400),
         ("POST", "/api", "", JSON, 400),
-        ("POST", "/api", "", {**JSON, "Content-Length": "-1"}, 411),
-        ("POST", "/api", None, {**JSON, "Content-Length": str(MOST_BYTES + 1)}, 413),
-        ("PUT", "/api", "{}", JSON, 501),
+        ("POST", "/api", "", {**JSON, "Content-Length": "-1"}, 400),
+        ("POST", "/api", None, {**JSON, "Content-Length": str(MESSAGE.size + 1)}, 413),
+        ("PUT", "/api", "{}", JSON, 405),
+        ("GET", "/api", None, {}, 405),
+        ("HEAD", "/api", None, {}, 405),
+        ("OPTIONS", "/api", None, {}, 405),
+        ("DELETE", "/main.js", None, {}, 405),
+        ("POST", "/", "{}", JSON, 405),
+        ("OPTIONS", "*", None, {}, 404),
+        ("BREW", "/", None, {}, 501),
     ],
 )
 def test_what_it_refuses(
@@ -102,13 +112,68 @@ def test_what_it_refuses(
     assert ask(server, method, path, body, headers)[0] == status
 
 
+ELSEWHERE = [
+    {"Origin": "https://game.example"},
+    {"Origin": "null"},
+    {"Origin": ""},
+    {"Origin": "http://127.0.0.1:1"},
+    {"Origin": "http://localhost", "Host": "127.0.0.1"},
+    {"Sec-Fetch-Site": "cross-site"},
+    {"Sec-Fetch-Site": "same-site"},
+    {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate"},
+    {"Tltlc-Token": ""},
+    {"Tltlc-Token": "another"},
+    {"Tltlc-Token": "\xe9"},
+]
+
+
+@pytest.mark.parametrize("headers", ELSEWHERE, ids=str)
+def test_pages_from_elsewhere_and_those_without_the_token_are_not_answered(
+    server: Server, headers: dict[str, str]
+) -> None:
+    for method, body in (("POST", "{}"), ("GET", None), ("OPTIONS", None)):
+        status, told, answer = ask(server, method, "/api", body, {**JSON, **headers})
+        assert (status, answer) == (403, b"Forbidden\n")
+        # A browser gives an answer to a page from elsewhere only where a header allows it.
+        assert not any(name.lower().startswith("access-control") for name in told)
+
+
+@pytest.mark.parametrize("headers", [each for each in ELSEWHERE if "Tltlc-Token" not in each][:-1], ids=str)
+def test_files_are_for_the_page_itself(server: Server, headers: dict[str, str]) -> None:
+    assert ask(server, "GET", "/main.js", None, headers)[0] == 403
+    assert ask(server, "GET", "/", None, headers)[0] == 403
+
+
+def test_a_link_from_elsewhere_leads_to_the_page(server: Server) -> None:
+    link = {"Sec-Fetch-Site": "cross-site", "Sec-Fetch-Mode": "navigate", "Tltlc-Token": ""}
+    assert ask(server, "GET", "/", None, link)[0] == 200
+    assert ask(server, "GET", "/main.js", None, link)[0] == 403
+
+
+def test_its_own_page_is_answered_under_each_of_its_names(server: Server) -> None:
+    for host in (f"127.0.0.1:{server.server_address[1]}", "localhost:9000"):
+        own = {"Host": host, "Origin": f"http://{host}", "Sec-Fetch-Site": "same-origin"}
+        assert ask(server, "POST", "/api", "{}", {**JSON, **own})[0] == 200
+
+
+def test_each_server_has_a_token_of_its_own(server: Server) -> None:
+    with Server(0) as other:
+        assert other.token != server.token
+        assert len(other.token) >= 32
+        assert other.address.endswith(f"/#token={other.token}")
+
+
+def test_a_page_without_a_body(server: Server) -> None:
+    status, headers, body = ask(server, "HEAD", "/")
+    assert (status, body, headers["Content-Length"]) == (200, b"", str(len(server.page.files["index.html"])))
+
+
 def test_who_does_not_wait_for_an_answer_is_no_problem(server: Server, capfd: pytest.CaptureFixture[str]) -> None:
     for _ in range(3):
         with socket.create_connection(("127.0.0.1", server.server_address[1])) as gone:
             # Nothing is left to be sent, and what comes is refused at once.
             gone.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-            head = "POST /api HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 2\r\n"
-            gone.sendall(f"{head}\r\n{{}}".encode())
+            gone.sendall(request(server, "{}"))
     assert ask(server, "POST", "/api", "{}", JSON)[0] == 200
     assert capfd.readouterr().err == ""
 
@@ -128,7 +193,7 @@ def test_a_text_that_nobody_waits_for_any_more_is_given_up() -> None:
             socket.create_connection(("127.0.0.1", server.server_address[1])) for _ in range(children.MOST_AT_ONCE + 2)
         ]
         for connection in waiting:
-            connection.sendall(slow_request())
+            connection.sendall(slow_request(server))
         assert eventually(lambda: len(server.children._running) == children.MOST_AT_ONCE)
         for connection in waiting:
             connection.close()
@@ -141,16 +206,22 @@ def test_what_is_at_work_ends_with_the_server() -> None:
         serving(limit_s=120.0) as server,
         socket.create_connection(("127.0.0.1", server.server_address[1])) as connection,
     ):
-        connection.sendall(slow_request())
+        connection.sendall(slow_request(server))
         assert eventually(lambda: bool(server.children._running))
         (child,) = server.children._running
         server.server_close()
         assert child.wait(timeout=30)
 
 
-def slow_request() -> bytes:
-    body = json.dumps({"text": SLOW})
-    head = ("POST /api HTTP/1.1", "Host: localhost", "Content-Type: application/json", f"Content-Length: {len(body)}")
+def slow_request(server: Server) -> bytes:
+    return request(server, json.dumps({"text": SLOW}))
+
+
+def request(server: Server, body: str) -> bytes:
+    head = (
+        *("POST /api HTTP/1.1", "Host: localhost", "Content-Type: application/json"),
+        *(f"Tltlc-Token: {server.token}", f"Content-Length: {len(body)}"),
+    )
     return "\r\n".join([*head, "", body]).encode()
 
 
@@ -222,3 +293,76 @@ def test_a_port_that_is_taken(server: Server) -> None:
     (said,) = caught.value.diagnostics
     assert (said.code, said.help) == ("TLT0776", "give another port, or 0 for any: `--port 0`")
     assert said.title.startswith(f"cannot serve at 127.0.0.1:{server.server_address[1]}: ")
+
+
+def program(code: str) -> list[str]:
+    return [sys.executable, "-c", f"import sys; sys.path[:] = {sys.path!r}\n{code}"]
+
+
+def replaced_by(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Children are processes that do something else."""
+    pipe = subprocess.PIPE
+    monkeypatch.setattr(children, "_started", lambda: subprocess.Popen(program(code), stdin=pipe, stdout=pipe))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system holds no process to its memory")
+def test_a_child_has_no_more_memory_than_it_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    limits = subprocess.run(
+        program(
+            "import resource; from tltlc.playground.child import limit_resources; limit_resources()\n"
+            "print(*resource.getrlimit(resource.RLIMIT_AS), *resource.getrlimit(resource.RLIMIT_CPU))"
+        ),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    memory, work = PLAYGROUND_CHILD.memory, PLAYGROUND_CHILD.work_s
+    assert limits.stdout.split() == [str(each) for each in (memory, memory, work, work)]
+    replaced_by(
+        "from tltlc.playground import child, protocol\n"
+        "protocol.view = lambda *_: bytearray(child.PLAYGROUND_CHILD.memory)\n"
+        "child.main()",
+        monkeypatch,
+    )
+    with serving(limit_s=120.0) as server:
+        (said,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
+        assert (said["code"], said["title"]) == ("TLT0775", "this takes more memory than the playground has")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of this kind are those of POSIX")
+def test_a_lower_limit_that_is_there_already_stays() -> None:
+    code = (
+        "import resource; from tltlc.playground.child import limit_resources\n"
+        "resource.setrlimit(resource.RLIMIT_CPU, (7, 7)); limit_resources()\n"
+        "print(*resource.getrlimit(resource.RLIMIT_CPU))"
+    )
+    done = subprocess.run(program(code), capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["7", "7"]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        f"from tltlc.playground import child, protocol\nprotocol.view = lambda *_: 'a' * {ANSWER.size}\nchild.main()",
+        "while True: sys.stdout.write('a' * 100_000)",
+    ],
+    ids=["told", "without end"],
+)
+def test_an_answer_that_is_too_large_is_given_up(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    replaced_by(code, monkeypatch)
+    with serving(limit_s=120.0) as server:
+        (said,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
+        assert (said["code"], said["title"]) == ("TLT0775", "the answer is larger than 32 MiB, and was given up")
+
+
+def test_where_no_process_can_be_started_the_next_request_tries_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    with serving(limit_s=120.0) as server:
+        with monkeypatch.context() as failing:
+            failing.setattr(children, "_started", fails)
+            # One process is there already.
+            assert [ask(server, "POST", "/api", "{}", JSON)[0] for _ in range(3)] == [200, 503, 503]
+        assert ask(server, "POST", "/api", "{}", JSON)[0] == 200
+
+
+def fails() -> subprocess.Popen[bytes]:
+    raise BlockingIOError("Resource temporarily unavailable")

@@ -2,146 +2,261 @@
 
 from __future__ import annotations
 
+import asyncio
 import mimetypes
 import os
-import select
+import secrets
 import socket
-import sys
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from typing import Any, Final
-from urllib.parse import urlsplit
+from threading import Event
+from types import TracebackType
+from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
-from tltlc.playground.children import LIMIT_S, AbandonedError, Children
+from tltlc.limits import MESSAGE, PLAYGROUND, Connections
+from tltlc.playground.children import LIMIT_S, MOST_AT_ONCE, AbandonedError, Children
+from tltlc.playground.connections import Connection, Open, Response
+from tltlc.playground.request_head import Head, RefusedError
 from tltlc.playground.site import page_files
+from tltlc.record import replace
 
 HOST: Final = "127.0.0.1"
-MOST_BYTES: Final = 4 << 20
-"""Of a request: a text as large as a source file may be, written as JSON, and a trace."""
+TOKEN_HEADER: Final = "Tltlc-Token"
 
 _NAMES: Final = {HOST, "localhost"}
 """Under other names a page of somebody else could ask, by an address that leads here."""
+
+_API: Final = "/api"
+_METHODS: Final = {"GET", "HEAD", "POST"}
+_KNOWN_METHODS: Final = _METHODS | {"OPTIONS", "PUT", "DELETE", "PATCH", "TRACE", "CONNECT"}
+_AGAIN_S: Final = 1.0
+"""Seconds after which a server that had no room for another connection looks again."""
+
+_OTHER_DESCRIPTORS: Final = 16 + 6 * MOST_AT_ONCE
+"""How many descriptors the process itself and the pipes to its children need at most."""
 
 _POLICY: Final = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:"
 _HEADERS: Final = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": f"{_POLICY}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "Cross-Origin-Resource-Policy": "same-origin",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
 }
 
 
-class Server(ThreadingHTTPServer):
+class Page:
+    """What the server answers: ``GET`` of the page's files, and ``POST`` of :data:`_API` with the token."""
+
+    def __init__(self, children: Children, token: str) -> None:
+        self.files = page_files()
+        self._children = children
+        self._token = token.encode()
+        # As many threads as connections can wait; the children themselves are fewer.
+        self._threads = ThreadPoolExecutor(PLAYGROUND.most)
+
+    def check(self, head: Head) -> None:
+        """Raise RefusedError for a request that is not from the page itself, or asks for what there is not."""
+        if not _is_own(head):
+            raise RefusedError(HTTPStatus.FORBIDDEN)
+        if head.method not in _KNOWN_METHODS:
+            raise RefusedError(HTTPStatus.NOT_IMPLEMENTED)
+        if head.path == _API:
+            self._check_question(head)
+            return
+        if _file_name(head.path) not in self.files:
+            raise RefusedError(HTTPStatus.NOT_FOUND)
+        if head.method not in ("GET", "HEAD"):
+            raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED)
+        if head.length:
+            raise RefusedError(HTTPStatus.BAD_REQUEST)
+
+    async def answer(self, head: Head, body: bytes, hung_up: Event) -> Response | None:
+        """A file of the page, or the answer to a question; None where the page has hung up."""
+        if head.path != _API:
+            name = _file_name(head.path)
+            kind = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0] or "text/plain"
+            return _response(HTTPStatus.OK, self.files[name], kind)
+        loop = asyncio.get_running_loop()
+        try:
+            answered = await loop.run_in_executor(self._threads, self._children.answer, body, hung_up.is_set)
+        except AbandonedError:
+            return None
+        except OSError:
+            # The system has no room for another process.
+            raise RefusedError(HTTPStatus.SERVICE_UNAVAILABLE) from None
+        if answered is None:
+            raise RefusedError(HTTPStatus.BAD_REQUEST)
+        return _response(HTTPStatus.OK, answered.encode(), "application/json")
+
+    def refusal(self, status: HTTPStatus) -> Response:
+        """The answer that says that a request is refused."""
+        allowed = {"Allow": "GET, HEAD, POST"} if status is HTTPStatus.METHOD_NOT_ALLOWED else {}
+        return _response(status, f"{status.phrase}\n".encode(), "text/plain", allowed)
+
+    def close(self) -> None:
+        """Wait for nobody any more."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+
+    def _check_question(self, head: Head) -> None:
+        # Who has no token learns nothing else.
+        if not secrets.compare_digest(head.headers.get(TOKEN_HEADER.lower(), "").encode("latin-1"), self._token):
+            raise RefusedError(HTTPStatus.FORBIDDEN)
+        if head.method != "POST":
+            raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED)
+        # Pages of others would have to ask the browser first before they send this.
+        if head.headers.get("content-type", "").partition(";")[0].strip().lower() != "application/json":
+            raise RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE)
+        if head.length is None:
+            raise RefusedError(HTTPStatus.LENGTH_REQUIRED)
+        if head.length > MESSAGE.size:
+            raise RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
+
+
+def _response(status: HTTPStatus, body: bytes, kind: str, headers: dict[str, str] | None = None) -> Response:
+    return Response(status, {**_HEADERS, "Content-Type": f"{kind}; charset=utf-8", **(headers or {})}, body)
+
+
+def _file_name(path: str) -> str:
+    return "index.html" if path == "/" else path.removeprefix("/")
+
+
+def _is_own(head: Head) -> bool:
+    """Whether a request is for this server, and neither made by a page from elsewhere nor for one."""
+    host = head.headers.get("host", "").lower()
+    name, colon, port = host.partition(":")
+    if name not in _NAMES or (colon and not (port.isascii() and port.isdecimal())):
+        return False
+    if head.headers.get("origin", f"http://{host}").lower() != f"http://{host}":
+        return False
+    if head.headers.get("sec-fetch-site", "none") in ("none", "same-origin"):
+        return True
+    # A link from elsewhere may lead to the page.
+    return head.path == "/" and head.method == "GET" and head.headers.get("sec-fetch-mode") == "navigate"
+
+
+def _within_descriptors(connections: Connections) -> Connections:
+    """No more connections than the system has descriptors for, beside those that children need."""
+    with suppress(ImportError):
+        import resource
+
+        soft = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
+        if soft != resource.RLIM_INFINITY:
+            return replace(connections, most=max(1, min(connections.most, soft - _OTHER_DESCRIPTORS)))
+    return connections
+
+
+class Server:
     """Serves the page at :data:`HOST`, and at no other address; port 0 is any that is free.
 
     Raises TltlError, TLT0776, where the port cannot be had.
     """
 
-    daemon_threads = True
-    # A port is free again as soon as its server has ended.  (On Windows it is so anyway, and this would share it with
-    # a server that is still there.)
-    allow_reuse_address = os.name != "nt"
-
-    def __init__(self, port: int, limit_s: float = LIMIT_S) -> None:
-        self.files = page_files()
+    def __init__(self, port: int, limit_s: float = LIMIT_S, connections: Connections = PLAYGROUND) -> None:
         try:
-            super().__init__((HOST, port), Handler)
+            # A port is free again as soon as its server has ended.
+            self._listener = socket.create_server((HOST, port))
         except OSError as error:
             title = f"cannot serve at {HOST}:{port}: {reason(error)}"
             way_out = "give another port, or 0 for any: `--port 0`"
             raise TltlError([Diagnostic("TLT0776", title, help=way_out)]) from None
+        self._listener.setblocking(False)
+        self.server_address: tuple[str, int] = self._listener.getsockname()
+        self.token = secrets.token_urlsafe(24)
         self.children = Children(limit_s)
+        self.page = Page(self.children, self.token)
+        self.open = Open(_within_descriptors(connections))
+        self._loop = asyncio.SelectorEventLoop()
+        self._again: asyncio.TimerHandle | None = None
+        self._accepted: set[asyncio.Task[object]] = set()
+        self._stopped = Event()
+        self._stopped.set()
 
     @property
     def address(self) -> str:
-        """Where the page is."""
-        return f"http://{HOST}:{self.server_address[1]}/"
+        """Where the page is, with the token in the fragment, which browsers send nowhere."""
+        return f"http://{HOST}:{self.server_address[1]}/#token={self.token}"
 
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing where the page has gone, as it does when a text has changed before its answer came."""
-        if not isinstance(sys.exc_info()[1], (ConnectionError, TimeoutError)):
-            super().handle_error(request, client_address)
+    def serve_forever(self) -> None:
+        """Answer until :meth:`shutdown` is called, or until Ctrl-C, which raises KeyboardInterrupt."""
+        self._stopped.clear()
+        self._loop.call_soon(self._look)
+        if os.name == "nt":
+            self._loop.call_soon(self._wake)
+        try:
+            self._loop.run_forever()
+        finally:
+            self._loop.remove_reader(self._listener)
+            try:
+                self._loop.run_until_complete(self._end_all())
+            finally:
+                self._stopped.set()
+
+    def shutdown(self) -> None:
+        """Stop :meth:`serve_forever`, which runs in another thread, and wait for its end."""
+        if not self._stopped.is_set():
+            self._loop.call_soon_threadsafe(self._loop.stop)
+            self._stopped.wait()
 
     def server_close(self) -> None:
         """Free the port, and end what waits."""
-        super().server_close()
-        if hasattr(self, "children"):
-            self.children.close()
+        self.children.close()
+        self.shutdown()
+        self.page.close()
+        self._listener.close()
+        self._loop.close()
 
+    def __enter__(self) -> Server:
+        return self
 
-class Handler(BaseHTTPRequestHandler):
-    """``GET`` of the page's files and ``POST api``."""
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.server_close()
 
-    server: Server
-    protocol_version = "HTTP/1.1"
-    server_version, sys_version = "tltlc", ""
-    timeout = 60
+    # --- new connections ----------------------------------------------------------------------
 
-    def do_GET(self) -> None:
-        """A file of the page."""
-        path = urlsplit(self.path).path
-        name = "index.html" if path == "/" else path.removeprefix("/")
-        if not self._is_for_us():
-            self._refuse(HTTPStatus.FORBIDDEN)
-        elif name not in self.server.files:
-            self._refuse(HTTPStatus.NOT_FOUND)
-        else:
-            kind = "text/javascript" if name.endswith(".js") else mimetypes.guess_type(name)[0] or "text/plain"
-            self._send(HTTPStatus.OK, self.server.files[name], f"{kind}; charset=utf-8")
+    def _look(self) -> None:
+        """Look for new connections, from now on."""
+        if self._again is not None:
+            self._again.cancel()
+            self._again = None
+        self._loop.add_reader(self._listener, self._accept)
 
-    def do_POST(self) -> None:
-        """The answer to a request of the page, which says that it is JSON: pages of others would have to ask first."""
-        length = self.headers.get("Content-Length", "")
-        if not self._is_for_us():
-            self._refuse(HTTPStatus.FORBIDDEN)
-        elif self.path != "/api":
-            self._refuse(HTTPStatus.NOT_FOUND)
-        elif self.headers.get_content_type() != "application/json":
-            self._refuse(HTTPStatus.UNSUPPORTED_MEDIA_TYPE)
-        elif not (length.isascii() and length.isdigit()):
-            self._refuse(HTTPStatus.LENGTH_REQUIRED)
-        elif int(length) > MOST_BYTES:
-            self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
-        else:
-            self._answer(self.rfile.read(int(length)))
-
-    def log_message(self, format: str, *args: object) -> None:  # noqa: A002
-        """Nothing: only commands print."""
-
-    def _answer(self, request: bytes) -> None:
+    def _accept(self) -> None:
         try:
-            answered = self.server.children.answer(request, self._has_gone)
-        except AbandonedError:
-            self.close_connection = True
+            accepted, _ = self._listener.accept()
+        except (BlockingIOError, InterruptedError, ConnectionAbortedError):
             return
-        if answered is None:
-            self._refuse(HTTPStatus.BAD_REQUEST)
+        except OSError:
+            self._wait()
+            return
+        accepted.setblocking(False)
+        made = self._loop.connect_accepted_socket(lambda: Connection(self.page, self.open), accepted)
+        task: asyncio.Task[object] = self._loop.create_task(made)
+        self._accepted.add(task)
+        task.add_done_callback(self._accepted.discard)
+
+    def _wait(self) -> None:
+        """The system has no descriptors left: look again once a connection has given way, or else in a while."""
+        self._loop.remove_reader(self._listener)
+        if self.open.make_room():
+            # The connection is closed before this is called.
+            self._loop.call_soon(self._look)
         else:
-            self._send(HTTPStatus.OK, answered.encode(), "application/json; charset=utf-8")
+            self._again = self._loop.call_later(_AGAIN_S, self._look)
 
-    def _has_gone(self) -> bool:
-        """Whether who asked has hung up, as a page does that has a newer text to ask about."""
-        ready, _, _ = select.select([self.connection], [], [], 0)
-        return bool(ready) and not self.connection.recv(1, socket.MSG_PEEK)
+    async def _end_all(self) -> None:
+        """Close all connections, and end what works for them."""
+        self.open.close()
+        tasks = asyncio.all_tasks() - {asyncio.current_task()}
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(asyncio.sleep(0), *tasks, return_exceptions=True)
 
-    def _is_for_us(self) -> bool:
-        name, _, port = self.headers.get("Host", "").partition(":")
-        return name.lower() in _NAMES and (port.isdecimal() or not port)
-
-    def _refuse(self, status: HTTPStatus) -> None:
-        # What was not read would be taken for the next request.
-        self.close_connection = True
-        self._send(status, f"{status.phrase}\n".encode(), "text/plain; charset=utf-8")
-
-    def _send(self, status: HTTPStatus, body: bytes, kind: str) -> None:
-        self.send_response(status)
-        for name, value in _HEADERS.items():
-            self.send_header(name, value)
-        self.send_header("Content-Type", kind)
-        self.send_header("Content-Length", str(len(body)))
-        if self.close_connection:
-            self.send_header("Connection", "close")
-        self.end_headers()
-        self.wfile.write(body)
+    def _wake(self) -> None:
+        """Windows tells of Ctrl-C only when something else happens, too."""
+        self._loop.call_later(0.5, self._wake)

@@ -19,8 +19,8 @@ Examples:
   tltlc serve --static site        files for any web server, which need no tltlc there
 
 \b
-The page asks this machine and nobody else.  A spec may import what lies in the current folder, and in the libraries
-of its tltl.toml.
+The page asks this machine and nobody else, and only the address that is printed can ask.  A spec may import what lies
+in the current folder and below, and the libraries of tltlc.
 """
 )
 @click.option("--port", metavar="N", type=click.IntRange(0, 65535), default=8765, help="Serve there (default: 8765).")
@@ -70,7 +70,7 @@ def _serve(port: int, opening: bool) -> None:
     from tltlc.playground.server import Server
 
     with Server(port) as server:
-        print(f"the playground is at {server.address}, until Ctrl-C", file=sys.stderr, flush=True)
+        print(f"the playground is at {server.address} until Ctrl-C", file=sys.stderr, flush=True)
         if opening:
             from threading import Thread
 

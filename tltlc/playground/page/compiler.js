@@ -1,9 +1,16 @@
 // Whoever compiles: the server that the page comes from, or Python in a worker of the browser.
 // Both answer `ask({text, spec, letters})` with what tltlc.playground.view returns, and `ask({})` with how to start.
 
+import { token } from "./token.js";
+
 const LIMIT_MS = 10_000;
 const PATIENCE_MS = 3_000;
 const START_LIMIT_MS = 120_000;
+
+const REFUSED = {
+  403: "open the address that `tltlc serve` shows: the token in it is missing here, or is of an earlier server",
+  413: "the text is too long",
+};
 
 export function compiler() {
   return document.body.dataset.compiler === "browser" ? inBrowser() : byServer();
@@ -18,14 +25,14 @@ function byServer() {
       running = new AbortController();
       const answer = await fetch("api", {
         method: "POST",
-        headers: { "Content-Type": "application/json" },
+        headers: { "Content-Type": "application/json", "Tltlc-Token": token() },
         body: JSON.stringify(request),
         signal: running.signal,
       }).catch((error) => {
         // Browsers have no word for it that would help.
         throw error instanceof TypeError ? new Error("the server is gone; start `tltlc serve` again") : error;
       });
-      if (!answer.ok) throw new Error(answer.status === 413 ? "the text is too long" : `the server says: ${answer.statusText}`);
+      if (!answer.ok) throw new Error(REFUSED[answer.status] ?? `the server says: ${answer.statusText}`);
       return answer.json();
     },
   };

@@ -5,6 +5,7 @@ import { byId } from "./dom.js";
 import * as editor from "./editor.js";
 import * as meaning from "./meaning.js";
 import { packed, unpacked } from "./share.js";
+import { takeToken } from "./token.js";
 import * as trace from "./trace.js";
 
 const TYPING_MS = 250;
@@ -23,6 +24,8 @@ let written = "";
 
 async function begin() {
   theme();
+  takeToken();
+  window.addEventListener("hashchange", moved);
   begun = await asking.ask({});
   editor.begin(begun, () => {
     named();
@@ -42,8 +45,13 @@ async function begin() {
   for (const input of document.getElementsByName("mode")) input.addEventListener("change", () => choose(input.value));
   for (const input of document.getElementsByName("notation")) input.addEventListener("change", () => write(input.value));
   byId("steps").addEventListener("keydown", arrows);
-  window.addEventListener("hashchange", () => location.hash !== written && restore());
   if (!(await restore())) example(0);
+}
+
+/** The address has another fragment: a token, with which what failed is asked again, or a text. */
+function moved() {
+  if (takeToken()) begun ? later(0) : location.reload();
+  else if (begun && location.hash !== written) restore();
 }
 
 /** Ask in a while, unless something else changes before; an answer that is still to come is out of date. */

@@ -1,0 +1,51 @@
+"""Raw bytes to a server, and what comes back until it hangs up or has answered so many times."""
+
+from __future__ import annotations
+
+import re
+import socket
+
+from tltlc.playground.server import Server
+
+TIMEOUT_S = 60.0
+"""Far more than anything takes here."""
+
+
+def connected(server: Server) -> socket.socket:
+    return socket.create_connection(("127.0.0.1", server.server_address[1]), timeout=TIMEOUT_S)
+
+
+def read_to_end(connection: socket.socket) -> bytes:
+    """Everything until the server hangs up."""
+    found = b""
+    while chunk := connection.recv(1 << 16):
+        found += chunk
+    return found
+
+
+def statuses(answers: bytes) -> list[int]:
+    """The statuses of answers that came one behind the other."""
+    found = []
+    while answers:
+        head, _, rest = answers.partition(b"\r\n\r\n")
+        status = re.match(rb"HTTP/1\.1 (\d{3}) ", head)
+        assert status, answers[:80]
+        length = re.search(rb"\r\nContent-Length: (\d+)", head)
+        found.append(int(status[1]))
+        answers = rest[int(length[1]) if length else 0 :]
+    return found
+
+
+def exchanged(server: Server, data: bytes) -> list[int]:
+    """The statuses that some bytes are answered with, if nothing more is sent."""
+    with connected(server) as connection:
+        connection.sendall(data)
+        connection.shutdown(socket.SHUT_WR)
+        return statuses(read_to_end(connection))
+
+
+def refused(server: Server, data: bytes) -> list[int]:
+    """The same where the server is to hang up by itself."""
+    with connected(server) as connection:
+        connection.sendall(data)
+        return statuses(read_to_end(connection))
