@@ -19,6 +19,7 @@ from tests.backends.monitors import Outcome, Sample, batches, expected, one_atom
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
+from tests.waiting import HANG_S
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -66,7 +67,7 @@ class Programs:
 
     def run(self, number: int, trace: str) -> Outcome:
         command = [str(self._path), str(number), "--full", "-"]
-        done = subprocess.run(command, input=trace.encode(), capture_output=True, timeout=60)
+        done = subprocess.run(command, input=trace.encode(), capture_output=True, timeout=HANG_S)
         return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 

@@ -21,6 +21,7 @@ from tests.backends.strategies import hostile_automata
 from tests.backends.test_c import NAMES
 from tests.conformance.runners.csharp import STRICT, assembled
 from tests.fixtures import cover_and_hide
+from tests.waiting import HANG_S
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
@@ -46,7 +47,7 @@ def compiled(folder: Path, *words: str) -> None:
 
 
 def ran(folder: Path, *words: str, stdin: bytes = b"") -> Outcome:
-    done = subprocess.run(["mono", *words], input=stdin, capture_output=True, cwd=folder, timeout=60)
+    done = subprocess.run(["mono", *words], input=stdin, capture_output=True, cwd=folder, timeout=HANG_S)
     return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 

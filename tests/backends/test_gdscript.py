@@ -27,6 +27,7 @@ from tests.backends.monitors import Outcome, Sample, batches, expected, one_atom
 from tests.backends.strategies import HOSTILE, hostile_automata
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
+from tests.waiting import HANG_S
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -58,7 +59,7 @@ def run(folder: Path, script: str, *arguments: str, stdin: bytes = b"") -> Outco
     """What a script prints, without what the engine says of itself."""
     command = ["godot3-server", "--path", ".", "-s", script, *arguments]
     environment = {**os.environ, "LANG": "en"}
-    done = subprocess.run(command, cwd=folder, input=stdin, capture_output=True, env=environment, timeout=60)
+    done = subprocess.run(command, cwd=folder, input=stdin, capture_output=True, env=environment, timeout=HANG_S)
     banner, _, out = done.stdout.decode().partition("\n \n")
     assert banner.startswith("Godot Engine v3.")
     return done.returncode, out, done.stderr.decode()

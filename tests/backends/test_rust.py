@@ -19,6 +19,7 @@ from tests.backends.strategies import hostile_automata
 from tests.backends.test_c import NAMES
 from tests.conformance.runners.rust import STRICT, linked
 from tests.fixtures import cover_and_hide
+from tests.waiting import HANG_S
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
@@ -46,7 +47,7 @@ def compiled(folder: Path, *words: str, edition: str = "2021") -> None:
 
 
 def ran(program: Path, *words: str, stdin: bytes = b"") -> Outcome:
-    done = subprocess.run([str(program), *words], input=stdin, capture_output=True, cwd=program.parent, timeout=60)
+    done = subprocess.run([str(program), *words], input=stdin, capture_output=True, cwd=program.parent, timeout=HANG_S)
     return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 

@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.measure import cpu_times_ms, median, peak_memory_mb, quartiles, run
+from tests.waiting import HANG_S
 
 ROOT = Path(__file__).parents[2]
 NUMBERS = st.lists(st.floats(-1e6, 1e6), min_size=1)
@@ -90,7 +91,7 @@ def alone(program: str) -> str:
     """What a program prints in a process of its own, as the benchmarks fork: those that run tests have threads."""
     text = "import sys\nfrom benchmarks.measure import forked, run\n" + textwrap.dedent(program)
     command = [sys.executable, "-W", "error", "-c", text]
-    return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True, timeout=60).stdout
+    return subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True, timeout=HANG_S).stdout
 
 
 def test_peak_memory_is_that_of_this_process() -> None:

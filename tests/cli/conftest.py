@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.waiting import HANG_S
+
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples" / "cover_and_hide.tltl"
 
@@ -56,7 +58,7 @@ def process() -> Callable[..., Outcome]:
             [sys.executable, "-m", "tltlc", *map(str, arguments)],
             input=stdin,
             capture_output=True,
-            timeout=60,
+            timeout=HANG_S,
             env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
             check=False,
         )

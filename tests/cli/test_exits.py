@@ -10,6 +10,7 @@ import click
 import pytest
 
 from tests.cli.conftest import EXAMPLE, HIDE, ROOT
+from tests.waiting import HANG_S
 from tltlc.cli import exits
 
 
@@ -131,7 +132,7 @@ def test_a_closed_pipe_is_quiet(inside: Path) -> None:
     done = subprocess.run(
         ["bash", "-c", f"({command}) | (exec 0<&-; sleep 1)"],
         capture_output=True,
-        timeout=60,
+        timeout=HANG_S,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         check=True,
     )
@@ -149,7 +150,7 @@ def test_an_interrupt_is_quiet(inside: Path) -> None:
             running.wait(2)
         except subprocess.TimeoutExpired:
             running.send_signal(signal.SIGINT)
-        out, err = running.communicate(timeout=30)
+        out, err = running.communicate(timeout=HANG_S)
     assert (running.returncode, out, err) == (130, b"", b"")
 
 

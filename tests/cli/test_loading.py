@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import EXAMPLE, ROOT
+from tests.waiting import HANG_S
 
 HEAVY = {
     "sympy", "networkx", "graphviz", "pygraphviz", "rich", "lark", "jsonschema", "fastjsonschema", "numpy", "torch",
@@ -30,7 +31,7 @@ def loaded(*arguments: str | Path, folder: Path) -> set[str]:
         [sys.executable, "-c", program, *map(str, arguments)],
         capture_output=True,
         cwd=folder,
-        timeout=60,
+        timeout=HANG_S,
         check=True,
         # The cache of predicate checks is filled by the first run.
         env={**os.environ, "XDG_CACHE_HOME": str(folder / "cache")},

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import EXAMPLE, ROOT
+from tests.waiting import HANG_S
 
 TRACE = EXAMPLE.with_suffix(".csv")
 
@@ -88,7 +89,7 @@ def test_rows_come_while_the_trace_is_being_recorded(inside: Path) -> None:
         running.stdin.write("1\n")
         running.stdin.close()
         assert running.stdout.readline().startswith("2,1,violated,")
-        assert running.wait(30) == 1
+        assert running.wait(HANG_S) == 1
 
 
 def test_a_clamped_value_is_remarked_once(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import EXAMPLE, ROOT
+from tests.waiting import HANG_S
 
 
 @pytest.fixture
@@ -54,7 +55,7 @@ def test_colour_only_on_a_terminal(environment: dict[str, str], coloured: bool, 
         [sys.executable, "-m", "tltlc", "check", "broken.tltl"],
         stderr=theirs,
         env={**variables, "TERM": "xterm", "PYTHONPATH": str(ROOT), **environment},
-        timeout=60,
+        timeout=HANG_S,
         check=False,
     )
     os.close(theirs)

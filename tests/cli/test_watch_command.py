@@ -13,6 +13,7 @@ from threading import Timer
 import pytest
 
 from tests.cli.conftest import ROOT
+from tests.waiting import HANG_S
 
 WAITS = "waiting for changes, until Ctrl-C\n"
 SPEC = "import lib\nspec found { limit 9 steps  reach seen }\n"
@@ -162,7 +163,7 @@ def test_the_current_folder_goes(folder: Path, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.chdir(folder)
     (folder / "here" / "a.tltl").unlink()
     (folder / "here").rmdir()
-    said = running.process.communicate(timeout=30)[1]
+    said = running.process.communicate(timeout=HANG_S)[1]
     running.end()
     assert said.splitlines()[0] == "error[TLT0001]: the current folder has been deleted"
     assert running.process.returncode == 3
@@ -175,7 +176,7 @@ def test_who_reads_it_goes(folder: Path) -> None:
     running.process.stderr.close()
     (folder / "found.tltl").write_text(SPEC)
     # As every program that writes into a pipe.
-    assert running.process.wait(timeout=30) == 141
+    assert running.process.wait(timeout=HANG_S) == 141
     running._timer.cancel()
 
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from tests.docs.blocks import ROOT
+from tests.waiting import HANG_S
 
 ANYTHING = "…"
 _PART = re.compile(
@@ -51,7 +52,7 @@ class Shell:
             env=self._environment,
             capture_output=True,
             encoding="utf-8",
-            timeout=60,
+            timeout=HANG_S,
             check=False,
         )
         self._status = done.returncode

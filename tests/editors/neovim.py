@@ -13,6 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from tests.waiting import HANG_S
+
 ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "docs" / "guides" / "editors.md"
 PROGRAM = os.environ.get("NVIM") or shutil.which("nvim")
@@ -21,7 +23,7 @@ WAIT_S = 30.0
 
 def version() -> tuple[int, ...]:
     """(0, 11, 4), for example."""
-    said = subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, timeout=30).stdout
+    said = subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True, timeout=HANG_S).stdout
     found = re.search(r"v(\d+)\.(\d+)\.(\d+)", said)
     assert found, said
     return tuple(map(int, found.groups()))

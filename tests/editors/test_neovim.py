@@ -11,6 +11,7 @@ import pytest
 
 from tests.editors.neovim import PROGRAM, Neovim
 from tests.editors.test_grammar import SOURCES
+from tests.waiting import HANG_S
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, DECLARATIONS
@@ -98,7 +99,7 @@ def test_a_session(editor: Neovim) -> None:
     editor.until(lambda: editor.lua("vim.api.nvim_get_current_line()").startswith("predicate near("), "its line")
 
     editor.keys(":qall!<CR>")
-    assert editor.process.wait(timeout=30) == 0
+    assert editor.process.wait(timeout=HANG_S) == 0
     assert "Error" not in editor.errors()
     assert_nothing_is_left(editor)
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import tltlc
+from tests.waiting import HANG_S
 from tltlc.grammar.words import CLAUSES
 
 EXTENSION = Path(__file__).parents[2] / "editors" / "vscode"
@@ -27,7 +28,7 @@ FILES = [
 
 
 def npm(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(["npm", *words], cwd=folder, capture_output=True, text=True, timeout=300)
+    return subprocess.run(["npm", *words], cwd=folder, capture_output=True, text=True, timeout=HANG_S)
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +82,7 @@ def started(
     script.write_text(STAND_IN, encoding="utf-8")
     words = ["node", str(script), json.dumps([str(folder), setting, answer, fails, drawn and str(drawn), trusted])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    done = subprocess.run(words, cwd=built, env=environment, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(words, cwd=built, env=environment, capture_output=True, text=True, timeout=HANG_S)
     assert done.returncode == 0, done.stderr
     return done.stdout.splitlines()
 

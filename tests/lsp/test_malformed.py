@@ -12,6 +12,7 @@ import pytest
 
 from tests.lsp.client import Client
 from tests.lsp.texts import SLOW
+from tests.waiting import HANG_S
 from tltlc.lsp.paths import name_of
 from tltlc.lsp.server import create
 
@@ -157,7 +158,7 @@ def test_what_comes_behind_the_end(client: Client) -> None:
     send(client, json.dumps(hover()).encode())
     assert code_of(client, 900) == -32600
     client.tell("exit", None)
-    assert client.process.wait(30) == 0
+    assert client.process.wait(HANG_S) == 0
 
 
 @pytest.mark.parametrize(

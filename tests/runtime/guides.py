@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from tests.docs.blocks import ROOT, Block
+from tests.waiting import HANG_S
 
 
 def check_program(program: Block, printed: Block, path: Path) -> None:
@@ -20,7 +21,7 @@ def check_program(program: Block, printed: Block, path: Path) -> None:
         env=environment,
         capture_output=True,
         encoding="utf-8",
-        timeout=60,
+        timeout=HANG_S,
         check=False,
     )
     assert (done.stdout, done.returncode) == (printed.text, 0), done.stderr

@@ -12,6 +12,7 @@ import pytest
 
 import tltlc
 from tests.fixtures import cover_and_hide
+from tests.waiting import HANG_S
 from tltl_runtime import load_task
 from tltlc.backends import emit
 from tltlc.monitor import RewardOptions
@@ -138,7 +139,7 @@ def test_the_import_loads_little() -> None:
     program = (
         f"import sys, tltl_runtime; tltl_runtime.load_task; print([name for name in {heavy} if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=HANG_S)
     assert done.stdout == "[]\n"
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, blocks
 from tests.runtime.guides import check_program
+from tests.waiting import until_gone
 from tltl_runtime.vector import WorkerError, make_vec
 
 PAGE = DOCS / "guides" / "vector.md"
@@ -32,6 +33,7 @@ def test_its_message_is_that() -> None:
     pid = envs.worker_pids[1]
     assert pid is not None
     os.kill(pid, signal.SIGKILL)
+    until_gone([pid])
     with pytest.raises(WorkerError) as caught:
         envs.step(stay)
     said = f"WorkerError: {caught.value}".replace("\n", "\n    ")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.waiting import HANG_S
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.file import write_episode
 from tltl_runtime.stealth.recording import RecordEpisode
@@ -18,7 +19,7 @@ COMMAND = PROGRAM + "from tltlc.cli.main import main; main()"
 
 def run(program: str, *arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     words = [sys.executable, "-c", program, *map(str, arguments)]
-    return subprocess.run(words, cwd=cwd, capture_output=True, text=True, timeout=60)
+    return subprocess.run(words, cwd=cwd, capture_output=True, text=True, timeout=HANG_S)
 
 
 @pytest.fixture(scope="module")

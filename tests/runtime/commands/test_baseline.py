@@ -13,6 +13,7 @@ import pytest
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, edit
 from tests.runtime.regression.recorded_game import _game, _recorded  # noqa: F401
+from tests.waiting import HANG_S
 from tltl_runtime.commands.baseline import _advice
 from tltl_runtime.regression.baseline import read_baseline
 from tltl_runtime.regression.suite import Case, Thresholds
@@ -102,7 +103,7 @@ def test_a_baseline_that_is_stopped_leaves_the_old_one(game: Path) -> None:
         assert playing.stderr is not None
         playing.stderr.readline()
         playing.send_signal(signal.SIGINT)
-        _, err = playing.communicate(timeout=300)
+        _, err = playing.communicate(timeout=HANG_S)
     assert playing.returncode == 130
     assert "stopped: `game.baseline.json` is as it was; the same command goes on with what is over" in err
     assert Path("game.baseline.json").read_bytes() == before

@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tests.waiting import HANG_S
 from tltl_runtime.stealth.episodes.check import check
 from tltl_runtime.stealth.episodes.file import read_episode
 
@@ -67,7 +68,7 @@ def test_asked_to_end_it_says_what_there_is(tmp_path: Path, name: str, status: i
         assert demonstrating.stdout is not None
         demonstrating.stdout.readline()
         demonstrating.send_signal(getattr(signal, name))
-        _, err = demonstrating.communicate(timeout=30)
+        _, err = demonstrating.communicate(timeout=HANG_S)
     assert demonstrating.returncode == status
     assert re.fullmatch(r"stopped: \d+ of 900 episodes were recorded\n", err)
     count = int(err.split()[1])

@@ -19,6 +19,7 @@ from PIL import Image
 import tltl_runtime
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.evaluation.untrained import SOON, untrained
+from tests.waiting import HANG_S
 from tltl_runtime.evaluation.evaluate import evaluate
 from tltl_runtime.evaluation.player import Player
 from tltl_runtime.policies.file import write_policy
@@ -209,7 +210,7 @@ def test_asked_to_end_it_reports_what_was_played(policy: Path, name: str, status
         assert evaluating.stderr is not None
         assert evaluating.stderr.readline() == "10% played; passed: 0 of 60 sampled\n"
         evaluating.send_signal(getattr(signal, name))
-        out, err = evaluating.communicate(timeout=60)
+        out, err = evaluating.communicate(timeout=HANG_S)
     assert evaluating.returncode == status
     (stopped,) = re.findall(r"^stopped: (\d+) of 300 sampled and 0 of 300 arg-max episodes were played$", err, re.M)
     (played,) = re.findall(r"^episodes +(\d+)", out, re.MULTILINE)

@@ -8,14 +8,14 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from threading import Timer
 
 import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
-from tests.runtime.commands.test_play import PLAYERS, ended, needs_screen
+from tests.runtime.commands.test_play import PLAYERS, ended, needs_screen, started
 from tests.runtime.stealth.xvfb import keys, screen
 from tests.runtime.training.imitating import SOON, kept, played
+from tests.waiting import HANG_S
 from tltl_runtime.commands.record import _Kept
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.episodes.check import check
@@ -139,7 +139,7 @@ def test_asked_to_end_it_says_what_there_is(here: Path, name: str, status: int) 
         assert recording.stdout is not None
         recording.stdout.readline()
         recording.send_signal(getattr(signal, name))
-        _, err = recording.communicate(timeout=30)
+        _, err = recording.communicate(timeout=HANG_S)
     assert recording.returncode == status
     assert re.fullmatch(r"stopped: \d+ of 9000 demonstrations are in many; the same command goes on\n", err)
     assert len(names(here / "many")) == int(err.split()[1]) >= 1
@@ -147,29 +147,21 @@ def test_asked_to_end_it_says_what_there_is(here: Path, name: str, status: int) 
 
 @needs_screen
 def test_a_person_until_there_are_enough(here: Path) -> None:
-    command = [sys.executable, "-m", "tltlc", "record", "cover_and_hide", "--by", "keyboard", "--spec", "soon.tltl"]
+    words = ("record", "cover_and_hide", "--by", "keyboard", "--spec", "soon.tltl")
     with screen() as display:
-        player = subprocess.Popen(
-            [*command, "--episodes", "2", "--seed", "4", "-o", "mine"],
-            env=display,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        PLAYERS.append(player)
-        watchdog = Timer(90.0, player.kill)
-        watchdog.start()
-        search = ["xdotool", "search", "--sync", "--onlyvisible", "--class", "."]
-        subprocess.run(search, env=display, check=True, timeout=60, capture_output=True)
-        assert player.stdout is not None
-        said = []
-        for _ in range(2):
-            keys(display, "sleep", "0.5", "keydown", "d")
-            said.append(player.stdout.readline().strip())
-            keys(display, "keyup", "d", "sleep", "0.5", "key", "r")
+        player = started(display, here, *words, "--episodes", "2", "--seed", "4", "-o", "mine")
+        assert player.process.stdout is not None
+        keys(display, "keydown", "d")
+        said = [player.process.stdout.readline().strip()]
+        keys(display, "keyup", "d")
+        player.until_it_looked(1, lambda line: not any(line["looked"]))
+        player.begin_again()
+        keys(display, "keydown", "d")
+        said.append(player.process.stdout.readline().strip())
+        # Another one is asked for, and there are enough.
+        keys(display, "keyup", "d", "key", "r")
         rest = ended(player).splitlines()
-        watchdog.cancel()
-        PLAYERS.remove(player)
+        PLAYERS.remove(player.process)
     assert said[0].startswith("seed 4: success after 8 steps") and said[0].endswith("(1 of 2)")
     assert said[1].endswith("(2 of 2)")
     assert rest[0] == "2 of 2 demonstrations are in mine"

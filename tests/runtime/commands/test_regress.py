@@ -17,6 +17,7 @@ import pytest
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, edit, write_game
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
+from tests.waiting import HANG_S
 from tltl_runtime.regression.run import CASES, case_folder
 from tltl_runtime.regression.suite import read_suite
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -397,7 +398,7 @@ def test_asked_to_end_it_keeps_what_was_judged(tltlc: Run, game: Path, name: str
             if line.startswith("hopeless: 25 of at most 10000"):
                 break
         playing.send_signal(getattr(signal, name))
-        out, err = playing.communicate(timeout=300)
+        out, err = playing.communicate(timeout=HANG_S)
     assert playing.returncode == status
     assert verdicts(out) == ["room:v0 pass", "room:v1 pass"]
     again = "tltlc regress game.toml --out regression/game --json report.json --junit report.xml --workers 1 --github"

@@ -18,6 +18,7 @@ from PIL import Image
 
 import tltl_runtime.stealth.pictures.film as film
 from tests.cli.conftest import ROOT, Outcome, tltlc  # noqa: F401
+from tests.waiting import HANG_S
 from tltl_runtime.commands.notation import NOTATIONS
 from tltl_runtime.commands.replay import _VIEWS
 from tltl_runtime.stealth.env import make_env
@@ -131,7 +132,7 @@ def test_messages_for_programs_are_json(recorded: Path) -> None:
     Path("cut.episode.npz").write_bytes(Path(FILE).read_bytes()[:-9])
     program = "import sys; from tltlc.cli.main import main; main(sys.argv[1:])"
     arguments = [sys.executable, "-c", program, "replay", "cut.episode.npz", "--format", "json"]
-    done = subprocess.run(arguments, capture_output=True, check=False, timeout=60)
+    done = subprocess.run(arguments, capture_output=True, check=False, timeout=HANG_S)
     assert done.returncode == 1
     assert [each["code"] for each in json.loads(done.stderr)["diagnostics"]] == ["TLT0820"]
 

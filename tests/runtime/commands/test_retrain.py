@@ -19,6 +19,7 @@ from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, write_game
 from tests.runtime.regression.made import several
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
+from tests.waiting import HANG_S
 from tltl_runtime.evaluation.figures import figures_of
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression.retrained import Retrained, Trained
@@ -204,7 +205,7 @@ def test_asked_to_end_it_keeps_what_there_is(tltlc: Run, game: Path) -> None:  #
             if line.startswith("searching: "):
                 break
         training.send_signal(signal.SIGINT)
-        _, err = training.communicate(timeout=300)
+        _, err = training.communicate(timeout=HANG_S)
     assert training.returncode == 130
     assert (
         "stopped: all cases are judged, and 1 is still to be trained for; to go on: "

@@ -19,6 +19,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 from tests.cli.conftest import EXAMPLE, Outcome, tltlc  # noqa: F401
 from tests.docs.blocks import DOCS
 from tests.runtime.training.test_settings import GOLDEN
+from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.search import Searched
@@ -372,7 +373,7 @@ def test_asked_to_end_it_can_go_on(tltlc: TltlcFunction, here: Path, name: str, 
         first = [process.stderr.readline() for _ in range(3)][-1]
         assert first.startswith("iteration 1: 64 steps in "), first + process.stderr.read()
         process.send_signal(getattr(signal, name))
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=HANG_S)
     assert process.returncode == status
     assert err.splitlines()[-1] == "stopped; to go on: tltlc train --resume run"
     done = len(read_metrics(here / "run" / METRICS))
@@ -387,7 +388,7 @@ def test_a_worker_that_is_killed(here: Path) -> None:
         assert [process.stderr.readline() for _ in range(3)][-1].startswith("iteration 1: ")
         (worker,) = _workers(process.pid)
         os.kill(worker, signal.SIGKILL)
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=HANG_S)
     assert process.returncode == 1
     assert "error[TLT0871]: the training broke off: worker 0 was killed by SIGKILL\n" in err
     assert "to go on from the last checkpoint: tltlc train --resume run" in err

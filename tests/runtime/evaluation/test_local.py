@@ -9,9 +9,18 @@ from pathlib import Path
 
 import pytest
 
+from tests.docs.blocks import ROOT
+from tests.waiting import HANG_S
+
 _MAIN = """
-import os, signal, time
+import os, signal
+from pathlib import Path
+from tests.waiting import until
 from tltl_runtime.evaluation.local import Process
+
+if __name__ == "__mp_main__":
+    Path("imports").touch()
+    until(Path("interrupted").exists, "the interrupt")
 
 class Plays:
     def play(self, task):
@@ -20,11 +29,11 @@ class Plays:
 if __name__ == "__main__":
     worker = Process(Plays)
     future = worker.play("played")
-    # It imports what it needs by now: that takes longer than this.
-    time.sleep(0.2)
+    until(Path("imports").exists, "a worker that imports what it needs")
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.killpg(os.getpgrp(), signal.SIGINT)
-    print(future.result(60))
+    Path("interrupted").touch()
+    print(future.result())
     worker.close()
 """
 
@@ -33,5 +42,15 @@ if __name__ == "__main__":
 def test_a_worker_that_begins_does_not_hear_of_ctrl_c(tmp_path: Path) -> None:
     path = tmp_path / "main.py"
     path.write_text(_MAIN, encoding="utf-8")
-    done = subprocess.run([sys.executable, path], capture_output=True, text=True, start_new_session=True, check=False)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
+    done = subprocess.run(
+        [sys.executable, path],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        start_new_session=True,
+        timeout=HANG_S,
+        check=False,
+    )
     assert (done.returncode, done.stdout, done.stderr) == (0, "played\n", "")

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
-from multiprocessing import active_children
+from collections.abc import Generator, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from tests.runtime.evaluation.deadly import Deadly, killed
 from tests.runtime.evaluation.untrained import untrained
 from tests.runtime.regression.game import NEVER, edit, with_baseline, write_game
+from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import baseline_of
-from tltl_runtime.regression.play import ready
+from tltl_runtime.regression.play import Ready, Recorded, episodes, ready
 from tltl_runtime.regression.retrain import (
     EPISODE,
     FOLDER,
@@ -145,16 +147,19 @@ def test_episodes_of_the_case_itself_show_that_there_is_a_way(game: Suite) -> No
     assert retrained(game, lucky, training_of(game, hopeless), 1, lambda *_: None).outcome == "feasible"
 
 
-def test_of_a_lost_worker_it_is_told_what_plays_its_episode_with_the_new_policy(game: Suite) -> None:
+def test_of_a_lost_worker_it_is_told_what_plays_its_episode_with_the_new_policy(
+    game: Suite, monkeypatch: pytest.MonkeyPatch
+) -> None:
     *_, hopeless = judged(game)
     run = training_of(game, hopeless)
 
-    def kill(*_: object) -> None:
-        for child in active_children():
-            child.kill()
+    def deadly(ready: Ready, pool: Pool) -> Generator[Recorded]:
+        policy: Any = Deadly(ready.setup.policy, killed)
+        return episodes(replace(ready, setup=replace(ready.setup, policy=policy)), pool)
 
+    monkeypatch.setattr("tltl_runtime.regression.retrain.episodes", deadly)
     with pytest.raises(TltlError, match="TLT0850") as error:
-        retrained(game, hopeless, run, 2, kill)
+        retrained(game, hopeless, run, 2, lambda *_: None)
     (found,) = error.value.diagnostics
     assert f"tltlc evaluate {run.folder} --level room.toml:v0 --seed {game.seed + 1} --first " in (found.help or "")
 

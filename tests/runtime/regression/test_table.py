@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from contextlib import closing
-from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
 
+from tests.runtime.evaluation.deadly import killed
 from tests.runtime.policies.examples import card_of, policy_of
+from tltl_runtime.evaluation.player import Result, Task
 from tltl_runtime.evaluation.statistics import Spread
 from tltl_runtime.policies.file import write_policy
 from tltl_runtime.regression import table_cells
@@ -86,14 +86,18 @@ def test_the_expert_plays_the_same_in_any_number_of_processes(tmp_path: Path) ->
     assert measured(tmp_path / "several", "expert", "cover_and_hide", "v0", None, 2) == alone
 
 
+class Mortal(table_cells._ExpertPlayer):
+    """Ends its process in its first episode."""
+
+    def play(self, task: Task) -> Result:
+        killed()
+        return super().play(task)
+
+
 def test_a_process_of_the_expert_that_is_lost_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(table_cells, "EPISODES", 30)
-    with closing(table_cells._by_expert("cover_and_hide", "v0", 2)) as playing:
-        assert next(playing).success
-        for child in active_children():
-            child.kill()
-        with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode") as error:
-            list(playing)
+    monkeypatch.setattr(table_cells, "_ExpertPlayer", Mortal)
+    with pytest.raises(TltlError, match="TLT0850: a worker was lost while it played episode") as error:
+        list(table_cells._by_expert("cover_and_hide", "v0", 2))
     said = re.search(r"\(seed (\d+) of the level\)", str(error.value))
     assert said is not None
     (found,) = error.value.diagnostics

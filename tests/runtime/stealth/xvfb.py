@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 
+from tests.waiting import HANG_S
+
 MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
 MISSING += [name for name in ("pygame",) if find_spec(name) is None]
 
@@ -29,9 +31,9 @@ def screen() -> Iterator[dict[str, str]]:
         yield {**os.environ, "DISPLAY": f":{number}", "SDL_VIDEODRIVER": "x11", "OMP_NUM_THREADS": "1"}
     finally:
         server.terminate()
-        server.wait(10)
+        server.wait(HANG_S)
 
 
 def keys(environment: dict[str, str], *what: str) -> None:
     """Say to xdotool what to press: ``key Escape``, ``keydown d``."""
-    subprocess.run(["xdotool", *what], env=environment, check=True, timeout=10, capture_output=True)
+    subprocess.run(["xdotool", *what], env=environment, check=True, timeout=HANG_S, capture_output=True)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.runtime.own_cluster import needs_ray, own_cluster
 from tests.runtime.training.runs import run_in
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.task import load_task
@@ -15,8 +15,6 @@ from tltl_runtime.training.initial import initial_of
 from tltl_runtime.training.run import POLICY
 from tltl_runtime.training.train import train
 from tltlc.record import replace
-
-needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 
 SPEC = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep alive }\n"
 """A spec that who does anything at all meets, after eight steps, so that there are ways to begin on."""
@@ -59,4 +57,5 @@ def test_from_a_policy_with_two_processes(alone: bytes, tmp_path: Path) -> None:
 
 @needs_ray
 def test_on_a_ray_cluster(alone: bytes, tmp_path: Path) -> None:
-    assert _trained(tmp_path / "ray", rollout__pool="ray") == alone
+    with own_cluster():
+        assert _trained(tmp_path / "ray", rollout__pool="ray") == alone

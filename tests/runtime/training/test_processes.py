@@ -19,6 +19,7 @@ import pytest
 
 from tests.runtime.training import runs
 from tests.runtime.training.runs import run_in
+from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
@@ -46,7 +47,7 @@ def _started(*arguments: str) -> Iterator[subprocess.Popen[str]]:
 
 def _lines(process: subprocess.Popen[str]) -> list[dict[str, Any]]:
     """What the processes say, to their ends."""
-    output, errors = process.communicate(timeout=120)
+    output, errors = process.communicate(timeout=HANG_S)
     assert process.returncode == 0, errors
     return [json.loads(line) for line in output.splitlines()]
 
@@ -175,7 +176,7 @@ def test_of_processes_that_train_by_command_the_first_one_alone_speaks(tmp_path:
     train = ["-m", "tltlc", "train", "--level", "navigation:v2", "--config", str(tmp_path / "small.toml")]
     limits = ["--steps", "256", "--workers", "1", "--out", str(tmp_path / "run")]
     with _started(*torchrun, *train, *limits) as process:
-        output, errors = process.communicate(timeout=200)
+        output, errors = process.communicate(timeout=HANG_S)
     assert output.count("ended by the limit of steps after 256 steps") == 1, errors
     assert errors.count("training navigation on navigation v2") == 1
     assert errors.count("nobody reaches `s2`") == 1

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.waiting import until_gone
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.training.restarts import Restarts
 from tltl_runtime.training.search import Exploration, Failure, Search, Searched, Way
@@ -209,6 +210,7 @@ def test_a_lost_worker_is_told_with_the_seeds_that_episodes_began_with(
     (worker,) = env.worker_pids
     assert worker is not None
     os.kill(worker, signal.SIGKILL)
+    until_gone([worker])
     with pytest.raises(WorkerError) as found:
         # It is lost in a step, or where some are to begin anew.
         episodes.cut(np.isin(range(4), begun)) if begun else episodes.step(np.zeros((4, 5), dtype=np.int64))

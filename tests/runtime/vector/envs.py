@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import os
 import time
+from pathlib import Path
 from typing import Any
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from tests.waiting import until
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.stealth.level import Box
 from tltl_runtime.wrapper import TltlEnv
 from tltlc.record import replace
 
-GO, EXIT, RAISE, HANG, SLEEP = range(5)
+GO, EXIT, RAISE, HANG, HOLD = range(5)
 
 
 class Fragile(gymnasium.Env[Any, Any]):
@@ -47,13 +49,27 @@ class Fragile(gymnasium.Env[Any, Any]):
             os._exit(3)
         if action == RAISE:
             raise RuntimeError("the bridge is out")
-        if action in (HANG, SLEEP):
-            time.sleep(1000.0 if action == HANG else 1.0)
+        while action == HANG:
+            time.sleep(1000.0)
         return self._observed(), self.count, self.count == 7, False, {"count": self.count}
 
     def _observed(self) -> dict[str, Any]:
         numbers = self.np_random.random(2).astype(np.float32)
         return {"count": self.count, "pair": (numbers, np.array([1, 0, self.count % 2], dtype=np.int8))}
+
+
+class Held(Fragile):
+    """Told to hold, it makes a file ``held-PID`` in a folder and ends its step once a file ``released`` is there."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        self._folder = folder
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        if action == HOLD:
+            (self._folder / f"held-{os.getpid()}").touch()
+            until((self._folder / "released").exists, "somebody to release it")
+        return super().step(action)
 
 
 class Preparing(Fragile):

@@ -16,6 +16,7 @@ from gymnasium import spaces
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
+from tests.waiting import HANG_S
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv, make_vec
 from tltl_runtime.vector.actions import check_batch
 
@@ -128,7 +129,7 @@ def test_a_script_without_its_guard_is_told(how: str, tmp_path: Path) -> None:
     script.write_text(UNGUARDED, encoding="utf-8")
     arguments = [str(script)] if how == "file" else []
     with script.open(encoding="utf-8") as file:
-        done = subprocess.run([sys.executable, *arguments], stdin=file, capture_output=True, text=True, timeout=60)
+        done = subprocess.run([sys.executable, *arguments], stdin=file, capture_output=True, text=True, timeout=HANG_S)
     last = done.stderr.rpartition("WorkerError: ")[2]
     assert "worker 0 ended with exit status 1" in last
     assert 'stands under\n`if __name__ == "__main__":`, and the program in a file' in last

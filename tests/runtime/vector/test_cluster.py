@@ -4,22 +4,34 @@ from __future__ import annotations
 
 import socket
 import sys
-from importlib.util import find_spec
 
 import pytest
 
+from tests.runtime.own_cluster import needs_ray, start_alone
 from tltl_runtime.vector.cluster import cluster
 from tltlc.diagnostics.diagnostic import TltlError
 
 
-@pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
+@needs_ray
+def test_where_there_is_no_cluster_one_of_this_machine_is_started_and_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    import ray
+
+    monkeypatch.setenv("RAY_ADDRESS", "local")
+    with start_alone(), cluster() as found:
+        assert found is ray
+        assert ray.is_initialized()
+    assert not ray.is_initialized()
+
+
+@needs_ray
 def test_nobody_answers(monkeypatch: pytest.MonkeyPatch) -> None:
-    with socket.socket() as unused:
-        unused.bind(("127.0.0.1", 0))
-        address = f"127.0.0.1:{unused.getsockname()[1]}"
-    monkeypatch.setenv("RAY_ADDRESS", address)
-    with pytest.raises(TltlError, match=f"TLT0852: there is no Ray cluster at `{address}`: .*refused"), cluster():
-        pass
+    # A port that is bound and listens to nobody refuses, and is nobody else's meanwhile.
+    with socket.socket() as deaf:
+        deaf.bind(("127.0.0.1", 0))
+        address = f"127.0.0.1:{deaf.getsockname()[1]}"
+        monkeypatch.setenv("RAY_ADDRESS", address)
+        with pytest.raises(TltlError, match=f"TLT0852: there is no Ray cluster at `{address}`: .*refused"), cluster():
+            pass
 
 
 def test_without_ray(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,7 @@ import os
 import signal
 import subprocess
 import sys
-import time
+import threading
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,28 +17,28 @@ import pytest
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 
 from tests.docs.blocks import ROOT
-from tests.runtime.vector.envs import EXIT, GO, HANG, RAISE, SLEEP, Ending, Fragile, Unmade, leaves_its_level
+from tests.runtime.vector.clock import Clock
+from tests.runtime.vector.envs import EXIT, GO, HANG, HOLD, RAISE, Ending, Fragile, Held, Unmade, leaves_its_level
+from tests.waiting import HANG_S, until, until_gone
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv
 
 
 def fragile(workers: int, count: int = 2, **options: Any) -> WorkerVectorEnv:
-    env = WorkerVectorEnv([Fragile] * count, workers, **options)
+    env = WorkerVectorEnv([Fragile] * count, workers, **{"timeout": HANG_S, **options})
     env.reset(seed=40)
     return env
 
 
-def is_running(pid: int | None) -> bool:
-    try:
-        return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()[0]
-    except OSError:
-        return False
+def kill(pid: int | None) -> None:
+    assert pid is not None
+    os.kill(pid, signal.SIGKILL)
+    until_gone([pid])
 
 
-def gone(pids: list[int], within: float = 5.0) -> bool:
-    deadline = time.monotonic() + within
-    while any(map(is_running, pids)) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    return not any(map(is_running, pids))
+def patience_ends_with(env: WorkerVectorEnv, silent: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have the time of a silent worker be over as soon as nobody else is waited for."""
+    asked: set[int] = env._workers._asked  # type: ignore[assignment]
+    monkeypatch.setattr("tltl_runtime.vector.workers.time", Clock(lambda: asked == {silent}))
 
 
 def lost(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
@@ -46,7 +46,8 @@ def lost(env: WorkerVectorEnv, *actions: list[int]) -> WorkerError:
     with pytest.raises(WorkerError) as caught:
         for each in actions:
             env.step(np.array(each))
-    assert env.closed and gone(pids)
+    assert env.closed
+    until_gone(pids)
     with pytest.raises(ClosedEnvironmentError):
         env.step(np.array(actions[0]))
     return caught.value
@@ -64,9 +65,7 @@ def test_one_that_exits() -> None:
 
 def test_one_that_is_killed_between_two_steps() -> None:
     env = fragile(2)
-    pid = env.worker_pids[1]
-    assert pid is not None
-    os.kill(pid, signal.SIGKILL)
+    kill(env.worker_pids[1])
     error = lost(env, [GO, GO])
     assert str(error).splitlines()[:1] == ["worker 1 was killed by SIGKILL; it had"]
     assert [each.env for each in error.playing] == [1]
@@ -83,20 +82,29 @@ def test_one_that_raises() -> None:
     assert lines[-1] == "RuntimeError: the bridge is out"
 
 
-def test_one_that_is_silent() -> None:
-    begun = time.monotonic()
-    error = lost(fragile(2, timeout=2.0), [GO, HANG])
-    assert str(error).startswith("worker 1 was silent for 2 s, and was killed; it had\n  env 1: Fragile, seed 41")
-    assert time.monotonic() - begun < 10.0
+def test_one_that_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+    env = fragile(2)
+    patience_ends_with(env, 1, monkeypatch)
+    error = lost(env, [GO, HANG])
+    silent = f"worker 1 was silent for {HANG_S:g} s, and was killed; it had\n  env 1: Fragile, seed 41"
+    assert str(error).startswith(silent)
 
 
-def test_one_that_answers_and_ends_does_not_keep_the_silent_from_being_found() -> None:
-    begun = time.monotonic()
-    env = WorkerVectorEnv([Fragile, Ending], 2, timeout=2.0)
+def test_one_that_answers_and_ends_does_not_keep_the_silent_from_being_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    env = WorkerVectorEnv([Fragile, Ending], 2, timeout=HANG_S)
     env.reset(seed=40)
+    asked: set[int] = env._workers._asked  # type: ignore[assignment]
+    ending = [pid for pid in env.worker_pids[1:] if pid]
+
+    def is_over() -> bool:
+        if asked != {0}:
+            return False
+        until_gone(ending)
+        return True
+
+    monkeypatch.setattr("tltl_runtime.vector.workers.time", Clock(is_over))
     error = lost(env, [HANG, GO])
-    assert str(error).startswith("worker 0 was silent for 2 s, and was killed")
-    assert time.monotonic() - begun < 15.0
+    assert str(error).startswith(f"worker 0 was silent for {HANG_S:g} s, and was killed")
 
 
 def test_a_body_that_leaves_its_level() -> None:
@@ -120,9 +128,7 @@ def test_another_takes_its_place(caplog: pytest.LogCaptureFixture) -> None:
     for step in range(1, 20):
         killed = step == 10
         if killed:
-            pid = env.worker_pids[1]
-            assert pid is not None
-            os.kill(pid, signal.SIGKILL)
+            kill(env.worker_pids[1])
         with caplog.at_level(logging.WARNING):
             expected, (observations, rewards, terminated, truncated, infos) = plain.step(actions), env.step(actions)
         assert np.array_equal(observations["pair"][0][:2], expected[0]["pair"][0][:2])
@@ -151,19 +157,27 @@ def test_one_that_is_lost_again_at_once_stops_the_run() -> None:
         env.reset(seed=1)
 
 
-def test_after_a_step_was_interrupted_only_a_reset_is_of_use() -> None:
-    env = fragile(1, 1)
+def test_after_a_step_was_interrupted_only_a_reset_is_of_use(tmp_path: Path) -> None:
+    env = WorkerVectorEnv([partial(Held, tmp_path)], 1, timeout=HANG_S)
+    env.reset(seed=40)
 
     def interrupt(*_: Any) -> None:
         raise KeyboardInterrupt
 
+    def alarm() -> None:
+        until(lambda: list(tmp_path.glob("held-*")), "a step that is under way")
+        os.kill(os.getpid(), signal.SIGALRM)
+
     before = signal.signal(signal.SIGALRM, interrupt)
+    thread = threading.Thread(target=alarm)
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.3)
         with pytest.raises(KeyboardInterrupt):
-            env.step(np.array([SLEEP]))
+            thread.start()
+            env.step(np.array([HOLD]))
     finally:
+        thread.join()
         signal.signal(signal.SIGALRM, before)
+        (tmp_path / "released").touch()
     with pytest.raises(ResetNeeded, match="interrupted"):
         env.step(np.array([GO]))
     env.reset(seed=2)
@@ -173,17 +187,18 @@ def test_after_a_step_was_interrupted_only_a_reset_is_of_use() -> None:
 
 SCRIPT = """
 import sys
+from functools import partial
+from pathlib import Path
 import numpy as np
-from tests.runtime.vector.envs import SLEEP, Fragile
+from tests.runtime.vector.envs import HOLD, Held
 from tltl_runtime.vector import WorkerVectorEnv
 
 if __name__ == "__main__":
-    env = WorkerVectorEnv([Fragile] * 2, 2)
+    env = WorkerVectorEnv([partial(Held, Path(sys.argv[2]))] * 2, 2)
     env.reset(seed=1)
     print(*env.worker_pids, flush=True)
     if sys.argv[1] == "step":
-        env.step(np.array([SLEEP, SLEEP]))
-        env.step(np.array([SLEEP, SLEEP]))
+        env.step(np.array([HOLD, HOLD]))
     if sys.argv[1] == "forget":
         env = None
         print("forgotten", flush=True)
@@ -196,10 +211,9 @@ def test_no_process_and_no_memory_is_left(how: str, tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(SCRIPT, encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "runtime")])}
-    shared = set(Path("/dev/shm").glob("pym-*"))
     what = how if how in ("exit", "forget") else "step"
     child = subprocess.Popen(
-        [sys.executable, str(script), what],
+        [sys.executable, str(script), what, str(tmp_path)],
         env=environment,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -212,14 +226,17 @@ def test_no_process_and_no_memory_is_left(how: str, tmp_path: Path) -> None:
     assert len(pids) == 2
     if how == "forget":
         assert child.stdout.readline() == "forgotten\n"
-        assert gone(pids)
-    time.sleep(0.2)
+        until_gone(pids)
+    if what == "step":
+        until(lambda: len(list(tmp_path.glob("held-*"))) == 2, "workers that are in a step")
     if how == "interrupt":
         os.killpg(child.pid, signal.SIGINT)
     if how == "kill":
         child.kill()
-    _, errors = child.communicate(timeout=15)
-    assert gone(pids)
+    (tmp_path / "released").touch()
+    _, errors = child.communicate(timeout=HANG_S)
+    until_gone(pids)
     assert child.returncode == {"interrupt": -signal.SIGINT, "kill": -signal.SIGKILL}.get(how, 0), errors
     assert ("KeyboardInterrupt" in errors) is (how == "interrupt") and "leaked" not in errors
-    assert set(Path("/dev/shm").glob("pym-*")) <= shared
+    # As Python names what processes share.
+    assert [path for pid in (child.pid, *pids) for path in Path("/dev/shm").glob(f"pym-{pid}-*")] == []

@@ -2,42 +2,46 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import closing
 from functools import partial
-from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 import pytest
 
+from tests.runtime.own_cluster import CORES, needs_ray, own_cluster
+from tests.runtime.vector.clock import Clock
 from tests.runtime.vector.envs import EXIT, GO, HANG, RAISE, Fragile
 from tests.runtime.vector.test_vector import COUNT, SPEC, played, same
+from tests.waiting import HANG_S, until
 from tltl_runtime.vector import WorkerError, WorkerVectorEnv, make_vec
 from tltlc.diagnostics.diagnostic import TltlError
 
-pytestmark = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
+pytestmark = needs_ray
 
 
 @pytest.fixture(scope="module", autouse=True)
 def ray_here() -> Iterator[None]:
-    """A Ray instance of this machine, for all tests of this module."""
-    from tltl_runtime.vector.cluster import cluster
-
-    with cluster():
+    """A cluster for all tests of this module."""
+    with own_cluster():
         yield
 
 
-def test_processes_of_torchrun_share_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(autouse=True)
+def _all_cores_are_free(ray_here: None) -> None:
+    """Ray counts a core as free some time after its actor was killed."""
     import ray
 
-    # What actors leave is counted as free a while later only: this is the first test.
-    cores = int(ray.cluster_resources()["CPU"])
-    monkeypatch.setenv("WORLD_SIZE", str(cores))
-    with closing(WorkerVectorEnv([Fragile] * (2 * cores), "ray")) as env:
+    until(lambda: ray.available_resources().get("CPU", 0) == CORES, "cores that are all free")
+
+
+def test_processes_of_torchrun_share_the_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("WORLD_SIZE", str(CORES))
+    with closing(WorkerVectorEnv([Fragile] * (2 * CORES), "ray", timeout=HANG_S)) as env:
         assert len(env.worker_pids) == 1
         env.reset(seed=1)
-        assert list(env.step(np.full(2 * cores, GO))[1]) == [1.0] * (2 * cores)
+        assert list(env.step(np.full(2 * CORES, GO))[1]) == [1.0] * (2 * CORES)
 
 
 def test_the_same_as_local_workers() -> None:
@@ -48,7 +52,7 @@ def test_the_same_as_local_workers() -> None:
 
 
 def test_one_that_raises() -> None:
-    env = WorkerVectorEnv([Fragile] * 2, "ray")
+    env = WorkerVectorEnv([Fragile] * 2, "ray", timeout=HANG_S)
     env.reset(seed=[4, 8])
     env.step(np.array([GO, GO]))
     with pytest.raises(WorkerError) as found:
@@ -57,10 +61,14 @@ def test_one_that_raises() -> None:
     assert "seed 8, episode 1, step 1" in str(found.value)
 
 
-def test_another_takes_the_place_of_one_that_ended() -> None:
-    env = WorkerVectorEnv([Fragile] * 2, "ray", on_death="replace", timeout=5.0)
+def test_another_takes_the_place_of_one_that_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    env = WorkerVectorEnv([Fragile] * 2, "ray", on_death="replace", timeout=HANG_S)
+    asked: dict[Any, int] = env._workers._asked  # type: ignore[assignment]
+    clock = Clock(lambda: set(asked.values()) == {1})
     env.reset(seed=[4, 8])
     for action in (EXIT, HANG):
+        if action == HANG:
+            monkeypatch.setattr("tltl_runtime.vector.ray_workers.time", clock)
         *_, truncated, infos = env.step(np.array([GO, action]))
         assert truncated[1]
         assert infos["lost"][1]
@@ -83,22 +91,22 @@ def test_a_cluster_without_a_free_core_is_told(monkeypatch: pytest.MonkeyPatch) 
 def test_environments_are_shared_out_over_the_cores_that_are_really_free(monkeypatch: pytest.MonkeyPatch) -> None:
     import ray
 
-    # On a busy machine the process of an actor takes seconds to start, once its core is free.
-    monkeypatch.setattr("tltl_runtime.vector.cluster._AFTER_THE_FIRST_S", 10.0)
-    cores = int(ray.cluster_resources()["CPU"])
-    _until(lambda: ray.available_resources().get("CPU", 0) >= cores)
-    monkeypatch.setattr("tltl_runtime.vector.ray_workers.free_cores", lambda _: cores + 1)
-    with closing(WorkerVectorEnv([Fragile] * (2 * cores + 2), "ray")) as env:
-        assert len(env.worker_pids) == cores
+    there, wait = [], ray.wait
+
+    def noted(*arguments: Any, **options: Any) -> Any:
+        there[:], left = wait(*arguments, **options)
+        return list(there), left
+
+    monkeypatch.setattr(ray, "wait", noted)
+    monkeypatch.setattr("tltl_runtime.vector.ray_workers.free_cores", lambda _: CORES + 1)
+    with monkeypatch.context() as patch:
+        # Nobody waits any longer for the one for which there is no core.
+        patch.setattr("tltl_runtime.vector.cluster.time", Clock(lambda: len(there) == CORES))
+        env = WorkerVectorEnv([Fragile] * (2 * CORES + 2), "ray", timeout=HANG_S)
+    with closing(env):
+        assert len(env.worker_pids) == CORES
         env.reset(seed=1)
-        assert list(env.step(np.full(2 * cores + 2, GO))[1]) == [1.0] * (2 * cores + 2)
-
-
-def _until(is_so: Callable[[], bool], seconds: float = 30.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < deadline, f"not so within {seconds:g} s"
-        time.sleep(0.1)
+        assert list(env.step(np.full(2 * CORES + 2, GO))[1]) == [1.0] * (2 * CORES + 2)
 
 
 def test_an_environment_that_cannot_be_made() -> None:

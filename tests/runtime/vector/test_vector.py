@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from functools import partial
 from typing import Any
 
@@ -15,6 +14,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tests.runtime.vector.envs import Fragile, Preparing
+from tests.waiting import until
 from tltl_runtime.stealth.env import make_env
 from tltl_runtime.vector import WorkerVectorEnv, make_vec
 from tltl_runtime.vector.workers import shared_out
@@ -160,10 +160,7 @@ def test_any_environment_with_spaces_of_fixed_size() -> None:
 def test_workers_prepare_while_nothing_is_asked_of_them() -> None:
     env = WorkerVectorEnv([Preparing] * 3, workers=2)
     env.reset(seed=1)
-    deadline = time.monotonic() + 20
-    while env.get_attr("left") != (0, 0, 0) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert env.get_attr("left") == (0, 0, 0)
+    until(lambda: env.get_attr("left") == (0, 0, 0), "workers that are prepared")
     env.close()
 
 

@@ -15,6 +15,7 @@ from PIL import Image
 
 import tltl_runtime  # noqa: F401  (registers the environments)
 from tests.runtime.stealth.xvfb import MISSING, screen
+from tests.waiting import HANG_S
 from tltl_runtime.stealth.env import GameEnv, make_env
 from tltl_runtime.stealth.game import Game
 from tltl_runtime.stealth.levels.file import load_level
@@ -122,7 +123,7 @@ print("checked")
 def test_gymnasiums_own_checks_of_all_modes_with_a_screen(tmp_path: Path) -> None:
     with screen() as environment:
         command = [sys.executable, "-c", CHECK]
-        done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+        done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S)
         assert done.stdout.endswith("checked\n"), done.stderr
 
 
@@ -139,7 +140,7 @@ def test_gymnasiums_own_checks_without_a_screen(name: str, monkeypatch: pytest.M
 
 def test_the_pictures_of_the_readme_are_those_that_are_made(tmp_path: Path) -> None:
     images = Path(__file__).parents[4] / "docs" / "images"
-    subprocess.run([sys.executable, images / "frames.py", tmp_path], check=True, timeout=60, capture_output=True)
+    subprocess.run([sys.executable, images / "frames.py", tmp_path], check=True, timeout=HANG_S, capture_output=True)
     made = sorted(tmp_path.iterdir())
     assert [path.name for path in made] == ["branching.png", "cover_and_hide.png", "navigation.png"]
     for path in made:

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import tltl_runtime
+from tests.waiting import HANG_S
 
 _PACKAGE = Path(tltl_runtime.__file__).parent
 
@@ -18,7 +19,7 @@ _PACKAGE = Path(tltl_runtime.__file__).parent
 def test_the_game_is_silent(closed: str) -> None:
     program = "from tltl_runtime.stealth.env import make_env; make_env('navigation').close(); print('made')"
     done = subprocess.run(
-        f'"{sys.executable}" -c "{program}" {closed}', shell=True, capture_output=True, text=True, timeout=60
+        f'"{sys.executable}" -c "{program}" {closed}', shell=True, capture_output=True, text=True, timeout=HANG_S
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "made\n", "")
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.waiting import HANG_S
 from tltl_runtime.stealth.level import Barrier, Box, Level, Mover, Sensors, Solid, Start
 from tltl_runtime.stealth.world.bodies import capsule, static_box, static_boxes
 from tltl_runtime.stealth.world.bullet import pybullet
@@ -391,7 +392,7 @@ def test_an_episode_happens_again_bit_for_bit(opened: list[World]) -> None:
     assert episode(second, 7) == expected
     assert episode(first, 7) == expected
     other = subprocess.run(
-        [sys.executable, "-c", BUSY], capture_output=True, text=True, check=True, timeout=60, cwd=ROOT
+        [sys.executable, "-c", BUSY], capture_output=True, text=True, check=True, timeout=HANG_S, cwd=ROOT
     )
     assert repr(expected) in other.stdout
 

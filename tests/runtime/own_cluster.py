@@ -1,0 +1,86 @@
+"""A Ray cluster of a test's own, which has as many cores wherever the tests run."""
+
+from __future__ import annotations
+
+import fcntl
+import logging
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Final
+
+import pytest
+
+from tests.waiting import HANG_S, until
+
+needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
+
+CORES: Final = 2
+
+_SYSTEM: Final = {
+    # On a busy machine a process needs long to start, and Ray would kill it and start another one.
+    "worker_register_timeout_seconds": int(HANG_S),
+    "health_check_timeout_ms": int(1000 * HANG_S),
+    "health_check_failure_threshold": 1000,
+    # What other programs do with the memory must not end an actor.
+    "memory_monitor_refresh_ms": 0,
+}
+_LOCK: Final = Path(tempfile.gettempdir(), f"tltlc-tests-ray-{os.getuid()}.lock")
+_OBJECTS_BYTES: Final = 100 * 2**20
+"""Far more than a test needs, where Ray would take a third of the machine's memory."""
+
+
+@contextmanager
+def own_cluster() -> Iterator[None]:
+    """Connect this process to a new cluster of ``CORES`` cores, which nobody else uses, until the block ends.
+
+    The runtime waits as long for a core of it as for anything else that comes for certain.
+    """
+    import ray
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("RAY_USAGE_STATS_ENABLED", "0")
+        patch.setattr("tltl_runtime.vector.ray_workers.TO_START_S", HANG_S)
+        patch.setattr("tltl_runtime.vector.cluster._AFTER_THE_FIRST_S", HANG_S)
+        patch.setattr("tltl_runtime.evaluation.ray_pool.PATIENCE_S", HANG_S)
+        with start_alone():
+            ray.init(
+                address="local",
+                num_cpus=CORES,
+                include_dashboard=False,
+                log_to_driver=False,
+                logging_level=logging.ERROR,
+                object_store_memory=_OBJECTS_BYTES,
+                _system_config=_SYSTEM,
+            )
+        try:
+            yield
+        finally:
+            ray.shutdown()
+
+
+@contextmanager
+def start_alone() -> Iterator[None]:
+    """Start a cluster while no other test does, since Ray chooses free ports first and takes them later.
+
+    A start may last as long as it needs: by itself Ray gives up after 30 s, for one part of it whatever its options.
+    """
+    from ray._private import services
+
+    node_of = services.get_node
+
+    def node_once_it_is_there(*which: Any) -> Any:
+        def node() -> Any:
+            with suppress(RuntimeError):
+                return node_of(*which)
+
+        return until(node, "the node of the cluster", 0.2)
+
+    with pytest.MonkeyPatch.context() as patch, _LOCK.open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        patch.setenv("RAY_gcs_server_port_wait_time_s", str(int(HANG_S)))
+        patch.setattr(services, "get_node", node_once_it_is_there)
+        yield

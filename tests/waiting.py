@@ -1,0 +1,67 @@
+"""Wait for events, not for times: every deadline here only ends a test that hangs."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Final, TypeVar
+
+Found = TypeVar("Found")
+
+HANG_S: Final = 900.0
+"""After so many seconds a test hangs: no busy machine is that slow. Pass it wherever a ``timeout`` is asked for."""
+
+
+def until(event: Callable[[], Found], what: str, pause_s: float = 0.02) -> Found:
+    """Wait until ``event()`` is true, and return its value; raise AssertionError after ``HANG_S`` seconds."""
+    deadline = time.monotonic() + HANG_S
+    while not (found := event()):
+        assert time.monotonic() < deadline, f"waited {HANG_S:g} s in vain for {what}"
+        time.sleep(pause_s)
+    return found
+
+
+def is_running(pid: int) -> bool:
+    """Whether a process is there and has not ended, on Linux."""
+    try:
+        return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+
+
+def until_gone(pids: Iterable[int]) -> None:
+    """Wait until all these processes have ended."""
+    waited = tuple(pids)
+    until(lambda: not any(map(is_running, waited)), f"the end of the processes {waited}")
+
+
+def children(pid: int) -> list[int]:
+    """The processes that the main thread of a process started, on Linux."""
+    try:
+        return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8").split()]
+    except OSError:
+        return []
+
+
+def cpu_seconds(pid: int) -> float:
+    """The CPU time that a process has used, on Linux; 0 where it is not there."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def until_asleep(pid: int, cpu_s: float = 0.0) -> None:
+    """Wait until a process sleeps in a system call, having used ``cpu_s`` seconds of CPU time at the least, on Linux.
+
+    A process that waits for what only the test can give sleeps until it is given.
+    """
+
+    def sleeps() -> bool:
+        state = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+        return state == "S" and cpu_seconds(pid) >= cpu_s
+
+    until(sleeps, f"the process {pid} to sleep")
