@@ -4,7 +4,16 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
-.PHONY: demo test test-slow fuzz lint format generate docs vscode bench checkers clean
+# `make test ORDER=random` shuffles the tests and prints a seed; SEED=N gives that order again.
+ORDER  ?= fixed
+ifeq ($(ORDER),random)
+ifndef SEED
+SEED   := $(shell $(PYTHON) -c 'import random; print(random.randrange(10**6))')
+endif
+ORDERED := --random-order --random-order-seed=$(SEED)
+endif
+
+.PHONY: demo test test-again test-slow fuzz lint format generate docs vscode bench checkers clean
 
 # Compile and draw the Cover and Hide spec, run its generated monitor over a recorded trace, and have it played.
 demo: $(VENV)/.installed-rl
@@ -30,7 +39,15 @@ demo: $(VENV)/.installed-rl
 	@echo "The command is $(BIN)/tltlc; after 'source $(BIN)/activate' it is tltlc."
 
 test: lint
-	$(BIN)/python -m pytest -q -rs -n 2 -m "not slow"
+	@$(if $(ORDERED),echo "The order is random; the same one again: make test ORDER=random SEED=$(SEED)")
+	$(BIN)/python -m pytest -q -rs -n 2 -m "not slow" $(ORDERED)
+
+# Do the tests depend on their order, or on how busy the machine is? N runs in random orders beside BUSY busy processes,
+# a line each; ARGS are further arguments of pytest, such as `-n 4` or a folder.
+N      ?= 10
+BUSY   ?= 6
+test-again: $(VENV)/.installed-dev
+	$(BIN)/python -m tests.again $(N) $(BUSY) $(ARGS)
 
 # Trainings that are killed and go on, the shipped suite, large formulas: some minutes more.
 test-slow: $(VENV)/.installed-dev

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import signal
+import tempfile
+
 from hypothesis import settings
 
 # How long an example takes says more of what else the machine does than of the code.
@@ -9,3 +14,28 @@ settings.register_profile("fuzz", deadline=None, print_blob=True)
 # The same examples in every run, so that a change is judged by what it changes; `make fuzz` draws others.
 settings.register_profile("tests", deadline=None, derandomize=True)
 settings.load_profile("tests")
+
+LEFT_OUT = (
+    *("NO_COLOR", "FORCE_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "COLUMNS", "LINES", "TLTLC_DEBUG", "GITHUB_WORKSPACE"),
+    *("RAY_ADDRESS", "WORLD_SIZE", "RANK", "LOCAL_RANK", "MASTER_ADDR", "MASTER_PORT", "OMP_NUM_THREADS"),
+    *("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_OBJECT_DIRECTORY", "PYTHONWARNINGS", "PYTHONOPTIMIZE"),
+)
+"""Variables by which the programs would behave otherwise than the tests expect."""
+
+_answers = tempfile.mkdtemp(prefix="tltlc-tests-")
+
+
+def pytest_configure() -> None:
+    """Leave nothing of the person's environment to the tests and to the processes that they start."""
+    for name in LEFT_OUT:
+        os.environ.pop(name, None)
+    os.environ.update(GIT_CONFIG_GLOBAL=os.devnull, GIT_CONFIG_NOSYSTEM="1")
+    # Not even the answers that earlier runs, and tests beside this one, remember.
+    os.environ["TLTLC_CACHE_DIR"] = _answers
+    # The background of a shell ignores Ctrl-C, and every process that is started there does.
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_unconfigure() -> None:
+    shutil.rmtree(_answers, ignore_errors=True)

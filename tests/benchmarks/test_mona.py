@@ -6,6 +6,7 @@ import pytest
 
 from benchmarks import mona
 from tests.reference_formulas import corpus, read_formula
+from tests.waiting import HANG_S
 
 ALWAYS = """
 DFA for formula with free variables: A0
@@ -55,7 +56,7 @@ def test_sizes_are_those_of_the_corpus(family: str) -> None:
     small = [entry for entry in corpus() if entry.family == family and (entry.states or 99) < 12]
     assert small
     for entry in small:
-        made, states = mona.solve(entry.formula, timeout_s=30)
+        made, states = mona.solve(entry.formula, timeout_s=HANG_S)
         assert (entry.name, states) == (entry.name, entry.states)
         assert made.cpu_ms > 0
 

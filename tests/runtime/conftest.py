@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import gettempdir
 
 import pytest
 
@@ -20,3 +23,15 @@ def pytest_configure(config: pytest.Config) -> None:
         import torch
 
         torch.set_num_threads(1)
+        _know_the_fonts()
+
+
+def _know_the_fonts() -> None:
+    """Have matplotlib find the fonts of this machine before a test begins.
+
+    The first process that draws does so, and says so on standard error where it takes long; of several at once some
+    may give up.
+    """
+    with Path(gettempdir(), f"tltlc-tests-fonts-{os.getuid()}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        import matplotlib.font_manager  # noqa: F401

@@ -1,0 +1,67 @@
+"""Run the tests N times, in random orders and on a busy machine: ``python -m tests.again N BUSY [PYTEST …]``."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing import get_context
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+FAILED = ("FAILED ", "ERROR ")
+
+
+def main(runs: int, busy: int, arguments: list[str]) -> int:
+    """Run pytest ``runs`` times beside ``busy`` processes and print a line for each; the number of runs that failed."""
+    failed = 0
+    with busy_processes(busy):
+        for number in range(1, runs + 1):
+            seed = random.randrange(10**6)
+            begun = time.monotonic()
+            done = run(seed, arguments)
+            minutes = (time.monotonic() - begun) / 60
+            lines = done.stdout.splitlines() or [""]
+            print(f"run {number} of {runs}, seed {seed}, {minutes:.1f} min: {lines[-1].strip('= ')}", flush=True)
+            if done.returncode:
+                failed += 1
+                kept = Path(tempfile.gettempdir(), f"test-again-{seed}.log")
+                kept.write_text(done.stdout + done.stderr, encoding="utf-8")
+                print(*(line for line in lines if line.startswith(FAILED)), f"all of it: {kept}", sep="\n", flush=True)
+    return failed
+
+
+def run(seed: int, arguments: list[str]) -> subprocess.CompletedProcess[str]:
+    """One run, in the order of a seed; later arguments overrule earlier ones."""
+    command = [sys.executable, "-m", "pytest", "-q", "-rfE", "-n", "2", "-m", "not slow"]
+    order = ["--random-order", f"--random-order-seed={seed}"]
+    return subprocess.run([*command, *order, *arguments], cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+@contextmanager
+def busy_processes(count: int) -> Iterator[None]:
+    """Have so many processes do nothing, and that without a pause, until the block ends."""
+    started = [get_context("spawn").Process(target=_work, args=(os.getpid(),), daemon=True) for _ in range(count)]
+    for process in started:
+        process.start()
+    try:
+        yield
+    finally:
+        for process in started:
+            process.kill()
+            process.join()
+
+
+def _work(parent: int) -> None:
+    while os.getppid() == parent:
+        for _ in range(10**6):
+            pass
+
+
+if __name__ == "__main__":
+    sys.exit(min(1, main(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3:])))
