@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import platform
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -54,14 +55,16 @@ def cpu_seconds(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def until_asleep(pid: int, cpu_s: float = 0.0) -> None:
-    """Wait until a process sleeps in a system call, having used ``cpu_s`` seconds of CPU time at the least, on Linux.
+def until_it_reads(pid: int, descriptor: int = 0) -> None:
+    """Wait until a process sleeps in a read of a file descriptor that has nothing to give, on Linux."""
 
-    A process that waits for what only the test can give sleeps until it is given.
-    """
+    def reads() -> bool:
+        # The number of the system call comes first, then its arguments: what is read from is the first of them.
+        words = Path(f"/proc/{pid}/syscall").read_text(encoding="ascii").split()
+        return len(words) > 2 and int(words[1], 16) == descriptor and int(words[0]) == _READ
 
-    def sleeps() -> bool:
-        state = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
-        return state == "S" and cpu_seconds(pid) >= cpu_s
+    until(reads, f"the process {pid} to read")
 
-    until(sleeps, f"the process {pid} to sleep")
+
+_READ: Final = {"x86_64": 0, "aarch64": 63}.get(platform.machine(), 0)
+"""The number of the system call."""
