@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.waiting import HANG_S
+
 ROOT = Path(__file__).parents[2]
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
@@ -34,7 +36,7 @@ def _ended(folder: Path, script: str, told: str) -> tuple[int, str, str]:
         assert running.stdout is not None
         assert running.stdout.readline() == told
         running.send_signal(signal.SIGINT)
-        out, err = running.communicate(timeout=60)
+        out, err = running.communicate(timeout=HANG_S)
     return running.returncode, out, err
 
 

@@ -9,14 +9,14 @@ import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from tests.waiting import HANG_S
 from tltlc import backends
 from tltlc.conformance.case import Case
 from tltlc.conformance.check import differences
 from tltlc.conformance.expected import COLUMNS, Expected
 from tltlc.record import record
 
-LONGEST_BUILD_S = 120
-LONGEST_RUN_S = 30
+LONGEST_BUILD_S = LONGEST_RUN_S = HANG_S
 
 
 @record

@@ -16,6 +16,7 @@ import pytest
 
 from tests.docs.blocks import DOCS, ROOT
 from tests.runtime.regression.page import chromium
+from tests.waiting import HANG_S
 from tltlc.cli.command_line import BUILT_IN
 from tltlc.diagnostics.codes import codes, title
 
@@ -67,7 +68,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         },
         capture_output=True,
         encoding="utf-8",
-        timeout=120,
+        timeout=HANG_S,
         check=False,
     )
     assert done.returncode == 0, done.stderr
@@ -142,19 +143,20 @@ def test_a_search_without_a_server(site: Path) -> None:
     wrong: list[str] = []
     with chromium.browser() as browser:
         page = browser.new_page()
+        page.set_default_timeout(chromium.HANG_MS)
         page.on("console", lambda message: wrong.append(message.text))
         page.on("pageerror", lambda error: wrong.append(str(error)))
         page.on("request", lambda request: wrong.append(request.url) if request.url.startswith("http") else None)
         page.goto((site / "tutorial.html").as_uri())
         page.click("[data-md-component=search-query]")
         page.keyboard.type("units do not fit")
-        page.wait_for_selector(".md-search-result__item a[href*=TLT0305]", timeout=10_000)
+        page.wait_for_selector(".md-search-result__item a[href*=TLT0305]", timeout=chromium.HANG_MS)
         # A letter stands for all words that begin with it: the index fails for some if words are split badly.
         for text in (*ascii_lowercase, "dt", "13", "<>", "near(s1)", "F[0,3] a & G b", "Büchi", "*", ":", "tlt0412"):
             page.fill("[data-md-component=search-query]", text)
             page.keyboard.press("Shift")
             page.wait_for_timeout(50)
-        page.wait_for_selector(".md-search-result__item a[href*=TLT0412]", timeout=10_000)
+        page.wait_for_selector(".md-search-result__item a[href*=TLT0412]", timeout=chromium.HANG_MS)
     assert wrong == []
 
 

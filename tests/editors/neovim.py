@@ -8,17 +8,15 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tests.waiting import HANG_S
+from tests.waiting import HANG_S, until
 
 ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "docs" / "guides" / "editors.md"
 PROGRAM = os.environ.get("NVIM") or shutil.which("nvim")
-WAIT_S = 30.0
 
 
 def version() -> tuple[int, ...]:
@@ -66,7 +64,7 @@ class Neovim:
             stdout=self._errors,
             stderr=self._errors,
         )
-        self.until(lambda: Path(self._socket).exists(), "Neovim to start")
+        self.until(self._answers, "Neovim to start")
 
     def keys(self, text: str) -> None:
         """Type, with `<CR>`, `<Esc>` and the like for keys that are no signs."""
@@ -91,13 +89,12 @@ class Neovim:
 
     def until(self, holds: Callable[[], Any], what: str) -> Any:
         """Wait until something is there, and give it back."""
-        for _ in range(int(WAIT_S / 0.1)):
-            found = holds()
-            if found:
-                return found
+
+        def happened() -> Any:
             assert self.process.poll() is None, self.errors()
-            time.sleep(0.1)
-        raise AssertionError(f"waited in vain for {what}; {self.errors()}")
+            return holds()
+
+        return until(happened, what, 0.1)
 
     def errors(self) -> str:
         """The end of what Neovim wrote."""
@@ -121,12 +118,18 @@ class Neovim:
             self.process.wait()
         self._errors.close()
 
+    def _answers(self) -> bool:
+        return Path(self._socket).exists() and self._asked("--remote-expr", "1").returncode == 0
+
     def _remote(self, *words: str) -> None:
-        done = subprocess.run(
+        done = self._asked(*words)
+        assert done.returncode == 0, done.stderr
+
+    def _asked(self, *words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
             [str(PROGRAM), "--server", self._socket, *words],
             env=self._environment,
             capture_output=True,
             text=True,
-            timeout=WAIT_S,
+            timeout=HANG_S,
         )
-        assert done.returncode == 0, done.stderr

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import pytest
 
 from tests.editors.neovim import PROGRAM, Neovim
 from tests.editors.test_grammar import SOURCES
-from tests.waiting import HANG_S
+from tests.waiting import HANG_S, until
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, DECLARATIONS
@@ -163,9 +162,4 @@ def floating(editor: Neovim) -> str:
 
 
 def assert_nothing_is_left(editor: Neovim) -> None:
-    for _ in range(100):
-        left = editor.left()
-        if not left:
-            return
-        time.sleep(0.05)
-    raise AssertionError(left)
+    until(lambda: not editor.left(), "the end of all processes that Neovim started")

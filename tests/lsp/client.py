@@ -13,9 +13,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from tests.waiting import HANG_S, children, cpu_seconds, until
+
 ROOT = Path(__file__).parents[2]
 PROGRAM = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from tltlc.cli.main import main; main(['lsp'])"
-WAIT_S = 30.0
 
 
 class Refused(Exception):
@@ -95,6 +96,19 @@ class Client:
             return True
         return False
 
+    def until_it_analyses(self, cpu_s: float = 0.0) -> None:
+        """Wait until the process that analyses is there, and has used so many seconds of CPU time, on Linux."""
+        if sys.platform != "linux":
+            assert self.is_quiet(2.0)
+            return
+
+        def analyses() -> bool:
+            assert self.process.poll() is None, self.errors
+            found = [child for child in children(self.process.pid) if b"spawn_main" in _command(child)]
+            return any(cpu_seconds(child) >= cpu_s for child in found)
+
+        until(analyses, "an analysis")
+
     def message(self, method: str) -> Any:
         """What was said by a method, already or soon."""
         earlier = [message for message in self.said if message.get("method") == method]
@@ -120,11 +134,11 @@ class Client:
     def close(self) -> int:
         self.ask("shutdown", None)
         self.tell("exit", None)
-        return self.process.wait(WAIT_S)
+        return self.process.wait(HANG_S)
 
     def kill(self) -> None:
         self.process.kill()
-        self.process.wait(WAIT_S)
+        self.process.wait(HANG_S)
 
     def stop_reading(self) -> None:
         """Close the server's standard output, as an editor does that has crashed."""
@@ -145,7 +159,7 @@ class Client:
         self.process.stdin.flush()
 
     def _next(self, wanted: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
-        end = time.monotonic() + WAIT_S
+        end = time.monotonic() + HANG_S
         while True:
             left = end - time.monotonic()
             assert left > 0, f"no such message came; the server said {self.errors}"
@@ -186,3 +200,10 @@ def place(text: str, offset: int, encoding: str = "utf-16") -> dict[str, int]:
     width = {"utf-8": 1, "utf-16": 2, "utf-32": 4}[encoding]
     units = len(line.encode({"utf-8": "utf-8", "utf-16": "utf-16-le", "utf-32": "utf-32-le"}[encoding])) // width
     return {"line": before.count("\n"), "character": units}
+
+
+def _command(pid: int) -> bytes:
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return b""

@@ -185,7 +185,7 @@ def test_an_automaton_that_takes_long_is_given_up(client: Client, tmp_path: Path
     slow = "signal a: bool\nsignal b: bool\nspec s = G (a implies eventually within 2500 steps b)\n"
     uri = client.open(tmp_path / "slow.tltl", slow)
     assert client.diagnostics(uri) == []
-    assert client.is_quiet(1.5)
+    client.until_it_analyses()
     client.change(uri, "signal a: bool\nspec s = G (a or not a)\n", 2)
     assert codes(client.diagnostics(uri, bool)) == ["TLT0411"]
     assert client.close() == 0

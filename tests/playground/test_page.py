@@ -13,6 +13,7 @@ import pytest
 
 from tests.playground.test_server import SLOW, serving
 from tests.runtime.regression.page import chromium
+from tests.waiting import HANG_S
 from tltlc.playground.site import PYODIDE, site_files
 from tltlc.playground.start import examples
 from tltlc.writing import write_files
@@ -41,7 +42,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    with serving() as server:
+    with serving(HANG_S) as server:
         yield server.address
 
 
@@ -58,6 +59,7 @@ def opened(
     ``link`` is a fragment to open in place of that of the address, by a browser that knows the token already.
     """
     made = browser.new_context(**context)
+    made.set_default_timeout(chromium.HANG_MS)
     try:
         page = made.new_page()
         base, _, token = address.partition("#token=")
@@ -83,7 +85,7 @@ def write(page: Page, text: str) -> None:
 
 
 def summary(page: Page, text: str) -> None:
-    expect(page.locator("#summary")).to_have_text(re.compile(text), timeout=60_000)
+    expect(page.locator("#summary")).to_have_text(re.compile(text))
 
 
 def current(page: Page) -> str | None:
@@ -345,8 +347,9 @@ def test_a_text_that_no_link_can_hold(page: Page) -> None:
 
 
 def test_a_server_that_is_gone_is_said_to_be(browser: Browser) -> None:
-    with serving() as server:
+    with serving(HANG_S) as server:
         made = browser.new_context()
+        made.set_default_timeout(chromium.HANG_MS)
         page = made.new_page()
         page.goto(server.address)
         summary(page, "^It compiles")

@@ -16,6 +16,7 @@ from zipfile import ZipFile
 import pytest
 
 from tests.cli.conftest import ROOT, inside, tltlc  # noqa: F401 (fixtures)
+from tests.waiting import HANG_S
 from tltlc.playground.site import PYODIDE
 
 needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
@@ -45,18 +46,18 @@ def served(*options: str, **environment: str) -> Iterator[tuple[subprocess.Popen
 @needs_signals
 def test_it_serves_until_it_is_interrupted() -> None:
     with served() as (running, port):
-        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=30)
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
         connection.request("GET", "/")
         assert connection.getresponse().status == 200
         connection.close()
         running.send_signal(signal.SIGINT)
-        assert running.communicate(timeout=30)[1] == ""
+        assert running.communicate(timeout=HANG_S)[1] == ""
         assert running.returncode == 130
 
 
 BROWSER = """
 import sys, urllib.request
-sys.stderr.write(f"saw {len(urllib.request.urlopen(sys.argv[1], timeout=30).read()) > 100}\\n")
+sys.stderr.write(f"saw {len(urllib.request.urlopen(sys.argv[1]).read()) > 100}\\n")
 """
 
 

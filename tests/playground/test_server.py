@@ -13,10 +13,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
-from time import monotonic, sleep
 
 import pytest
 
+from tests.waiting import HANG_S, until
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.limits import ANSWER, MESSAGE, PLAYGROUND, PLAYGROUND_CHILD, Connections
 from tltlc.playground import children, view
@@ -41,8 +41,7 @@ def serving(limit_s: float = children.LIMIT_S, connections: Connections = PLAYGR
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[Server]:
-    # Long enough for a machine that has other work, too.
-    with serving(60.0) as running:
+    with serving(HANG_S) as running:
         yield running
 
 
@@ -50,7 +49,7 @@ def ask(
     server: Server, method: str, path: str, body: str | bytes | None = None, headers: dict[str, str] | None = None
 ) -> tuple[int, dict[str, str], bytes]:
     """An answer, with the token of the server unless the headers have another one."""
-    connection = http.client.HTTPConnection("127.0.0.1", server.server_address[1], timeout=60)
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_address[1], timeout=HANG_S)
     connection.request(method, path, body, {"Tltlc-Token": server.token, **(headers or {})})
     answer = connection.getresponse()
     found = answer.status, dict(answer.getheaders()), answer.read()
@@ -181,13 +180,13 @@ def test_who_does_not_wait_for_an_answer_is_no_problem(server: Server, capfd: py
 def test_a_large_text_arrives_whole_at_a_child_that_is_slow_to_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(children, "_LOOK_S", 0.001)
     text = f"// {'far more than a pipe holds ' * 10_000}\nsignal a: bool\nspec x = F a"
-    with serving(limit_s=20.0) as server:
+    with serving(HANG_S) as server:
         status, _, answer = ask(server, "POST", "/api", json.dumps({"text": text}), JSON)
     assert (status, json.loads(answer)["diagnostics"]) == (200, [])
 
 
 def test_a_text_that_nobody_waits_for_any_more_is_given_up() -> None:
-    with serving(limit_s=120.0) as server:
+    with serving(HANG_S) as server:
         # More than are answered at once: those that wait for their turn give it up as well.
         waiting = [
             socket.create_connection(("127.0.0.1", server.server_address[1])) for _ in range(children.MOST_AT_ONCE + 2)
@@ -203,14 +202,14 @@ def test_a_text_that_nobody_waits_for_any_more_is_given_up() -> None:
 
 def test_what_is_at_work_ends_with_the_server() -> None:
     with (
-        serving(limit_s=120.0) as server,
+        serving(HANG_S) as server,
         socket.create_connection(("127.0.0.1", server.server_address[1])) as connection,
     ):
         connection.sendall(slow_request(server))
         assert eventually(lambda: bool(server.children._running))
         (child,) = server.children._running
         server.server_close()
-        assert child.wait(timeout=30)
+        assert child.wait(timeout=HANG_S)
 
 
 def slow_request(server: Server) -> bytes:
@@ -226,17 +225,14 @@ def request(server: Server, body: str) -> bytes:
 
 
 def eventually(happens: Callable[[], bool]) -> bool:
-    """Whether something happens within some seconds."""
-    end = monotonic() + 30
-    while not happens() and monotonic() < end:
-        sleep(0.02)
-    return happens()
+    """Wait until something happens."""
+    return until(happens, "the server")
 
 
 def test_the_port_is_free_again_at_once() -> None:
     with serving() as server:
         port = server.server_address[1]
-        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
         connection.request("GET", "/")
         connection.getresponse().read()
         # The server hangs up first, which keeps the address for a while.
@@ -260,6 +256,7 @@ def test_what_takes_too_long_is_ended_and_the_next_text_is_answered() -> None:
     with serving(limit_s=2.0) as server:
         (said,) = json.loads(ask(server, "POST", "/api", json.dumps({"text": SLOW}), JSON)[2])["diagnostics"]
         assert (said["code"], said["title"]) == ("TLT0775", "this takes longer than 2 s, and was given up")
+        server.children._limit_s = HANG_S
         assert json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()
 
 

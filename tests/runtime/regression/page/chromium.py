@@ -9,6 +9,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tests.waiting import HANG_S
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
@@ -16,15 +18,20 @@ MISSING = [name for name in ("chromium",) if shutil.which(name) is None]
 MISSING += [name for name in ("playwright",) if find_spec(name) is None]
 
 
+HANG_MS = 1000 * HANG_S
+"""As Playwright takes it, in milliseconds."""
+
+
 @contextmanager
 def browser() -> Iterator[Browser]:
     """The browser, until the block ends."""
     from playwright.sync_api import expect, sync_playwright
 
-    # Machines are shared: what comes at all, comes within this.
-    expect.set_options(timeout=30_000)
+    expect.set_options(timeout=HANG_MS)
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        started = playwright.chromium.launch(
+            executable_path=shutil.which("chromium"), args=["--no-sandbox"], timeout=HANG_MS
+        )
         try:
             yield started
         finally:
@@ -38,6 +45,7 @@ def opened(browser: Browser, path: Path, address: str = "", **context: Any) -> I
     ``context`` is what Playwright's ``new_context`` takes, such as ``viewport`` and ``color_scheme``.
     """
     made = browser.new_context(**context)
+    made.set_default_timeout(HANG_MS)
     try:
         page = made.new_page()
         wrong: list[str] = []
