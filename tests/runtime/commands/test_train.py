@@ -9,7 +9,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -437,8 +436,7 @@ def _workers(pid: int) -> list[int]:
 
 
 def _output(terminal: int) -> Iterator[bytes]:
-    deadline = time.monotonic() + 60
-    while time.monotonic() < deadline:
+    while True:
         try:
             data = os.read(terminal, 65536)
         except OSError:

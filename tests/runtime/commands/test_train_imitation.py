@@ -6,7 +6,6 @@ import json
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import pytest
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.commands.test_train import SMALL
 from tests.runtime.training.imitating import SOON, kept, played
+from tests.waiting import until
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.settings import read_settings
@@ -76,9 +76,7 @@ def test_killed_it_goes_on_from_its_checkpoint(here: Path) -> None:
     (here / "small.toml").write_text(f"checkpoint_s = 0.0\n{ENDLESS}")
     begun = [sys.executable, "-m", "tltlc", *BEGUN, "--demonstrations", "mine", "--out", "run"]
     with subprocess.Popen(begun, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as training:
-        until = time.monotonic() + 150
-        while time.monotonic() < until and len(read_metrics(here / "run" / METRICS)) < 3:
-            time.sleep(0.1)
+        until(lambda: training.poll() is None and len(read_metrics(here / "run" / METRICS)) >= 3, "3 iterations", 0.1)
         training.send_signal(signal.SIGKILL)
     checkpoint = read_checkpoint(here / "run" / "checkpoint.pt")
     assert checkpoint is not None

@@ -19,7 +19,7 @@ import pytest
 
 from tests.runtime.training import runs
 from tests.runtime.training.runs import run_in
-from tests.waiting import HANG_S
+from tests.waiting import HANG_S, children, until, until_gone
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
@@ -52,18 +52,6 @@ def _lines(process: subprocess.Popen[str]) -> list[dict[str, Any]]:
     return [json.loads(line) for line in output.splitlines()]
 
 
-def _children(pid: int) -> list[int]:
-    """The processes that a process started, by what Linux tells."""
-    return [int(each) for each in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
-
-
-def _is_running(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="looks at processes as Linux shows them")
 def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoint(tmp_path: Path) -> None:
     random, steps = Random(0), 64 * 400
@@ -76,7 +64,7 @@ def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoin
             first = json.loads(process.stdout.readline())
             assert first["number"] == told + 1
             time.sleep(random.uniform(0.0, 1.0))
-            workers = _children(process.pid)
+            workers = children(process.pid)
             process.send_signal(signal.SIGKILL)
             said = process.stdout.read().splitlines()
         # Each iteration wrote a checkpoint before it was told of, and a line may have been cut short.
@@ -90,11 +78,8 @@ def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoin
             list(range(1, checkpoint.iteration + 1)),
             list(range(1, checkpoint.iteration + 2)),
         )
-        deadline = time.monotonic() + 10
-        while any(map(_is_running, workers)) and time.monotonic() < deadline:
-            time.sleep(0.05)
         assert workers
-        assert not any(map(_is_running, workers))
+        until_gone(workers)
         told = checkpoint.iteration
     last = told + 3
     with _started(*PROGRAM, str(run.folder), "--resume", f"stop__steps={64 * last}") as process:
@@ -106,10 +91,16 @@ def test_a_training_that_is_killed_at_any_moment_goes_on_from_its_last_checkpoin
 
 def test_a_training_that_is_killed_loses_what_came_after_its_last_checkpoint(tmp_path: Path) -> None:
     run = run_in(tmp_path / "run", checkpoint_s=1.0, stop__steps=10**6)
+
+    def written() -> int:
+        """The iteration of the last checkpoint."""
+        checkpoint = read_checkpoint(run.folder / CHECKPOINT, identity(run))
+        return checkpoint.iteration if checkpoint else 0
+
     with _started(*PROGRAM, str(run.folder), "checkpoint_s=1.0", "stop__steps=1000000") as process:
         assert process.stdout is not None
         process.stdout.readline()
-        time.sleep(3.0)
+        until(lambda: written() > 1, "a checkpoint behind the first")
         process.send_signal(signal.SIGKILL)
     checkpoint, measured = read_checkpoint(run.folder / CHECKPOINT, identity(run)), read_metrics(run.folder / METRICS)
     assert checkpoint is not None
@@ -128,9 +119,8 @@ def test_a_training_that_is_killed_in_its_search_begins_it_anew(tmp_path: Path) 
     given = [f"spec={json.dumps(spec)}", "exploration__ways=100000", "exploration__steps=20000", "stop__steps=64"]
     folder = tmp_path / "run"
     with _started(*PROGRAM, str(folder), *given) as process:
-        deadline = time.monotonic() + 60
-        while not (folder / RUN).exists() and time.monotonic() < deadline:
-            time.sleep(0.05)
+        until((folder / RUN).exists, "a training that begins", 0.05)
+        # Its search has taken some steps by then, or will.
         time.sleep(0.5)
         assert process.poll() is None
         process.send_signal(signal.SIGKILL)
