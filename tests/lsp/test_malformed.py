@@ -13,6 +13,7 @@ import pytest
 from tests.lsp.client import Client
 from tests.lsp.texts import SLOW
 from tests.waiting import HANG_S
+from tltlc.limits import MESSAGE
 from tltlc.lsp.paths import name_of
 from tltlc.lsp.server import create
 
@@ -172,29 +173,76 @@ def test_headers_in_other_ways(header: str, client: Client) -> None:
 
 
 @pytest.mark.parametrize(
-    ("header", "lost"),
+    "header",
     [
-        ("Content-Length: many\r\n\r\n", 0),
-        ("Content-Length: -5\r\n\r\n", 0),
-        (f"Content-Length: {'9' * 5000}\r\n\r\n", 0),
-        ("\r\n", 0),
-        ("\0 garbage\r\n\r\n", 0),
-        ("Content-Length: 3\r\n\r\n", 0),
-        ("Content-Length: 300\r\n\r\n", 1),
+        "Content-Length: many\r\n\r\n",
+        "Content-Length: -5\r\n\r\n",
+        "Content-Length: +5\r\n\r\n",
+        "Content-Length: 0x5\r\n\r\n",
+        "Content-Length: ²\r\n\r\n",
+        f"Content-Length: {'9' * 5000}\r\n\r\n",
+        f"{'a' * 100_000}\r\n\r\n",
+        "\r\n",
+        "\0 garbage\r\n\r\n",
+        "Content-Length: 3\r\n\r\n",
     ],
     ids=lambda each: repr(each)[:24],
 )
-def test_headers_that_are_wrong(header: str, lost: int, client: Client) -> None:
-    """The message is lost, and of those behind it, only what the header claims."""
+def test_headers_that_are_wrong(header: str, client: Client) -> None:
+    """The message is lost, and none behind it."""
     send(client, json.dumps(hover()).encode(), header.encode())
-    for _ in range(lost):
-        client.start("textDocument/documentSymbol", {"textDocument": {"uri": HERE}})
     assert lives(client)
     assert lives(client)
     client.kill()
     client._listening.join()
     assert client.errors
     assert all(each.startswith("a message ") for each in client.errors)
+
+
+@pytest.mark.parametrize("length", [MESSAGE.size + 1, 10**9, 10**12, 10**40])
+def test_a_length_above_the_limit_is_answered_at_once_and_keeps_nobody_waiting(length: int, client: Client) -> None:
+    """Nothing of the message comes, or all of it; the bytes that are missing are not waited for."""
+    send(client, b"", b"Content-Length: %d\r\n\r\n" % length)
+    assert code_of(client, None) == -32600
+    send(client, json.dumps(hover()).encode(), b"Content-Length: %d\r\n\r\n" % length)
+    assert code_of(client, None) == -32600
+    assert lives(client)
+
+
+def test_a_message_above_the_limit_is_passed_over_as_a_whole(client: Client) -> None:
+    item = {"uri": HERE, "languageId": "tltl", "version": 1, "text": "// Content-Length: 5\n" * (MESSAGE.size // 20)}
+    send(client, json.dumps(told("textDocument/didOpen", textDocument=item)).encode())
+    assert code_of(client, None) == -32600
+    assert lives(client)
+
+
+@pytest.mark.parametrize("more", [1, 10, 26, 100, 4000, MESSAGE.size - 1000])
+def test_a_length_that_reaches_into_the_next_messages_loses_none(more: int, client: Client) -> None:
+    data = json.dumps(hover()).encode()
+    send(client, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
+    later = client.start("textDocument/documentSymbol", {"textDocument": {"uri": HERE}})
+    assert code_of(client, 900) is None
+    assert code_of(client, later) is None
+    assert lives(client)
+    client.kill()
+    client._listening.join()
+    assert [each[:39] for each in client.errors] == ["a message is shorter than its header sa"]
+
+
+def test_an_empty_line_that_is_missing(client: Client) -> None:
+    data = json.dumps(hover()).encode()
+    send(client, data, b"Content-Length: %d\r\n" % len(data))
+    assert code_of(client, 900) is None
+    assert lives(client)
+
+
+@pytest.mark.parametrize("other", [-3, 0, 3])
+def test_a_length_that_is_repeated(other: int, client: Client) -> None:
+    data = json.dumps(hover()).encode()
+    header = b"Content-Length: %d\r\nContent-Length: %d\r\n\r\n" % (len(data) + other, len(data))
+    send(client, data, header)
+    assert code_of(client, 900) is None
+    assert lives(client)
 
 
 def test_a_document_is_closed_while_a_request_is_under_way(client: Client, tmp_path: Path) -> None:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
-import re
-from typing import Any, BinaryIO, Final
+from typing import Any, Final
 
 from cattrs import transform_error
 from lsprotocol import types
@@ -13,46 +12,36 @@ from pygls.exceptions import (
     JsonRpcException,
     JsonRpcInvalidParams,
     JsonRpcInvalidRequest,
+    JsonRpcParseError,
     JsonRpcServerNotInitialized,
 )
 from pygls.protocol import LanguageServerProtocol
 
+from tltlc.lsp.frames import Fault, Frame
+
 LOG: Final = logging.getLogger("tltlc.lsp")
 """Goes to standard error, which editors show in a log of the server."""
-UNREADABLE: Final = (json.JSONDecodeError, UnicodeDecodeError, RecursionError)
-"""What reading a text as JSON may fail with."""
-
-# Behind a message whose length is wrong, the next header does not begin its line. What is longer is no length.
-_LENGTH: Final = re.compile(rb"Content-Length:[ \t]*([0-9]{1,9})[ \t]*\r?\n\Z", re.IGNORECASE)
 _ANSWERS: Final = {"result", "error"}
-_OTHER_HEADER: Final = re.compile(rb"Content-Type:", re.IGNORECASE)
-
-
-class Incoming:
-    """What the editor sends, with headers as the library knows them; the protocol lets editors write them otherwise."""
-
-    def __init__(self, file: BinaryIO) -> None:
-        self._file = file
-        self.read = file.read
-
-    def readline(self) -> bytes:
-        """The next line of a header; of those that say nothing, only that they are there."""
-        line = self._file.readline()
-        length = _LENGTH.search(line)
-        lost = line[: length.start()] if length else line
-        if lost.strip() and not _OTHER_HEADER.match(lost):
-            LOG.warning("a message without a header `Content-Length` is passed over: %.60r", lost)
-        if length is not None:
-            return b"Content-Length: %s\r\n" % length[1]
-        return b"passed over\r\n" if lost.strip() else line
 
 
 class Protocol(LanguageServerProtocol):
     """The library's protocol, which looks at a message as a whole, so that it can answer those that are wrong."""
 
-    def structure_message(self, data: dict[str, Any]) -> Any:
-        """Leave the parts of a message as they are, which pass here one by one."""
-        return data
+    def take(self, frame: Frame) -> None:
+        """Have a message answered, or say what is wrong with one."""
+        if isinstance(frame, Fault):
+            if frame.is_answered:
+                self.refuse(None, JsonRpcInvalidRequest(frame.text))
+            else:
+                LOG.warning("%s", frame.text)
+            return
+        try:
+            message = json.loads(frame.data)
+        except (ValueError, RecursionError) as error:
+            # ValueError is that of broken JSON, of bytes that are no text, and of numbers with thousands of digits.
+            self.refuse(None, JsonRpcParseError.of(error))
+        else:
+            self.handle_message(message)
 
     def handle_message(self, message: Any) -> None:
         """Have a message answered."""
@@ -80,7 +69,7 @@ class Protocol(LanguageServerProtocol):
         elif "id" not in message or not message.keys() & _ANSWERS:
             raise JsonRpcInvalidRequest("this is neither a request nor an answer")
         try:
-            understood = super().structure_message(message)
+            understood = self.structure_message(message)
         except JsonRpcException as error:
             raise JsonRpcInvalidParams("; ".join(transform_error(error.__cause__ or error))) from None
         if isinstance(understood, types.ExecuteCommandRequest) and understood.params.arguments is None:

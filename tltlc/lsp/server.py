@@ -2,32 +2,39 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 import signal
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
+from io import BufferedReader
 from typing import Any, BinaryIO, Final, cast
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
+from pygls.io_ import StdoutWriter
 
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.lsp.answers import ANSWERS, FILES_AND_FOLDERS, run_tests
+from tltlc.lsp.frames import Frames
 from tltlc.lsp.lenses import RUN_TESTS
 from tltlc.lsp.paths import name_of
-from tltlc.lsp.protocol import UNREADABLE, Incoming
+from tltlc.lsp.protocol import LOG, Protocol
 from tltlc.lsp.session import Server
 
 _REFUSED: Final = -32803
 """The protocol's code of a request that failed for a reason that the user is to read."""
+_PIECE: Final = 1 << 16
+"""Bytes that are read at once."""
 _NOBODY_READS: Final = 141
 
 
 def serve() -> bool:
     """Speak with an editor over standard input and output until it leaves; whether it took its leave in order."""
     # Copies of the two: whatever else prints, prints to standard error.
-    lines_in, lines_out = Incoming(os.fdopen(os.dup(0), "rb")), _Line(os.fdopen(os.dup(1), "wb"))
+    lines_in, lines_out = os.fdopen(os.dup(0), "rb"), _Line(os.fdopen(os.dup(1), "wb"))
     os.dup2(2, 1)
     # Of the library's log, only faults: editors may cancel what is answered already, and tell what nobody asked for.
     logging.getLogger("pygls").setLevel(logging.ERROR)
@@ -38,11 +45,32 @@ def serve() -> bool:
             # A thread waits for the editor's next line, and Python would wait for the thread.
             signal.signal(number, lambda number, _: os._exit(128 + number))
     server = create()
-    try:
-        server.start_io(cast("BinaryIO", lines_in), cast("BinaryIO", lines_out))
-    finally:
-        server.worker.abandon()
+    cast("Protocol", server.protocol).set_writer(StdoutWriter(cast("BinaryIO", lines_out)))
+    # At the message `exit` the library raises SystemExit.
+    with suppress(SystemExit):
+        try:
+            asyncio.run(_listen(server, lines_in))
+        finally:
+            server.worker.abandon()
+            server.shutdown()  # type: ignore[no-untyped-call]
     return server.was_shut_down
+
+
+async def _listen(server: Server, file: BufferedReader) -> None:
+    """Take messages until nothing more comes."""
+    frames, protocol = Frames(), cast("Protocol", server.protocol)
+    loop = asyncio.get_running_loop()
+    data = b"?"
+    while data:
+        data = await loop.run_in_executor(server.thread_pool, file.read1, _PIECE)
+        for frame in frames.feed(data) if data else frames.end():
+            try:
+                protocol.take(frame)
+            except Exception as error:
+                LOG.exception("a message was not understood")
+                server.report_server_error(error, JsonRpcException)
+            # What a message has begun, such as an answer, goes on before the next one is looked at.
+            await asyncio.sleep(0)
 
 
 class _Line:
@@ -66,8 +94,6 @@ class _Line:
 def _is_unforeseen(record: logging.LogRecord) -> bool:
     """Whether a line of the log is about more than a message that was refused."""
     error = record.exc_info[1] if record.exc_info else None
-    if record.msg == "Unable to handle message":
-        return not isinstance(error, UNREADABLE)
     return not isinstance(error, JsonRpcException) and not record.msg.startswith("Unable to deserialize message")
 
 

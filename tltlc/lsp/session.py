@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, Final, cast
+from typing import Final
 
 from lsprotocol import types
-from pygls.exceptions import JsonRpcException, JsonRpcParseError
 from pygls.lsp.server import LanguageServer
 
 from tltlc import __version__
@@ -18,7 +17,7 @@ from tltlc.lsp.document import Document
 from tltlc.lsp.kept import kept
 from tltlc.lsp.paths import name_of, path_of
 from tltlc.lsp.positions import UTF_16
-from tltlc.lsp.protocol import UNREADABLE, Protocol
+from tltlc.lsp.protocol import Protocol
 from tltlc.lsp.queue import Queue
 from tltlc.lsp.remarks import remark, remark_on_project
 from tltlc.lsp.worker import Worker
@@ -45,13 +44,6 @@ class Server(LanguageServer):
         self._timers: dict[tuple[str, str], asyncio.TimerHandle] = {}
         self._imported: dict[str, list[str]] = {}
         self._said_of_project: dict[str, tuple[Diagnostic, ...]] = {}
-
-    def report_server_error(self, error: Exception, source: Any) -> None:
-        """Tell the editor what went wrong; of a message that is no JSON, what the protocol has for that."""
-        if source is JsonRpcException and isinstance(error, UNREADABLE):
-            cast("Protocol", self.protocol).refuse(None, JsonRpcParseError.of(error))
-        else:
-            super().report_server_error(error, source)
 
     @property
     def encoding(self) -> str:

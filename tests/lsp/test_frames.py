@@ -1,0 +1,139 @@
+"""How bytes become messages: in whichever pieces they come, and whatever is wrong with them."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tltlc.limits import MESSAGE, MESSAGE_HEAD
+from tltlc.lsp.frames import Body, Fault, Frame, Frames
+
+MESSAGES = (b"{}", b'{"a": [1, "}"]}', b'{"text": "Content-Length: 3\\r\\n\\r\\n"}', b"[" + b"7, " * 300 + b"8]")
+
+
+def framed(data: bytes, extra: int = 0) -> bytes:
+    return b"Content-Length: %d\r\n\r\n%b" % (len(data) + extra, data)
+
+
+def frames(*pieces: bytes) -> list[Frame]:
+    reader = Frames()
+    return [frame for piece in pieces for frame in reader.feed(piece)] + reader.end()
+
+
+def bodies(*pieces: bytes) -> list[bytes]:
+    return [frame.data for frame in frames(*pieces) if isinstance(frame, Body)]
+
+
+def test_messages_are_cut_as_their_headers_say() -> None:
+    data = b"".join(map(framed, MESSAGES))
+    assert frames(data) == [Body(each) for each in MESSAGES]
+    assert frames(*(data[at : at + 1] for at in range(len(data)))) == [Body(each) for each in MESSAGES]
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"content-length:%d\r\n\r\n",
+        b"Content-Length: \t%d \r\n\r\n",
+        b"Content-Type: a; charset=utf-8\r\nContent-Length: %d\r\n\r\n",
+        b"Content-Length: %d\r\nContent-Type: a\r\n\r\n",
+        b"Content-Length: 000%d\n\n",
+        b"\r\n\r\nContent-Length: %d\r\n\r\n",
+    ],
+)
+def test_headers_may_be_written_in_several_ways(head: bytes) -> None:
+    assert frames(head % 2 + b"{}" + framed(b"[]")) == [Body(b"{}"), Body(b"[]")]
+
+
+@pytest.mark.parametrize("extra", [*range(1, 80), 1000, MESSAGE.size - 100])
+def test_a_header_inside_of_a_body_ends_it(extra: int) -> None:
+    typed = b"Content-Type: a/b\r\n" + framed(b"[]")
+    for behind in (framed(b"[]") * 3, typed * 3):
+        data = framed(b"{}", extra) + behind
+        assert bodies(data) == [b"{}", b"[]", b"[]", b"[]"]
+        assert bodies(*(data[at : at + 1] for at in range(len(data)))) == [b"{}", b"[]", b"[]", b"[]"]
+
+
+def test_a_body_that_is_broken_ends_at_the_next_header_too() -> None:
+    assert bodies(framed(b'{"a": "b', 40) + framed(b"[]")) == [b'{"a": "b', b"[]"]
+
+
+def test_a_length_above_the_limit_is_told_at_once() -> None:
+    reader = Frames()
+    (fault,) = reader.feed(b"Content-Length: %d\r\n\r\n" % (MESSAGE.size + 1))
+    assert fault == Fault("a message is larger than 4 MiB, and is passed over", is_answered=True)
+    assert reader.feed(b"{" + b"a" * 100_000 + b"}") == []
+    # No more is kept of what is passed over than a header can have.
+    assert len(reader._buffer) <= MESSAGE_HEAD.size
+    assert reader.feed(framed(b"{}")) == [Body(b"{}")]
+
+
+def test_what_is_passed_over_is_told_once() -> None:
+    (fault, *rest) = frames(b"Content-Length: -5\r\n\r\n{\n" + b' "a": 1,\n' * 1000 + b"}" + framed(b"{}"))
+    assert fault == Fault(r"a message without a header `Content-Length` is passed over: b'Content-Length: -5\r\n'")
+    assert rest == [Body(b"{}")]
+
+
+def test_what_is_left_at_the_end_is_a_message() -> None:
+    assert bodies(framed(b"{}", 5)) == [b"{}"]
+    assert bodies(b"Content-Length: 5\r\n") == []
+
+
+PIECES = st.one_of(
+    st.sampled_from(MESSAGES).map(framed),
+    st.builds(framed, st.sampled_from(MESSAGES), st.integers(-3, 100)),
+    st.sampled_from(
+        [
+            b"Content-Length: ",
+            b"Content-Type: a\r\n",
+            b"\r\n",
+            b"\n",
+            b"-",
+            b"+1",
+            b"{",
+            b"}",
+            b'"',
+            b"a" * 9000,
+            b"9" * 20,
+        ]
+    ),
+    st.binary(max_size=20),
+)
+
+
+@given(st.lists(PIECES, max_size=8).map(b"".join), st.lists(st.integers(1, 40), max_size=60))
+def test_any_bytes_are_cut_in_the_same_way_in_whichever_pieces_they_come(data: bytes, sizes: list[int]) -> None:
+    pieces, rest = [], data
+    for size in sizes:
+        pieces.append(rest[:size])
+        rest = rest[size:]
+    one, other = frames(data), frames(*pieces, rest)
+    assert [each for each in one if isinstance(each, Body)] == [each for each in other if isinstance(each, Body)]
+    assert [type(each) for each in one] == [type(each) for each in other]
+
+
+WRONG = st.sampled_from(
+    [
+        *(b"Content-Length: %b\r\n\r\n{}" % each for each in (b"-2", b"+2", b"many", b"", b"2.0", b"\xb2", b"9" * 70)),
+        *(framed(b'{"a": 1}', more) for more in range(-7, 100)),
+        framed(b"{}", MESSAGE.size),
+        b"Content-Length: 2\r\n{}",
+        b"Content-Length: 1\r\nContent-Length: 2\r\n\r\n{}",
+        b"a" * 10_000,
+        b"\r\n",
+        b"\0\n",
+    ]
+)
+
+
+@given(st.lists(WRONG, max_size=5).map(b"".join), st.sampled_from(MESSAGES))
+def test_whatever_was_wrong_a_right_message_behind_it_is_read(wrong: bytes, right: bytes) -> None:
+    assert bodies(wrong + framed(right))[-1] == right
+
+
+@given(st.recursive(st.none() | st.text(), st.lists, max_leaves=20).map(lambda value: json.dumps([value]).encode()))
+def test_a_right_message_is_never_cut(message: bytes) -> None:
+    assert frames(framed(message) * 2) == [Body(message)] * 2
