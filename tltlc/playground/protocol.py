@@ -10,6 +10,8 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.limits import ANSWER
 from tltlc.playground.document import diagnostic, view
 from tltlc.playground.start import start
+from tltlc.playground.trace import Letter
+from tltlc.record import record
 
 MOST_LETTERS: Final = 1_000
 TOO_LARGE: Final = "this takes more memory than the playground has"
@@ -19,18 +21,44 @@ class RequestError(ValueError):
     """What was asked is no request."""
 
 
-def answer(request: str) -> str:
-    """The answer to a request: what :func:`start` or :func:`view` returns, by its keys ``text``, ``spec``, ``letters``,
-    ``notation``.
+@record
+class Question:
+    """What the page asks about a text; ``spec``, ``letters`` and ``notation`` are those of :func:`view`."""
 
-    Without a ``text`` it asks how to start.  Raises RequestError for anything else than such a request.
+    text: str
+    spec: str
+    letters: tuple[Letter, ...]
+    notation: Notation
+
+
+def answer(request: str) -> str:
+    """The answer to a request: what :func:`start` or :func:`view` returns.
+
+    Raises RequestError for anything else than such a request.
+    """
+    asked = question(request)
+    if asked is None:
+        return _json(start())
+    try:
+        return _json(view(asked.text, asked.spec, asked.letters, asked.notation))
+    except (MemoryError, RecursionError):
+        return gave_up(TOO_LARGE)
+    except Exception:
+        # Whoever types has no use for a traceback, and can go on typing.
+        return gave_up("a bug in tltlc stopped this", "please report it, with the text")
+
+
+def question(request: str) -> Question | None:
+    """What a request asks by its keys ``text``, ``spec``, ``letters``, ``notation``; None where it asks how to start.
+
+    Raises RequestError for anything else than such a request.
     """
     try:
         asked = json.loads(request)
     except (ValueError, RecursionError) as error:
         raise RequestError("a request is JSON") from error
     if asked == {}:
-        return _json(start())
+        return None
     if not isinstance(asked, dict) or not isinstance(asked.get("text"), str):
         raise RequestError("a request has a `text`")
     spec, letters = asked.get("spec", ""), asked.get("letters", [])
@@ -41,13 +69,7 @@ def answer(request: str) -> str:
         raise RequestError(f"`notation` is one of {', '.join(get_args(Notation))}")
     if not all(map(_is_letter, letters)):
         raise RequestError("a letter is a list of atoms, or an object of numbers by the names of signals")
-    try:
-        return _json(view(asked["text"], spec, letters, notation))
-    except (MemoryError, RecursionError):
-        return gave_up(TOO_LARGE)
-    except Exception:
-        # Whoever types has no use for a traceback, and can go on typing.
-        return gave_up("a bug in tltlc stopped this", "please report it, with the text")
+    return Question(asked["text"], spec, tuple(letters), notation)
 
 
 def gave_up(why: str, way_out: str = "make the spec smaller: bounds and large conjunctions cost most") -> str:
