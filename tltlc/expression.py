@@ -7,12 +7,15 @@ frozen, know nothing of the surface language and hold no units: every number is 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal, Union
+from typing import Final, Literal, Union
 
 from tltlc.record import record
 
 ArithmeticOp = Literal["+", "-", "*", "/", "^", "neg", "min", "max", "abs", "clamp", "sqrt", "exp", "tanh"]
 ConditionOp = Literal["<", "<=", ">", ">=", "and", "or", "not"]
+
+LEAST: Final = 1e-30
+"""The least robustness of a comparison that is true by more: small, and yet a number in formats of 32 bits."""
 
 
 @record

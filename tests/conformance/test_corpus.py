@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import subprocess
 import sys
 from functools import cache
@@ -16,7 +17,9 @@ import pytest
 from tests.cli.conftest import ROOT
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
+from tltlc.conformance import borders
 from tltlc.conformance.corpus import CASES, files
+from tltlc.conformance.draw import Draw
 from tltlc.conformance.expected import COLUMNS, Kind
 from tltlc.expression import ArithmeticOp, Condition, ConditionOp, Const, Op, Param, When, nodes
 from tltlc.monitor import Monitor
@@ -197,3 +200,20 @@ def test_every_kind_of_error() -> None:
 def test_it_is_small() -> None:
     assert 40 <= len(CASES) <= 80
     assert all(text.count("\n") < 200 for text in texts(".expected.csv").values())
+
+
+def test_comparisons_next_to_their_thresholds_are_judged_as_the_exact_ones() -> None:
+    cases = {"borders": borders.EXTREMES}
+    cases |= {f"borders_{number}": borders.drawn_borders(Draw(8000 + number), 8) for number in range(1, 4)}
+    for name, compared in cases.items():
+        rows = csv.DictReader(io.StringIO(corpus()[f"{name}/{name}.1.csv"].decode()))
+        wanted = []
+        for row in rows:
+            pairs = [(float(row[f"x{n}"]), float(row.get(f"y{n}", "nan"))) for n in range(1, len(compared) + 1)]
+            truths = [
+                border.holds(x, None if math.isnan(y) else y) for border, (x, y) in zip(compared, pairs, strict=True)
+            ]
+            wanted.append("holding" if all(truths) else "pending")
+        found = csv.DictReader(io.StringIO(corpus()[f"{name}/{name}.1.expected.csv"].decode()))
+        assert [row["verdict"] for row in found] == wanted
+        assert {"holding", "pending"} <= set(wanted)

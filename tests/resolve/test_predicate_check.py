@@ -256,3 +256,16 @@ def test_values_agree_across_borders_unless_a_finding_says_otherwise(
             assert left is not None
             assert right is not None
             assert abs(left - right) < 1e-4
+
+
+@pytest.mark.parametrize("side", [(-1e308, 1e308), (-1.7e308, 1.7e308), (1e200, 1.7e308), (-1e308, -1e200)])
+def test_ranges_whose_width_is_no_number(side: tuple[float, float]) -> None:
+    signals = {"x": spec.Signal("x", "number", *side)}
+    border = side[0] / 2 + side[1] / 2
+    jumping = When(((cond(X, ">", border), Const(1.0)),), Const(-1.0))
+    (jump,) = check_predicate(jumping, signals, {}, -1.0, 1.0)
+    assert jump.kind == "discontinuous"
+    (wrong,) = check_predicate(op("clamp", X, -2, 2), signals, {}, -1.0, 1.0)
+    assert wrong.kind == "range_wrong"
+    assert math.isfinite(wrong.witness["x"])
+    assert check_predicate(op("clamp", op("/", X, 1e308), -1, 1), signals, {}, -1.0, 1.0) == ()

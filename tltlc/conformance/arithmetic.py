@@ -42,6 +42,7 @@ def _when(condition: Condition, value: Expression | float, otherwise: Expression
 
 _SHARE = _op("/", 1.0, _X)
 _ROOT = _op("sqrt", _X)
+_HUGE = _op("*", 1e308, _X)
 _NESTED = When(
     (
         # None of the later parts has a value where the earlier ones decide.
@@ -100,6 +101,12 @@ _EXPRESSIONS: Final[dict[str, tuple[Expression, Expression, tuple[float, ...]]]]
     "zeros": (
         _op("*", _op("neg", _X), 0.0),
         _op("max", _op("min", _op("*", _op("*", -1.0, _Y), 0.0), 0.0), -0.0),
+        _NEAR_ZERO,
+    ),
+    "clamped_infinities": (
+        _op("clamp", _HUGE, -0.5, 0.75),
+        # A difference of infinities is no number, and none is less or greater than it.
+        _op("max", _op("min", 0.25, _op("-", _HUGE, _op("*", _HUGE, 2.0))), -0.75),
         _NEAR_ZERO,
     ),
 }

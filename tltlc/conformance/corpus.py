@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from tltlc import backends
 from tltlc.automaton.fspa import Fspa
-from tltlc.conformance import arithmetic, operators, random_cases, shapes, written
+from tltlc.conformance import arithmetic, borders, operators, random_cases, shapes, written
 from tltlc.conformance.case import Case, Makers
 from tltlc.conformance.expected import COLUMNS, Expected, Refusal, expected
 from tltlc.expression import Const, Op, nodes
@@ -19,6 +19,7 @@ CASES: Final[Makers] = {
     **written.CASES,
     **operators.CASES,
     **arithmetic.CASES,
+    **borders.CASES,
     **shapes.CASES,
     **random_cases.CASES,
 }

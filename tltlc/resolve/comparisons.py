@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from math import inf
 
-from tltlc.expression import Const, Expression, Op
 from tltlc.grammar.tree import Binary, Number
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
 from tltlc.resolve.dimensions import same_dimension
+from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
@@ -21,9 +22,11 @@ def comparison(expr: Binary, env: Env) -> Formula:
     """The atom of a comparison, or its negation: ``x >= c`` is ``not (x < c)``, ``x <= c`` is ``not (x > c)``.
 
     With x in [low, high], ``x > c`` has the robustness (x - c), scaled to 1 at high and to -1 at low, each
-    side on its own; ``x < c`` is mirrored.  Two sides that both vary are compared by their difference
-    with 0.  Raises ResolutionError where the comparison is constant over the range (TLT0310) or a side that is
-    needed for scaling is unbounded (TLT0311).
+    side on its own; ``x < c`` is mirrored.  Two sides that both vary are compared by their difference with 0.  The
+    robustness is above 0 exactly where the comparison of the two sides is true.
+
+    Raises ResolutionError where the comparison is constant over the range (TLT0310), a side that is needed for scaling
+    is unbounded (TLT0311), or the arithmetic of a side is too large for a number (TLT0319).
     """
     left, right = quantity(expr.left, env), quantity(expr.right, env)
     same_dimension(left, right, expr.right, env)
@@ -37,22 +40,36 @@ def comparison(expr: Binary, env: Env) -> Formula:
     name = f"{left.bracketed(PRODUCT - 1)} {strict} {right.bracketed(PRODUCT - 1)}"
     if env.symbolic:
         return atom(name)
-    x, c = left, _value(right)
+    _check_size(left, expr, env)
+    _check_size(right, expr, env)
+    _check_truth(left, strict, right, negated, expr, env)
+    greater, less = (left, right) if strict == ">" else (right, left)
+    found = env.context.atom(name, robustness(greater, less), "", env.scope.source, expr.span)
+    return not_(found) if negated else found
+
+
+def _check_size(side: Quantity, expr: Binary, env: Env) -> None:
+    """Raises ResolutionError (TLT0319) where values within the ranges give a side that is too large for a number."""
+    if not side.overflows:
+        return
+    raise problem(
+        "TLT0319",
+        f"the arithmetic of `{side.text}` can be too large for a number",
+        env.scope.source,
+        expr.span,
+        f"no number is above {sys.float_info.max:.2e}",
+        advice="declare smaller ranges for the signals and params that it is computed from",
+    )
+
+
+def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: Binary, env: Env) -> None:
+    """Raises ResolutionError where the truth is the same everywhere (TLT0310) or a range has no end (TLT0311)."""
+    source = env.scope.source
+    x, c = left, right.low
     if not right.is_constant:
         difference = apply("-", (left, right), left.dimension)
         assert difference is not None, "not all constant"
         x, c = difference, 0.0
-    _check(x, strict, c, negated, expr, env)
-    found = env.context.atom(name, _robustness(x, strict, c), "", env.scope.source, expr.span)
-    return not_(found) if negated else found
-
-
-def _value(quantity_: Quantity) -> float:
-    return quantity_.expression.value if isinstance(quantity_.expression, Const) else 0.0
-
-
-def _check(x: Quantity, op: str, c: float, negated: bool, expr: Binary, env: Env) -> None:
-    source = env.scope.source
     always = x.low > c if op == ">" else x.high < c
     never = x.high <= c if op == ">" else x.low >= c
     if always or never:
@@ -65,7 +82,7 @@ def _check(x: Quantity, op: str, c: float, negated: bool, expr: Binary, env: Env
             advice = f"write `{source.slice(expr.span)} %`: a ratio is a number in [0, 1]"
         title = f"this comparison {'always' if holds else 'never'} holds"
         raise problem("TLT0310", title, source, expr.span, message, advice=advice)
-    needed = [x.high == inf, x.low == -inf]
+    needed = [inf in (left.high, -right.low), inf in (-left.low, right.high)]
     if any(needed):
         raise _unbounded(x, needed, expr, env)
 
@@ -86,22 +103,3 @@ def _unbounded(x: Quantity, needed: list[bool], expr: Binary, env: Env) -> Resol
         expr.span,
         advice=f"declare a range, e.g. `in [0{unit}, 100{unit}]`, where it is declared, or use a predicate",
     )
-
-
-def _robustness(x: Quantity, op: str, c: float) -> Expression:
-    """The margin by which ``x op c`` holds, over its greatest value on that side of c."""
-    above, below = x.high - c, c - x.low
-    if op == ">":
-        margin: Expression = x.expression if c == 0 else Op("-", (x.expression, Const(c)))
-        holding, failing = above, below
-    else:
-        margin = Op("neg", (x.expression,)) if c == 0 else Op("-", (Const(c), x.expression))
-        holding, failing = below, above
-    if failing in (0.0, holding):
-        return _over(margin, holding)
-    # Of the two quotients, the one over the smaller divisor is the greater above 0 and the smaller below.
-    return Op("max" if holding < failing else "min", (_over(margin, holding), _over(margin, failing)))
-
-
-def _over(margin: Expression, divisor: float) -> Expression:
-    return margin if divisor == 1 else Op("/", (margin, Const(divisor)))

@@ -231,6 +231,7 @@ def _when(expr: tree.When, env: Env, depth: int) -> Quantity:
         " ".join([*texts, f"otherwise: {otherwise.text}"]),
         LOOSEST,
         1 + max(value.depth for value in values),
+        overflows=any(value.overflows for value in values),
     )
 
 

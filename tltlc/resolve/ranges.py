@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import reduce
-from math import exp, inf, isnan, sqrt, tanh
+from math import exp, inf, isfinite, isnan, sqrt, tanh
 
 Range = tuple[float, float]
 EVERYTHING: Range = (-inf, inf)
@@ -22,6 +22,24 @@ def range_of(op: str, args: tuple[Range, ...]) -> Range:
     except (OverflowError, ZeroDivisionError):
         return EVERYTHING
     return EVERYTHING if isnan(low) or isnan(high) else (low, high)
+
+
+def overflows(op: str, args: tuple[Range, ...]) -> bool:
+    """Whether ``op`` has a value everywhere in finite ranges, and that value may be too large for a number."""
+    if not all(isfinite(end) for arg in args for end in arg) or not _is_defined(op, args):
+        return False
+    return not all(isfinite(end) for end in range_of(op, args))
+
+
+def _is_defined(op: str, args: tuple[Range, ...]) -> bool:
+    first, second = args[0], args[-1]
+    if op == "/":
+        return not second[0] <= 0 <= second[1]
+    if op == "sqrt":
+        return first[0] >= 0
+    if op != "^" or first[0] > 0:
+        return True
+    return second[0] == second[1] == int(second[0]) and (second[0] >= 0 or first[1] < 0)
 
 
 def hull(ranges: tuple[Range, ...]) -> Range:

@@ -10,7 +10,7 @@ from tltlc.expression import Const, Expression, Op
 from tltlc.logic.formula import Formula
 from tltlc.record import EMPTY, record, replace
 from tltlc.resolve.context import Context
-from tltlc.resolve.ranges import range_of
+from tltlc.resolve.ranges import overflows, range_of
 from tltlc.resolve.scope import Scope
 from tltlc.resolve.units import Dimension, si_unit
 
@@ -31,7 +31,8 @@ class Quantity:
 
     ``dimension`` None fits any (0, inf); ``low`` and ``high`` bound the value, in SI units; ``text`` is
     its one spelling in the names of atoms and ``binding`` how tightly that spelling binds; ``depth``
-    is that of the expression; ``is_bool`` marks a value that is 0 or 1 by type.
+    is that of the expression; ``is_bool`` marks a value that is 0 or 1 by type; ``overflows`` one whose arithmetic may
+    be too large for a number although all that it is computed from has a finite range.
     """
 
     expression: Expression
@@ -42,6 +43,7 @@ class Quantity:
     binding: int = CLOSED
     depth: int = 1
     is_bool: bool = False
+    overflows: bool = False
 
     @property
     def is_constant(self) -> bool:
@@ -114,7 +116,8 @@ _INFIX = {
 
 def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Quantity | None:
     """``op`` over quantities; of constants, a constant, or None if they give no finite value (``1 / 0``)."""
-    low, high = range_of(op, tuple((arg.low, arg.high) for arg in args))
+    ranges = tuple((arg.low, arg.high) for arg in args)
+    low, high = range_of(op, ranges)
     if all(arg.is_constant for arg in args):
         return constant(low, dimension) if low == high and not isinf(low) else None
     if op in _INFIX:
@@ -127,4 +130,6 @@ def apply(op: str, args: tuple[Quantity, ...], dimension: Dimension | None) -> Q
     else:
         binding, text = CLOSED, f"{op}({', '.join(arg.text for arg in args)})"
     expression = Op(op, tuple(arg.expression for arg in args))  # type: ignore[arg-type]
-    return Quantity(expression, dimension, low, high, text, binding, 1 + max(arg.depth for arg in args))
+    too_large = any(arg.overflows for arg in args) or overflows(op, ranges)
+    depth = 1 + max(arg.depth for arg in args)
+    return Quantity(expression, dimension, low, high, text, binding, depth, overflows=too_large)

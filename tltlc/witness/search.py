@@ -10,7 +10,7 @@ from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.expression import Const, Expression, Op, nodes
 from tltlc.expression import Signal as Variable
 from tltlc.expression_python import compile_expressions
-from tltlc.resolve.predicate_check.interval import Interval
+from tltlc.resolve.predicate_check.interval import Interval, midpoint
 from tltlc.resolve.predicate_check.region import Box
 from tltlc.resolve.predicate_check.region import Variable as AnyVariable
 from tltlc.resolve.predicate_check.witness import points
@@ -117,7 +117,7 @@ class Group:
         """Two values, next to each other or nearly so, between which an atom's truth changes."""
         below = self._sign({**start, name: low}, index)
         for _ in range(_HALVINGS):
-            middle = low + (high - low) / 2
+            middle = midpoint(low, high)
             if self._sign({**start, name: middle}, index) == below:
                 low = middle
             else:

@@ -75,7 +75,8 @@ class BatchMonitor:
     Equal to as many :class:`tltlc.monitor.Monitor`: on a CPU in float64 to the last bit (the sign of zeros aside)
     where torch computes an operation as C does, else to within 1e-12 (``exp``, ``tanh``, ``sqrt``, powers other
     than 2 and 3, the discounted penalty).  An atom so near to 0, or to a border between cases, may be true in one and
-    false in the other; in float32 that is within 1e-6.
+    false in the other; in float32 that is within 1e-6.  Atoms are computed in float64 where a number of the spec, such
+    as the end of a range, is too large or too small for ``dtype``.
     As there, an environment that has finished goes on with its automaton, with reward 0, until it is reset.
 
     ``state`` int64 [N], ``steps`` and ``progress`` [N] speak of the last step; ``clamped`` counts values out of range,

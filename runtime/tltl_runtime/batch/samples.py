@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import torch
 from numpy.typing import ArrayLike
 from torch import Tensor
 
 from tltl_runtime.batch.expressions import Program
+from tltl_runtime.batch.formats import fits, narrowed
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.expression import Const, nodes
 from tltlc.monitor.samples import ROUNDING, WAYS_OUT, MonitorError, Samples, listed, param_values, shown
 
 _NAMED = 5
@@ -23,6 +25,8 @@ class BatchSamples:
     ``clamped`` counts, per name of a signal or atom, the values that had to be clamped, as the notices of the
     scalar monitor report (an atom's only where it is more than 1e-9 outside [-1, 1]).  Unless they are ``checked``,
     values are clamped and nothing is counted or refused.
+
+    Where a number of the automaton is too large or too small for ``dtype``, atoms are computed in float64.
     """
 
     def __init__(
@@ -34,13 +38,14 @@ class BatchSamples:
         dtype: torch.dtype,
         checked: bool,
     ) -> None:
-        self._fspa, self._count, self._params, self._device, self._dtype = fspa, count, params, device, dtype
+        self._fspa, self._count, self._params, self._device = fspa, count, params, device
         self._checked = checked
         self.names = tuple(signal.name for signal in fspa.signals)
         self.clamped: dict[str, int] = {}
-        self._program = Program(
-            [atom.expression for atom in fspa.atoms], self.names, param_values(fspa.params, params or {}), device, dtype
-        )
+        values = param_values(fspa.params, params or {})
+        self._given = dtype
+        self._dtype = dtype = dtype if fits(_numbers(fspa, values), dtype) else torch.float64
+        self._program = Program([atom.expression for atom in fspa.atoms], self.names, values, device, dtype)
         # An open end is the greatest finite number: what is clamped to that one is infinite.
         most = torch.finfo(dtype).max
         low = [0.0 if s.type == "bool" else -most if s.low is None else s.low for s in fspa.signals]
@@ -51,7 +56,7 @@ class BatchSamples:
         self._bools = [row for row, signal in enumerate(fspa.signals) if signal.type == "bool"]
 
     def atom_values(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
-        """The values of the atoms, each in [-1, 1], shape [atoms, N].
+        """The values of the atoms, each in [-1, 1], shape [atoms, N], with the signs that they are computed with.
 
         ``signals``: an array [N] for each name (names that no atom uses are ignored), or one of shape
         [N, signals] in the order of ``names``.
@@ -64,7 +69,7 @@ class BatchSamples:
         columns = self._columns(signals)
         if not self._checked:
             values, _ = self._program.run(torch.clamp(columns, self._low, self._high))
-            return torch.clamp(values, -1.0, 1.0)
+            return narrowed(torch.clamp(values, -1.0, 1.0), self._given)
         if self.names and not self._in_range(columns):
             given, columns = columns, torch.clamp(columns, self._low, self._high)
             self._check_signals(given, columns)
@@ -72,12 +77,12 @@ class BatchSamples:
             self._check_truth(row, columns[row])
         values, failures = self._program.run(columns)
         if not self._fspa.atoms:
-            return values
+            return values.to(self._given)
         failed = any(bool(mask.any()) for mask in failures if mask is not None)
         if failed or not (float(values.amin()) >= -1.0 and float(values.amax()) <= 1.0):
             raw, values = values, torch.clamp(values, -1.0, 1.0)
             self._check_atoms(columns, raw, values, failures)
-        return values
+        return narrowed(values, self._given)
 
     def _columns(self, signals: Mapping[str, ArrayLike | Tensor] | ArrayLike | Tensor) -> Tensor:
         """The signals that the atoms use, shape [signals, N], a contiguous row each."""
@@ -148,6 +153,15 @@ class BatchSamples:
         except MonitorError as error:
             title = error.diagnostics[0].title.removeprefix("step 1: ")
         return _error("TLT0613", f"{_named(where)}: {title}")
+
+
+def _numbers(fspa: Fspa, params: Mapping[str, float]) -> Iterator[float]:
+    """All numbers that the values of the atoms are computed from, but for those of the samples."""
+    for atom in fspa.atoms:
+        yield from (node.value for node in nodes(atom.expression) if isinstance(node, Const))
+    for signal in fspa.signals:
+        yield from (end for end in (signal.low, signal.high) if end is not None)
+    yield from params.values()
 
 
 def check_exclusive(fspa: Fspa, truth: Tensor) -> None:

@@ -8,7 +8,7 @@ survive rounding.
 
 from __future__ import annotations
 
-from math import exp, inf, isinf, nextafter, sqrt, tanh
+from math import exp, inf, isfinite, isinf, nextafter, sqrt, tanh
 
 Interval = tuple[float, float]
 
@@ -109,6 +109,11 @@ def meet(a: Interval, b: Interval) -> Interval | None:
     """The intersection, or None if it is empty."""
     low, high = max(a[0], b[0]), min(a[1], b[1])
     return (low, high) if low <= high else None
+
+
+def midpoint(low: float, high: float) -> float:
+    """The middle of two finite numbers, also where their difference is too large for a number."""
+    return low + (high - low) / 2 if isfinite(high - low) else low / 2 + high / 2
 
 
 def _integer_power(a: Interval, n: int) -> Interval:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from tltlc.expression import Expression, Signal
 from tltlc.record import record
 from tltlc.resolve.predicate_check.cases import Case
+from tltlc.resolve.predicate_check.interval import midpoint
 from tltlc.resolve.predicate_check.region import Box, Variable
 from tltlc.resolve.predicate_check.witness import CLEARLY, Point, points, value_at
 
@@ -82,7 +83,7 @@ def _jump_between(
     low, high = start[variable], end[variable]
     left, right = _active(all_cases, start), _active(all_cases, end)
     while abs(high - low) > _BORDER_WIDTH * max(1.0, abs(low)):
-        middle = low + (high - low) / 2
+        middle = midpoint(low, high)
         case = _active(all_cases, {**start, variable: middle})
         if left is not None and case is not None and case.value == left.value:
             low = middle

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import copysign, inf, log1p
+from math import copysign, inf, log1p, sqrt
 
 from tltlc.expression import Const, Expression, Op, Param, Signal
 from tltlc.record import record, replace
@@ -217,7 +217,7 @@ def _middle(low: float, high: float) -> float:
     if low == -inf:
         return min(-1.0, 4.0 * high) if high <= 0 else 0.0
     if low > 0 and high > 4 * low:
-        return float((low * high) ** 0.5)
+        return sqrt(low) * sqrt(high)
     if high < 0 and low < 4 * high:
-        return -float((low * high) ** 0.5)
-    return low + (high - low) / 2
+        return -sqrt(-low) * sqrt(-high)
+    return interval.midpoint(low, high)

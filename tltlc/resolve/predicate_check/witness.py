@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import islice, permutations, product
 from math import inf, isfinite, prod
 
-from tltlc.expression import Const, Expression, Param, Signal, nodes
+from tltlc.expression import LEAST, Const, Expression, Param, Signal, nodes
 from tltlc.expression_eval import evaluate
 from tltlc.record import record
-from tltlc.resolve.predicate_check.interval import Interval
+from tltlc.resolve.predicate_check.interval import Interval, midpoint
 from tltlc.resolve.predicate_check.region import Box, Variable
 
 Point = Mapping[Variable, float]
@@ -98,7 +98,7 @@ def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[floa
     if is_bool:
         return low, high
     ends = [end for end in side if isfinite(end)]
-    inner = [low + (high - low) / 2] if len(ends) == 2 and isfinite(high - low) else [0.0]
+    inner = [midpoint(low, high)] if len(ends) == 2 else [0.0]
     spread = [low + step for step in _SPREAD] + [high - step for step in _SPREAD]
     candidates = [*ends, *inner, *extra, 0.0, 1.0, -1.0, *(_SPREAD if not ends else spread)]
     if not ends:
@@ -107,7 +107,8 @@ def _axis(side: Interval, is_bool: bool, extra: tuple[float, ...]) -> tuple[floa
 
 
 def _constants(expression: Expression) -> Iterator[float]:
-    return (node.value for node in nodes(expression) if isinstance(node, Const))
+    """The numbers in an expression that may be borders: the least robustness of a comparison is none."""
+    return (node.value for node in nodes(expression) if isinstance(node, Const) and node.value != LEAST)
 
 
 def _fraction(number: int, position: int) -> float:
@@ -121,8 +122,9 @@ def _at(side: Interval, fraction: float, is_bool: bool) -> float:
     low, high = side
     if is_bool:
         return low if fraction < 0.5 else high
-    if isfinite(high - low):
-        return min(max(low + fraction * (high - low), low), high)
+    if isfinite(low) and isfinite(high):
+        at = low + fraction * (high - low) if isfinite(high - low) else low * (1 - fraction) + high * fraction
+        return min(max(at, low), high)
     if isfinite(low) and high == inf:
         return low + fraction / (1.0 - fraction)
     if isfinite(high) and low == -inf:

@@ -1,0 +1,23 @@
+"""Formats of floating point numbers: what fits into one, and how a value keeps its sign in a smaller one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import torch
+from torch import Tensor
+
+
+def fits(numbers: Iterable[float], dtype: torch.dtype) -> bool:
+    """Whether each number is 0 or a normal number of the format."""
+    format_ = torch.finfo(dtype)
+    return all(number == 0.0 or format_.tiny <= abs(number) <= format_.max for number in numbers)
+
+
+def narrowed(values: Tensor, dtype: torch.dtype) -> Tensor:
+    """The values in a format; one that would round to 0 becomes the smallest normal number of its sign."""
+    if values.dtype == dtype:
+        return values
+    result = values.to(dtype)
+    least = torch.full_like(values, torch.finfo(dtype).tiny).copysign(values).to(dtype)
+    return torch.where((result == 0.0) & (values != 0.0), least, result)

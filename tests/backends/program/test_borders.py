@@ -1,0 +1,36 @@
+"""The program of a monitor decides comparisons as exact ones do, and what is sure of their ranges is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from hypothesis import given, settings
+
+from tests.backends.program.interpreter import Scope
+from tests.resolve.test_margins import FINITE, THREE, around, varying
+from tltlc.backends.program.arithmetic import Arithmetic, defined
+from tltlc.backends.program.bounds import proven, within
+from tltlc.resolve import units
+from tltlc.resolve.margins import robustness
+from tltlc.resolve.values import constant
+
+
+@settings(max_examples=1000, deadline=None)
+@given(THREE, FINITE)
+def test_a_threshold_decides_as_the_exact_comparison_does(ends: Sequence[float], x: float) -> None:
+    low, threshold, high = ends
+    side, fixed = varying("x", low, high), constant(threshold, units.PLAIN)
+    for is_above, possible in ((True, threshold < high), (False, low < threshold)):
+        if not possible:
+            continue
+        expression = robustness(side, fixed) if is_above else robustness(fixed, side)
+        assigned = Arithmetic({"x": "x"}, {}, "t").assigned("value", expression)
+        statements, range_ = proven("value", assigned, {"x": within(low, high)})
+        for number in [*around(threshold, low, high), min(max(x, low), high)]:
+            scope = Scope({"x": number})
+            scope.run(defined("value", statements))
+            found = scope.values["value"]
+            exact = Fraction(number) > Fraction(threshold) if is_above else Fraction(number) < Fraction(threshold)
+            assert (found > 0.0) == exact
+            assert range_ is None or range_.low <= found <= range_.high
