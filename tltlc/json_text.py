@@ -1,13 +1,17 @@
-"""Read JSON within the limits of :mod:`tltlc.limits`."""
+"""Read JSON within the limits of :mod:`tltlc.limits`; no number in it is too large to be computed with."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from tltlc.limits import Limit
+
+_WHOLE_NUMBERS: Final = range(-(2**63), 2**63)
+_MOST_DIGITS: Final = 20
+"""The most digits, with a sign, of a number in that range."""
 
 
 class JsonLimitError(ValueError):
@@ -17,10 +21,13 @@ class JsonLimitError(ValueError):
 def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] | None = None) -> Any:
     """The value in a text; ``parse_constant`` is called for ``NaN`` and ``Infinity``, as :func:`json.loads` has it.
 
+    A whole number of more than 64 bits is a float, as in most readers of JSON: Python's own have no limit, and to make
+    a float of a large one, or to read thousands of digits, fails.
+
     Raises:
         JsonLimitError: it nests deeper than Python can read, or holds more values than ``limit`` allows.
         json.JSONDecodeError: it is not JSON.
-        ValueError: it is not UTF-8, or a whole number in it has thousands of digits.
+        ValueError: it is not UTF-8.
         TypeError: it is no text.
     """
     # Commas inside strings count, too: that errs by little, and takes no time.
@@ -28,7 +35,7 @@ def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] 
     if limit.values is not None and commas >= limit.values:
         raise JsonLimitError(f"it holds more than {limit.values:,} values")
     try:
-        return json.loads(text, parse_constant=parse_constant)
+        return json.loads(text, parse_int=_whole_number, parse_constant=parse_constant)
     except RecursionError:
         raise JsonLimitError("it nests too deep") from None
 
@@ -40,3 +47,10 @@ def load(path: Path, limit: Limit) -> Any:
     if len(data) > limit.size:
         raise JsonLimitError(f"it is larger than {limit.size >> 20} MiB")
     return loads(data, limit)
+
+
+def _whole_number(digits: str) -> int | float:
+    """The number, infinity beyond the range of floats."""
+    if len(digits) <= _MOST_DIGITS and (number := int(digits)) in _WHOLE_NUMBERS:
+        return number
+    return float(digits)

@@ -20,6 +20,15 @@ _TOKEN: Final = re.compile(
     re.DOTALL,
 )
 
+_WHOLE_NUMBERS: Final = range(-(2**63), 2**63)
+_MANY_DIGITS: Final = re.compile(
+    r"(?<![\w.+-])(?:[+-]?[1-9](?:_?[0-9]){18,}|0x[0-9A-Fa-f](?:_?[0-9A-Fa-f]){15,}"
+    r"|0o[0-7](?:_?[0-7]){20,}|0b[01](?:_?[01]){62,})(?![\w.])"
+)
+"""Whole numbers that may have more than 64 bits."""
+_MOST_CHARACTERS: Final = 200
+"""Of a whole number with 64 bits, whatever its base, with signs that part its digits."""
+
 
 def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
     """The values in a text.
@@ -38,7 +47,33 @@ def parse(source: SourceFile, code: str, help_: str) -> dict[str, Any]:
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         message = str(error) or "it is nested too deeply"
         raise TltlError([_syntax_error(source, message, code, help_)]) from None
+    except ValueError:
+        # Python refuses to read whole numbers of thousands of digits.
+        raise _too_large(source, code) from None
+    if not _fits(table):
+        raise _too_large(source, code)
     return table
+
+
+def _fits(value: object) -> bool:
+    """Whether all whole numbers have 64 bits, as TOML has it; to make a float of a much larger one fails."""
+    if isinstance(value, dict):
+        return all(map(_fits, value.values()))
+    if isinstance(value, list):
+        return all(map(_fits, value))
+    return not isinstance(value, int) or value in _WHOLE_NUMBERS
+
+
+def _too_large(source: SourceFile, code: str) -> TltlError:
+    found = next((each for each in _MANY_DIGITS.finditer(source.text) if not _is_whole_number(each[0])), None)
+    label = (Label(source, Span(*found.span()), "this whole number"),) if found else ()
+    title = f"`{source.name}` is not TOML: a whole number is too large"
+    help_ = f"whole numbers end at {_WHOLE_NUMBERS[-1]:,}; write a larger number with an exponent, as in 1e20"
+    return TltlError([Diagnostic(code, title, label, help_)])
+
+
+def _is_whole_number(digits: str) -> bool:
+    return len(digits) <= _MOST_CHARACTERS and int(digits, 0) in _WHOLE_NUMBERS
 
 
 def _check_limits(source: SourceFile) -> None:

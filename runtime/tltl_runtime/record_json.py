@@ -70,9 +70,16 @@ def _value(kind: Any, data: object, where: str) -> object:
 def _plain(kind: type, data: object, where: str) -> object:
     if kind is float and type(data) is int and abs(data) < 2**53:
         return float(data)
-    if type(data) is kind and (kind is not float or isfinite(cast(float, data))):
+    if type(data) is kind and _fits(data):
         return data
     raise _wrong(where, _PLAIN[kind], data)
+
+
+def _fits(data: object) -> bool:
+    """Whether a plain value is finite and, if it is whole, has 64 bits at most."""
+    if isinstance(data, int):
+        return -(2**63) <= data < 2**63
+    return not isinstance(data, float) or isfinite(data)
 
 
 def _any(data: object, where: str) -> object:

@@ -17,7 +17,7 @@ READ: Final = {"library", "pyodide", "resume", "config", "demonstrations", "poli
 """Parameters whose paths are read."""
 
 
-def _commands() -> Iterator[tuple[str, click.Command]]:
+def commands() -> Iterator[tuple[str, click.Command]]:
     context = click.Context(cli)
     for name in (*BUILT_IN, *OF_THE_RUNTIME):
         try:
@@ -34,7 +34,7 @@ def _commands() -> Iterator[tuple[str, click.Command]]:
 
 
 def _paths() -> list[tuple[str, click.Parameter]]:
-    parameters = ((name, each) for name, command in _commands() for each in command.params)
+    parameters = ((name, each) for name, command in commands() for each in command.params)
     return [(name, each) for name, each in parameters if isinstance(each.type, click.Path) and each.name not in READ]
 
 

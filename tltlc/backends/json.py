@@ -75,10 +75,6 @@ def _document(source: SourceFile) -> dict[str, Any]:
         raise TltlError([Diagnostic("TLT0601", title, help=RECOMPILE)]) from None
     except JsonLimitError as error:
         raise TltlError([Diagnostic("TLT0006", f"`{source.name}` cannot be read: {error}", help=RECOMPILE)]) from None
-    except ValueError:
-        # Python refuses to convert whole numbers of thousands of digits.
-        title = f"a number in `{source.name}` has too many digits"
-        raise TltlError([Diagnostic("TLT0601", title, help=RECOMPILE)]) from None
     if not isinstance(document, dict) or document.get("format") != "fspa":
         title = f"`{source.name}` is JSON, but not an artefact"
         raise TltlError([Diagnostic("TLT0601", title, help="`tltlc compile` writes artefacts: NAME.fspa.json")])

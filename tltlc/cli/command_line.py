@@ -74,7 +74,7 @@ class CommandLine(click.Group):
             status = super().main(None if args is None else list(args), **extra) or 0
             sys.stdout.flush()
         except Exception as error:
-            status = exits.report(error)
+            status = exits.report(_of_completion(error))
         exits.flush()
         sys.exit(status)
 
@@ -150,6 +150,13 @@ class CommandLine(click.Group):
         return [item for item in names if item.value.startswith(incomplete)] + click.Command.shell_complete(
             self, ctx, incomplete
         )
+
+
+def _of_completion(error: Exception) -> Exception:
+    """Wrong usage where click completes a line, and does not find the variables that a shell's script sets."""
+    if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
+        return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")
+    return error
 
 
 def _version(ctx: click.Context, _: click.Parameter, wanted: bool) -> None:

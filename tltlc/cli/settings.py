@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from tltlc.cli.numbers import WholeRange
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.diagnostics.render import FORMATS
 from tltlc.files import is_dir
@@ -65,7 +66,7 @@ def compile_options(command: Function) -> Function:
             click.option(
                 "--state-budget",
                 metavar="N",
-                type=click.IntRange(min=1),
+                type=WholeRange(min=1),
                 help="Give up on an automaton that needs more states, or as much more work (default: 50000).",
             ),
         )

@@ -52,8 +52,16 @@ def read(source: SourceFile) -> Hoa:
     except UnexpectedInput as error:
         raise _unreadable(source, error, Span(0, len(text.rstrip())), "the end of the file") from None
     except VisitError as error:
-        raise error.orig_exc from None
+        raise _cause(error) from None
     return found
+
+
+def _cause(error: VisitError) -> Exception:
+    """What went wrong while the tree was built; a label is a tree within the tree."""
+    cause: Exception = error
+    while isinstance(cause, VisitError):
+        cause = cause.orig_exc
+    return cause
 
 
 @lru_cache(maxsize=1)
@@ -110,7 +118,7 @@ def _unreadable(source: SourceFile, error: UnexpectedInput, whole: Span, at_end:
         title, way_out = f"`{source.name}` holds several automata", "give a file with one of them"
         return other_kind(source, span, title, way_out, "another one")
     expected = sorted(at_end if name == "$END" else _said(name) for name in error.accepts)
-    remark = f"expected {_listed(expected)}" if len(expected) <= _MOST_EXPECTED else ""
+    remark = f"expected {_listed(expected)}" if 0 < len(expected) <= _MOST_EXPECTED else ""
     return broken(source, span, title, remark=remark)
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Final
+
+from tltlc.json_text import loads
+from tltlc.limits import TRACE_LINE
 
 _TRUTHS: Final = {"true", "false", "1", "0", "1.0", "0.0"}
 
@@ -59,7 +61,7 @@ def _csv(lines: Sequence[str]) -> Iterator[Row]:
 def _json(lines: Sequence[str]) -> Iterator[Row]:
     for line in lines:
         try:
-            found = json.loads(line) if line.strip() else None
+            found = loads(line, TRACE_LINE) if line.strip() else None
         except (ValueError, RecursionError):
             continue
         if isinstance(found, dict):

@@ -9,6 +9,8 @@ from itertools import chain
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.json_text import loads
+from tltlc.limits import TRACE_LINE
 from tltlc.monitor.samples import listed
 from tltlc.resolve.spec import Signal
 from tltlc.source import SourceFile, Span
@@ -173,7 +175,7 @@ def _json_lines(lines: Iterator[str], at: _Lines, signals: Sequence[Signal]) -> 
         if not line.strip():
             continue
         try:
-            found = json.loads(line)
+            found = loads(line, TRACE_LINE)
         except json.JSONDecodeError as error:
             raise at.error("this is not JSON", (error.pos, error.pos + 1), _OBJECTS) from None
         except (RecursionError, ValueError):

@@ -7,7 +7,8 @@ from typing import Any, Final, get_args
 
 from tltlc.backends import Notation
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.limits import ANSWER
+from tltlc.json_text import loads
+from tltlc.limits import ANSWER, MESSAGE
 from tltlc.playground.document import diagnostic, view
 from tltlc.playground.start import start
 from tltlc.playground.trace import Letter
@@ -54,7 +55,7 @@ def question(request: str) -> Question | None:
     Raises RequestError for anything else than such a request.
     """
     try:
-        asked = json.loads(request)
+        asked = loads(request, MESSAGE)
     except (ValueError, RecursionError) as error:
         raise RequestError("a request is JSON") from error
     if asked == {}:

@@ -14,6 +14,7 @@ from tltl_runtime.commands.notation import notation_option
 from tltl_runtime.commands.options import output_folder, seed_option
 from tltl_runtime.stealth.levels.place import level_place
 from tltlc.cli import exits
+from tltlc.cli.numbers import WholeRange
 from tltlc.cli.report import Report
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ Examples:
 @click.option(
     "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
 )
-@click.option("--episodes", metavar="N", type=click.IntRange(min=1), default=1, show_default=True)
+@click.option("--episodes", metavar="N", type=WholeRange(min=1), default=1, show_default=True)
 @seed_option("Of the first episode; those of the next follow.")
 @output_folder("The folder for recordings and plans, made where it is missing.", default=Path("demonstrations"))
 @click.option("--film", type=click.Choice([ending[1:] for ending in FILMS]), help="Make a film of each episode, too.")

@@ -21,6 +21,7 @@ from tltl_runtime.commands.options import output_folder, seed_option
 from tltl_runtime.commands.workers import WorkersType
 from tltl_runtime.commands.writable import check_writable
 from tltl_runtime.texts import listed
+from tltlc.cli.numbers import WholeRange
 from tltlc.cli.paths import OutputPath, is_stdout
 from tltlc.cli.report import Report
 
@@ -46,10 +47,10 @@ Examples:
 @click.option(
     "--level", metavar="LEVEL[:VARIANT]", help="Where; by default where the policy was trained.  VARIANT: v0."
 )
-@click.option("--episodes", metavar="N", type=click.IntRange(1, 10**6), default=100, show_default=True)
+@click.option("--episodes", metavar="N", type=WholeRange(1, 10**6), default=100, show_default=True)
 @seed_option("Of the evaluation: episode i of seed N always plays the same.")
 @click.option(
-    "--first", metavar="I", type=click.IntRange(min=0), default=0, show_default=True, help="Begin with episode I."
+    "--first", metavar="I", type=WholeRange(min=0), default=0, show_default=True, help="Begin with episode I."
 )
 @click.option("--spec", metavar="SPEC[:NAME]", help="What is to be done; by default what the policy was trained for.")
 @click.option(

@@ -3,28 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import isfinite
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
 import click
 
+from tltlc.cli.numbers import WholeRange
 from tltlc.cli.paths import OutputPath
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 _OUTPUT: Final = ("--output", "--out", "-o")
-
-
-class FiniteRange(click.FloatRange):
-    """A finite number in a range, of which `nan` is neither below nor above."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number."""
-        number = super().convert(value, param, ctx)
-        if not isfinite(number):
-            self.fail("write a number", param, ctx)
-        return number
 
 
 def output_folder(about: str, default: Path | None = None) -> Callable[[Function], Function]:
@@ -47,7 +36,7 @@ def output_file(metavar: str, about: str) -> Callable[[Function], Function]:
 
 def seed_option(about: str) -> Callable[[Function], Function]:
     """``--seed N``, by default 0."""
-    kind = click.IntRange(min=0)
+    kind = WholeRange(min=0)
     return click.option("--seed", metavar="N", type=kind, default=0, show_default=True, help=about)
 
 

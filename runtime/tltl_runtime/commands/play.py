@@ -17,6 +17,7 @@ from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.stealth.pictures.camera import View
 from tltl_runtime.stealth.pictures.hud import KEYS
 from tltl_runtime.stealth.recording import RecordEpisode
+from tltlc.cli.numbers import WholeRange
 from tltlc.cli.paths import OutputPath
 
 
@@ -37,7 +38,7 @@ Examples:
 @click.option(
     "--spec", metavar="SPEC[:NAME]", help="What is to be done; by default the spec that the level is made for."
 )
-@click.option("--seed", type=click.IntRange(min=0), help="Of the first episode; by default another one each time.")
+@click.option("--seed", type=WholeRange(min=0), help="Of the first episode; by default another one each time.")
 @click.option(
     "--output",
     "--out",

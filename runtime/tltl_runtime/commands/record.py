@@ -16,6 +16,7 @@ from tltl_runtime.commands.plain import plain
 from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.stealth.levels.place import level_place
 from tltlc.cli import exits
+from tltlc.cli.numbers import WholeRange
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import TltlError
 
@@ -44,7 +45,7 @@ Examples:
 @click.option(
     "--episodes",
     metavar="N",
-    type=click.IntRange(min=1),
+    type=WholeRange(min=1),
     default=20,
     show_default=True,
     help="How many demonstrations there are to be in the folder.",
@@ -52,7 +53,7 @@ Examples:
 @click.option(
     "--seed",
     metavar="N",
-    type=click.IntRange(min=0),
+    type=WholeRange(min=0),
     help="Of the first episode (default: 0, with the keyboard another one each time); where the expert fails in one "
     "after the other, those from another seed on may go better.",
 )

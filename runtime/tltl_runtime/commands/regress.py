@@ -12,10 +12,11 @@ import click
 from tltl_runtime.commands.changed_option import ChangedCommand
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
-from tltl_runtime.commands.options import FiniteRange, Function, output_folder
+from tltl_runtime.commands.options import Function, output_folder
 from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import is_output
+from tltlc.cli.numbers import FiniteRange
 from tltlc.cli.paths import OutputPath
 from tltlc.cli.report import Report
 

@@ -11,8 +11,9 @@ import click
 
 from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.notation import notation_option
-from tltl_runtime.commands.options import FiniteRange, output_file, summary_format
+from tltl_runtime.commands.options import output_file, summary_format
 from tltl_runtime.commands.reading import read_each
+from tltlc.cli.numbers import FiniteRange
 from tltlc.cli.report import Report
 
 if TYPE_CHECKING:

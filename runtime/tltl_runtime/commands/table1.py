@@ -12,11 +12,12 @@ import click
 
 from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
-from tltl_runtime.commands.options import FiniteRange, output_folder
+from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import check_no_training
 from tltlc.cli import exits
+from tltlc.cli.numbers import FiniteRange
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.record import record

@@ -17,6 +17,7 @@ from tltl_runtime.commands.workers import WorkersType
 from tltl_runtime.texts import duration, share
 from tltl_runtime.training.choices import Method
 from tltlc.cli import exits
+from tltlc.cli.numbers import FiniteRange, WholeRange
 from tltlc.cli.report import Report
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ Watching, from another terminal:
     "The folder for the policy and all that is measured (default: training/LEVEL-VARIANT-SPEC-SEED, by imitation "
     "with -imitation behind it, with --from -tuned)."
 )
-@click.option("--seed", metavar="N", type=click.IntRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
+@click.option("--seed", metavar="N", type=WholeRange(min=0, max=2**31 - 1), help="Of the training (default: 0).")
 @click.option(
     "--resume",
     metavar="DIR",
@@ -96,14 +97,14 @@ Watching, from another terminal:
 @click.option(
     "--steps",
     metavar="N",
-    type=int,
+    type=WholeRange(),
     callback=_setting("stop", "steps"),
     help="End after so many steps of all environments.",
 )
 @click.option(
     "--minutes",
     metavar="M",
-    type=float,
+    type=FiniteRange(),
     callback=_setting("stop", "minutes"),
     help="End after so many minutes of training (0: no limit).",
 )

@@ -24,13 +24,12 @@ from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.initial import initial_of, weights_hash
 from tltl_runtime.training.metrics import METRICS
+from tltl_runtime.training.record import recorded_end
 from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, RUN, Run, identity, read_level_hash, read_run
 from tltl_runtime.training.settings import read_settings
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
-from tltlc.json_text import load
-from tltlc.limits import REPORT
 from tltlc.record import replace
 from tltlc.writing import remove_file, write_files
 
@@ -180,11 +179,14 @@ def trained_of(run: Run) -> Trained:
     """How the training in ``run.folder`` went, which is over; raises TltlError for its checkpoint."""
     state = read_checkpoint(run.folder / CHECKPOINT, identity(run))
     assert state is not None
-    record_ = load(run.folder / RECORD, REPORT)
+    end = recorded_end(run.folder) or state.reason(run.settings.stop)
+    if end is None:
+        title = f"`{run.folder / RECORD}` does not say how the training ended"
+        raise TltlError([Diagnostic("TLT0863", title, help="remove it: the training then goes on to its end")])
     # The agent's own successes are ways, too, be they shorter or the first.
     lengths = [int(each) for process in state.processes for each in process.get("way_lengths", ())]
     return Trained(
-        end=record_["end"],
+        end=end,
         steps=state.steps,
         seconds=round(state.seconds, 1),
         searched=state.searched.steps if state.searched else 0,

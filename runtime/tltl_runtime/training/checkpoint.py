@@ -11,6 +11,7 @@ from typing import Any, Final
 import torch
 from torch import Tensor
 
+from tltl_runtime.record_json import RecordJsonError, from_json
 from tltl_runtime.training.report import StopReason
 from tltl_runtime.training.run import resume_command
 from tltl_runtime.training.search import Searched
@@ -105,14 +106,14 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
     if len(data) > CHECKPOINT.size:
         raise _refused(path, f"it is larger than {CHECKPOINT.size >> 20} MiB")
     content = _content(data, path)
-    if content.get("version") != VERSION:
+    if type(content.get("version")) is not int or content["version"] != VERSION:
         raise _other_version(path, content.get("version"))
     try:
-        fields = {name: content[name] for name in _FIELDS}
-        made = {name: fields[name] and kind(**fields[name]) for name, kind in _RECORDS.items()}
-        checkpoint = Checkpoint(**{**fields, **made})
-    except (KeyError, TypeError) as error:
+        checkpoint = _made(content)
+    except KeyError as error:
         raise _refused(path, f"it lacks a part: {error}") from None
+    except (RecordJsonError, RecursionError) as error:
+        raise _refused(path, str(error) or "it is nested too deeply") from None
     if run is not None:
         _check_run(path, checkpoint.run, run)
     return checkpoint
@@ -136,6 +137,75 @@ def _content(data: bytes, path: Path) -> Mapping[str, Any]:
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise _refused(path, "it is no checkpoint of a training")
     return content
+
+
+_PLAIN: Final = tuple(name for name in _FIELDS if name not in ("algorithm", "best", "processes"))
+"""The fields without tensors."""
+
+
+def _made(content: Mapping[str, Any]) -> Checkpoint:
+    """The checkpoint of what torch has read; raises KeyError and RecordJsonError for what is not as it must be."""
+    plain = from_json(_Plain, {name: _lists(content[name]) for name in _PLAIN}, "it")
+    processes, algorithm = content["processes"], _object(content["algorithm"], "algorithm")
+    if not isinstance(processes, (tuple, list)):
+        raise RecordJsonError("`processes` is no list")
+    _tensors(algorithm["actor_state_dict"], "algorithm.actor_state_dict")
+    return Checkpoint(
+        **{name: getattr(plain, name) for name in _PLAIN},
+        best=None if content["best"] is None else _best(_object(content["best"], "best")),
+        processes=tuple(_tensors(each, "processes") for each in processes),
+        algorithm=algorithm,
+    )
+
+
+def _best(content: Mapping[str, Any]) -> Best:
+    kept = from_json(_Kept, {name: _lists(content[name]) for name in ("score", "steps")}, "best")
+    return Best(kept.score, _tensors(content["actor"], "best.actor"), kept.steps)
+
+
+def _object(value: object, where: str) -> Mapping[str, Any]:
+    if isinstance(value, dict):
+        return value
+    raise RecordJsonError(f"`{where}` is no object")
+
+
+def _tensors(value: object, where: str) -> Mapping[str, Tensor]:
+    """Tensors by name; raises RecordJsonError for anything else."""
+    if isinstance(value, Mapping) and all(type(k) is str and isinstance(v, Tensor) for k, v in value.items()):
+        return value
+    raise RecordJsonError(f"`{where}` holds no tensors")
+
+
+def _lists(value: object) -> object:
+    """Plain values with lists for tuples, as JSON has them."""
+    if isinstance(value, dict):
+        return {name: _lists(each) for name, each in value.items()}
+    return [_lists(each) for each in value] if isinstance(value, (tuple, list)) else value
+
+
+@record
+class _Plain:
+    """The fields of a checkpoint without tensors."""
+
+    run: Mapping[str, str]
+    iteration: int
+    losses: Mapping[str, float]
+    steps: int
+    seconds: float
+    replayed: int
+    searched: Searched | None
+    window: tuple[tuple[bool, float, int, int, bool], ...]
+    unbroken: int
+    met: bool
+    standstill: tuple[float, int]
+
+
+@record
+class _Kept:
+    """The fields of :class:`Best` without tensors."""
+
+    score: Score
+    steps: int
 
 
 def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
@@ -11,6 +10,7 @@ import torch
 from torch import distributed
 
 from tltl_runtime.vector.cores import cores as usable_cores
+from tltl_runtime.vector.cores import started
 from tltlc.record import record
 
 T = TypeVar("T")
@@ -47,8 +47,8 @@ class Peers:
 
 def peers() -> Peers:
     """Where this process stands among those that torchrun started, by its environment variables; alone without it."""
-    count, local_count = (int(os.environ.get(name, "1")) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
-    rank, local_rank = (int(os.environ.get(name, "0")) for name in ("RANK", "LOCAL_RANK"))
+    count, local_count = (started(name, 1) for name in ("WORLD_SIZE", "LOCAL_WORLD_SIZE"))
+    rank, local_rank = (started(name, 0) for name in ("RANK", "LOCAL_RANK"))
     return Peers(rank, count, local_rank, local_count)
 
 

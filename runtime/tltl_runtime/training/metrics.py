@@ -6,6 +6,7 @@ import errno
 import json
 import os
 from collections.abc import Iterator, Mapping
+from math import isfinite
 from pathlib import Path
 from typing import Any, Final
 
@@ -27,7 +28,7 @@ OF_THE_WINDOW: Final = ("pass_rate", "progress", "reward", "episode_steps")
 """The means over the last episodes."""
 _WHOLE: Final = ("iteration", "steps", "episodes", "window")
 """The whole numbers of a line that are read again."""
-_READ: Final = {*_WHOLE, "seconds", *OF_THE_WINDOW}
+_READ: Final = {*_WHOLE, "seconds", "losses", *OF_THE_WINDOW}
 _OF_THE_ITERATION: Final = ("steps_per_s", "collect_s", "learn_s", "episodes")
 
 
@@ -132,7 +133,15 @@ def _measured(line: str) -> dict[str, Any] | None:
         return None
     if not isinstance(measured, dict) or not measured.keys() >= _READ:
         return None
-    return measured if all(type(measured[name]) is int for name in _WHOLE) else None
+    whole = all(type(measured[name]) is int for name in _WHOLE)
+    # Before the first episode has ended, there are no means.
+    means = [measured[name] for name in OF_THE_WINDOW if measured["window"] or measured[name] is not None]
+    fits = whole and all(map(_is_number, [measured["seconds"], *means])) and isinstance(measured["losses"], dict)
+    return measured if fits else None
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
 
 
 def _append(path: Path, line: bytes) -> None:

@@ -13,16 +13,16 @@ from tltl_runtime.policies.card import Card
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.policies.identity import spec_hash
 from tltl_runtime.policies.policy import Policy
-from tltl_runtime.record_json import to_json
+from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.training.checkpoint import read_checkpoint
 from tltl_runtime.training.curve import draw_curve
 from tltl_runtime.training.metrics import METRICS, OF_THE_WINDOW, means, read_metrics
-from tltl_runtime.training.report import Report
+from tltl_runtime.training.report import Report, StopReason
 from tltl_runtime.training.run import CHECKPOINT, CURVE, POLICY, RECORD, WRITABLE, Run, read_run
 from tltl_runtime.training.versions import versions
 from tltlc.json_text import load
 from tltlc.limits import REPORT
-from tltlc.record import replace
+from tltlc.record import record, replace
 from tltlc.writing import write_files
 
 _VERSION: Final = 1
@@ -119,16 +119,36 @@ def ended_as(run: Run) -> dict[str, Any] | None:
 
     Its ``end`` is the limit of ``run`` that it has reached, whichever it ended by.
     """
-    try:
-        made = load(run.folder / RECORD, REPORT)
-        stop, steps, seconds = run.settings.stop, int(made["steps"]), float(made["seconds"])
-        if made["end"] == "met":
-            return {**made}
-    except (OSError, ValueError, KeyError, TypeError):
-        # It is written anew.
-        return None
-    limit = stop.reached(steps, seconds)
+    made = _recorded(run.folder)
+    if made is None or made["end"] == "met":
+        return made
+    limit = run.settings.stop.reached(made["steps"], made["seconds"])
     return {**made, "end": limit} if limit else None
+
+
+def recorded_end(folder: Path) -> StopReason | None:
+    """What ended the training in a folder, by its record; None where this does not say so."""
+    made = _recorded(folder)
+    return None if made is None else made["end"]
+
+
+def _recorded(folder: Path) -> dict[str, Any] | None:
+    """The record in a folder; None where there is none, or it is damaged: it is then written anew."""
+    try:
+        made = load(folder / RECORD, REPORT)
+        from_json(_Ended, {name: made[name] for name in ("end", "steps", "seconds")}, RECORD)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+    return {**made}
+
+
+@record
+class _Ended:
+    """What is read again of the record of a training that has ended."""
+
+    end: StopReason
+    steps: int
+    seconds: float
 
 
 def _cloned(measured: Sequence[Mapping[str, Any]]) -> int:

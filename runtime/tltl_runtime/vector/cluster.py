@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
+from tltl_runtime.vector.cores import started
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 _TO_ANSWER_S: Final = 10.0
@@ -56,7 +57,7 @@ def cluster() -> Iterator[Any]:
 
 def free_cores(ray: Any) -> int:
     """How many cores of the cluster nobody uses, at least one; where torchrun started several processes, for each."""
-    return max(1, int(ray.available_resources().get("CPU", 1)) // int(os.environ.get("WORLD_SIZE", "1")))
+    return max(1, int(ray.available_resources().get("CPU", 1)) // started("WORLD_SIZE", 1))
 
 
 def there(

@@ -22,7 +22,8 @@ def path_of(place: str) -> Path:
 
 def span_of(text: str, path: Path) -> Span:
     """The span of the value at ``path`` in a valid JSON text, or of the longest part of the path that exists."""
-    decoder = JSONDecoder()
+    # Only places count; Python refuses to make whole numbers of thousands of digits.
+    decoder = JSONDecoder(parse_int=float)
     start = _skip(text, 0)
     for step in path:
         inner = _value_start(decoder, text, start, step)

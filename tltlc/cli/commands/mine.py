@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from tltlc.cli import exits
+from tltlc.cli.numbers import FiniteRange, WholeRange
 from tltlc.cli.paths import OutputPath, is_stdout
 from tltlc.cli.report import Report
 from tltlc.cli.settings import Settings, check_libraries, compile_settings, source_options
@@ -57,18 +58,18 @@ Examples:
     help="What atoms there are: predicates of signals, of a file or of a library such as `stealth`, for all entities "
     "of the traces (default: the columns).",
 )
-@click.option("--top", metavar="N", type=click.IntRange(1, 100), default=5, help="Propose so many (default: 5).")
+@click.option("--top", metavar="N", type=WholeRange(1, 100), default=5, help="Propose so many (default: 5).")
 @click.option(
     "--min-support",
     metavar="SHARE",
-    type=click.FloatRange(0.0, 1.0, min_open=True),
+    type=FiniteRange(0.0, 1.0, min_open=True),
     default=1.0,
     help="The least share of the traces to satisfy a proposal (default: 1; less where some may be wrong).",
 )
 @click.option(
     "--max-length",
     metavar="ATOMS",
-    type=click.IntRange(min=1),
+    type=WholeRange(min=1),
     default=12,
     help="How often a proposal may name an atom (default: 12).",
 )
@@ -76,7 +77,7 @@ Examples:
     "--time",
     "seconds",
     metavar="S",
-    type=click.FloatRange(min=0.0),
+    type=FiniteRange(min=0.0),
     help="Search for so many seconds at most, and propose the best so far; so does Ctrl-C.",
 )
 @click.option(

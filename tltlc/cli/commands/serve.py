@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from tltlc.cli import exits
+from tltlc.cli.numbers import WholeRange
 from tltlc.cli.paths import OutputPath
 
 
@@ -23,7 +24,7 @@ The page asks this machine and nobody else, and only the address that is printed
 in the current folder and below, and the libraries of tltlc.
 """
 )
-@click.option("--port", metavar="N", type=click.IntRange(0, 65535), default=8765, help="Serve there (default: 8765).")
+@click.option("--port", metavar="N", type=WholeRange(0, 65535), default=8765, help="Serve there (default: 8765).")
 @click.option("--open", "opening", is_flag=True, help="Open the page in a browser.")
 @click.option(
     "--static",

@@ -1,0 +1,42 @@
+"""Numbers on the command line: whole ones of a size that every part computes with, others finite."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any, Final, NoReturn
+
+import click
+
+LARGEST: Final = 2**53
+"""Up to here, every reader of JSON holds whole numbers exactly; sums of two fit into 64 bits."""
+_MOST_DIGITS: Final = 20
+
+
+class WholeRange(click.IntRange):
+    """A whole number in a range, at most :data:`LARGEST`."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number."""
+        text = str(value).strip()
+        digits = text.lstrip("+-").lstrip("0")
+        # Python refuses to read thousands of digits.
+        if len(digits) > _MOST_DIGITS and digits.isdecimal():
+            self._fail(f"{text[:_MOST_DIGITS]}…", param, ctx)
+        number = super().convert(value, param, ctx)
+        if number > LARGEST:
+            self._fail(text, param, ctx)
+        return number
+
+    def _fail(self, shown: str, param: click.Parameter | None, ctx: click.Context | None) -> NoReturn:
+        self.fail(f"`{shown}` is too large: whole numbers end at {LARGEST:,}", param, ctx)
+
+
+class FiniteRange(click.FloatRange):
+    """A finite number in a range, of which `nan` is neither below nor above."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number."""
+        number = super().convert(value, param, ctx)
+        if not isfinite(number):
+            self.fail("write a number", param, ctx)
+        return number
