@@ -1,0 +1,426 @@
+"""Whatever a file holds, its reader takes it or refuses it with a TltlError: readers of the runtime."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from copy import deepcopy
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+from random import Random
+from typing import Any, Final
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given
+
+from tests.cli.conftest import ROOT
+from tests.fuzzing import SEEDS, check, json_text, mutated_bytes, mutated_json, mutated_text, times
+from tests.runtime.training.runs import run_in
+from tltl_runtime.policies.file import from_bytes as policy_from_bytes
+from tltl_runtime.policies.file import read_policy
+from tltl_runtime.policies.policy import Policy
+from tltl_runtime.policies.shipped import shipped_policy
+from tltl_runtime.policies.summary import summary as policy_summary
+from tltl_runtime.policies.summary import summary_text as policy_summary_text
+from tltl_runtime.regression.account import Account
+from tltl_runtime.regression.baseline import read_baseline
+from tltl_runtime.regression.kept import read_kept
+from tltl_runtime.regression.suite import read_suite
+from tltl_runtime.stealth.env import make_env
+from tltl_runtime.stealth.episodes.check import check as check_episode
+from tltl_runtime.stealth.episodes.file import from_bytes as episode_from_bytes
+from tltl_runtime.stealth.episodes.file import to_bytes as episode_to_bytes
+from tltl_runtime.stealth.episodes.summary import judged_with, trace_csv
+from tltl_runtime.stealth.episodes.summary import summary as episode_summary
+from tltl_runtime.stealth.episodes.summary import summary_text as episode_summary_text
+from tltl_runtime.stealth.levels.file import read_level
+from tltl_runtime.stealth.recording import RecordEpisode
+from tltl_runtime.training.checkpoint import Best, Checkpoint, read_checkpoint, write_checkpoint
+from tltl_runtime.training.metrics import METRICS, read_metrics, truncate
+from tltl_runtime.training.record import ended_as, record_so_far, recorded_end
+from tltl_runtime.training.run import CHECKPOINT, RECORD, RUN, identity, read_run, write_run
+from tltl_runtime.training.search import Searched
+from tltl_runtime.training.settings import read_settings
+from tltl_runtime.training.windows import Windows
+
+FOLDER: Final = ROOT / "runtime" / "tltl_runtime"
+SUITE: Final = """\
+seed = 3
+error = 0.05
+episodes = 100
+
+[thresholds]
+pass_rate = 0.8
+fail_rate = 0.4
+progress = 0.1
+
+[[case]]
+level = "navigation"
+variant = "v1"
+
+[[case]]
+name = "other"
+level = "cover_and_hide"
+reference = "v0"
+episodes = 50
+policy = "navigation"
+
+[case.thresholds]
+reward = 0.2
+"""
+MEASURED: Final[dict[str, Any]] = {
+    "iteration": 1,
+    "steps": 64,
+    "seconds": 1.5,
+    "steps_per_s": 40.0,
+    "collect_s": 1.0,
+    "learn_s": 0.5,
+    "episodes": 4,
+    "window": 4,
+    "pass_rate": 0.5,
+    "progress": 0.6,
+    "reward": 0.1,
+    "episode_steps": 30.0,
+    "confirmation": None,
+    "states": [],
+    "losses": {"value": 0.5, "cloning": 1.0},
+}
+
+
+@pytest.fixture(name="folder", scope="module")
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("read")
+
+
+# --- TOML -----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(name="levels", scope="module")
+def _levels(folder: Path) -> Path:
+    """A copy of the shipped levels, with their assets and overlays."""
+    shutil.copytree(FOLDER / "levels", folder / "levels")
+    return folder / "levels"
+
+
+@given(seed=SEEDS)
+@times(40)
+def test_levels(seed: int, levels: Path) -> None:
+    random = Random(seed)
+    own = sorted(levels.glob("*.toml"))
+    path = random.choice(own if random.random() < 0.6 else sorted(levels.rglob("*.toml")))
+    level = path if path in own else random.choice(own)
+    text = path.read_text(encoding="utf-8")
+    try:
+        path.write_text(mutated_text(random, text), encoding="utf-8", errors="replace")
+        check(lambda: read_level(str(level), random.choice(("v0", "v1", "v2"))))
+    finally:
+        path.write_text(text, encoding="utf-8")
+
+
+@given(seed=SEEDS)
+@times(100)
+def test_suites(seed: int, folder: Path) -> None:
+    path = folder / "suite.toml"
+    path.write_text(mutated_text(Random(seed), SUITE), encoding="utf-8", errors="replace")
+    check(lambda: read_suite(path))
+
+
+@given(seed=SEEDS)
+@times(100)
+def test_settings(seed: int, folder: Path) -> None:
+    path = folder / "settings.toml"
+    text = (FOLDER / "training" / "settings.toml").read_text(encoding="utf-8")
+    path.write_text(mutated_text(Random(seed), text), encoding="utf-8", errors="replace")
+    check(lambda: read_settings(path))
+
+
+# --- recordings and policies ----------------------------------------------------------------------
+
+
+@cache
+def _arrays() -> dict[str, np.ndarray[Any, Any]]:
+    """The arrays of a recording."""
+    env = RecordEpisode(make_env("cover_and_hide"), "dice")
+    env.reset(seed=7)
+    for _ in range(12):
+        env.step([1, 1, 0, 0, 0])
+    data = episode_to_bytes(env.episode)
+    env.close()
+    with np.load(BytesIO(data)) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def _read_recording(data: bytes) -> None:
+    """Read a recording and say all of it that `tltlc replay` says without playing it again."""
+
+    def read() -> None:
+        episode = episode_from_bytes(data, "it.episode.npz")
+        said = episode_summary(episode)
+        episode_summary_text(said)
+        trace_csv(episode)
+        judged_with(episode, "it.csv")
+        check_episode(episode)
+
+    check(read)
+
+
+def _packed(arrays: dict[str, np.ndarray[Any, Any]]) -> bytes:
+    data = BytesIO()
+    np.savez(data, **arrays)  # type: ignore[arg-type] # it takes any array
+    return data.getvalue()
+
+
+@given(seed=SEEDS)
+@times(100)
+def test_bytes_of_recordings(seed: int) -> None:
+    _read_recording(mutated_bytes(Random(seed), _packed(_arrays())))
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_texts_in_recordings(seed: int) -> None:
+    random, arrays = Random(seed), dict(_arrays())
+    name = random.choice(("meta", "meta", "artefact"))
+    document = json.loads(arrays[name].tobytes())
+    text = mutated_json(random, document).encode("utf-8", "surrogatepass")
+    _read_recording(_packed({**arrays, name: np.frombuffer(text, np.uint8)}))
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_arrays_in_recordings(seed: int) -> None:
+    random, arrays = Random(seed), dict(_arrays())
+    name = random.choice(list(arrays))
+    changed = _other_array(random, arrays[name].copy())
+    _read_recording(_packed({**arrays, name: changed}))
+
+
+def _other_array(random: Random, array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """An array of another type or shape, or with another value."""
+    change = random.randrange(6)
+    if change == 0:
+        return array.astype(random.choice(("f8", "f4", "i8", "u1", "U5", "c16", "?")))
+    if change == 1:
+        return array[: random.randrange(len(array) + 1)]
+    if change == 2:
+        return random.choice((array.reshape(-1), np.zeros(0, array.dtype), np.array(5), array[None]))
+    if array.size:
+        floats = (np.nan, np.inf, -np.inf, 1e308, -1e308, -0.0)
+        array.flat[random.randrange(array.size)] = random.choice(floats if array.dtype.kind == "f" else (0, 1, 127))
+    return array
+
+
+@cache
+def _policy() -> tuple[dict[str, Any], str, dict[str, Any], bytes]:
+    """The header of a policy's file, the key of its card, the card, and what follows."""
+    path = shipped_policy("cover_and_hide")
+    assert path is not None
+    data = path.read_bytes()
+    end = 8 + int.from_bytes(data[:8], "little")
+    header = json.loads(data[8:end])
+    (key,) = header["__metadata__"]
+    return header, key, json.loads(header["__metadata__"][key]), data[end:]
+
+
+def _read_policy(header: bytes, rest: bytes) -> None:
+    """Read a policy and say all of it that `tltlc inspect` says."""
+    data = len(header).to_bytes(8, "little") + header + rest
+    check(lambda: policy_summary_text(policy_summary(policy_from_bytes(data, "it.safetensors"))))
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_bytes_of_policies(seed: int) -> None:
+    random, (header, _, _, rest) = Random(seed), _policy()
+    text = json.dumps(header).encode()
+    if random.random() < 0.7:
+        _read_policy(mutated_bytes(random, text), rest)
+    else:
+        _read_policy(text, mutated_bytes(random, rest))
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_cards_of_policies(seed: int) -> None:
+    random, (header, key, card, rest) = Random(seed), _policy()
+    if random.random() < 0.7:
+        text = json.dumps({**header, "__metadata__": {key: mutated_json(random, card)}})
+    else:
+        text = mutated_json(random, header)
+    _read_policy(text.encode("utf-8", "surrogatepass"), rest)
+
+
+# --- trainings ------------------------------------------------------------------------------------
+
+
+def _say_training(made: dict[str, Any]) -> None:
+    """Say what `tltlc inspect` says of a training in a folder."""
+    path = shipped_policy("cover_and_hide")
+    assert path is not None
+    said = policy_summary(_shipped(path))
+    policy_summary_text({**said, "training": made})
+
+
+@cache
+def _shipped(path: Path) -> Policy:
+    return read_policy(path)
+
+
+@pytest.fixture(name="training", scope="module")
+def _training(folder: Path) -> Path:
+    """The folder of a training that has begun."""
+    write_run(run_in(folder / "training"))
+    return folder / "training"
+
+
+@given(seed=SEEDS)
+@times(100)
+def test_runs(seed: int, folder: Path, training: Path) -> None:
+    document = json.loads((training / RUN).read_text(encoding="utf-8"))
+    other = folder / "run"
+    other.mkdir(exist_ok=True)
+    (other / RUN).write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))
+    check(lambda: identity(read_run(other)))
+
+
+@given(seed=SEEDS)
+@times(100)
+def test_metrics(seed: int, training: Path) -> None:
+    random, path = Random(seed), training / METRICS
+    lines = [json_text(MEASURED), mutated_json(random, MEASURED).replace("\n", " "), mutated_json(random, MEASURED)]
+    path.write_bytes("\n".join(lines).encode("utf-8", "surrogatepass"))
+
+    def read() -> None:
+        measured = read_metrics(path)
+        made = record_so_far(training)
+        # What is read of a line has the types that the record and its curve ask for.
+        assert all(isinstance(line["seconds"], (int, float)) and isinstance(line["losses"], dict) for line in measured)
+        _say_training(made)
+        truncate(path, 5)
+
+    try:
+        check(read)
+    finally:
+        path.unlink()
+
+
+@given(seed=SEEDS)
+@times(100)
+def test_records(seed: int, training: Path) -> None:
+    run, path = run_in(training), training / RECORD
+    document = {"end": "steps", "steps": 100, "seconds": 3.5, "settings": {"stop": {}}}
+    path.write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))
+    check(lambda: (ended_as(run), recorded_end(training)))
+
+
+@pytest.fixture(name="content", scope="module")
+def _content(folder: Path) -> tuple[bytes, dict[str, Any]]:
+    """A checkpoint as bytes, and what is in it."""
+    path = folder / CHECKPOINT
+    weights = {"weight": torch.zeros(3)}
+    checkpoint = Checkpoint(
+        run={"level": "0"},
+        iteration=3,
+        losses={"value": 0.5},
+        steps=192,
+        seconds=1.5,
+        replayed=7,
+        searched=Searched(10, 7, 0.5, 4, (8, 9), complete=True),
+        algorithm={"actor_state_dict": weights},
+        processes=({"cpu": torch.get_rng_state()},),
+        window=((True, 1.0, 30, 2, False),),
+        unbroken=0,
+        best=Best((0.5, 1.0, -2.0), weights, 64),
+        met=False,
+        standstill=(0.5, 128),
+    )
+    write_checkpoint(path, checkpoint)
+    return path.read_bytes(), torch.load(path, weights_only=True)
+
+
+def _read_checkpoint(path: Path) -> None:
+    """Read a checkpoint and what is told of the training that left it."""
+
+    def read() -> None:
+        run = run_in(path.parent)
+        found = read_checkpoint(path)
+        assert found is not None
+        assert isinstance(found.weights, dict)
+        found.reason(run.settings.stop)
+        windows = Windows(2, 4, 100)
+        windows.load(found.window, found.unbroken)
+        assert windows.window.count <= 8
+        _say_training(record_so_far(path.parent))
+
+    check(read)
+    check(lambda: read_checkpoint(path, {"level": "1"}))
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_bytes_of_checkpoints(seed: int, training: Path, content: tuple[bytes, dict[str, Any]]) -> None:
+    path = training / CHECKPOINT
+    path.write_bytes(mutated_bytes(Random(seed), content[0]))
+    _read_checkpoint(path)
+    path.unlink()
+
+
+STRANGE: Final = (
+    *(1e308, -0.0, 10**400, 2**63, -1, float("nan"), float("inf"), True, None, "", "text", [], {}, (), (1, 2)),
+    *({"a": {}}, torch.zeros(2), torch.tensor(float("nan"))),
+)
+
+
+def _other_value(random: Random, value: Any) -> Any:
+    """A value with something strange in its depths."""
+    if isinstance(value, dict) and value and random.random() < 0.85:
+        changed, key = dict(value), random.choice(list(value))
+        if random.random() < 0.15:
+            del changed[key]
+        else:
+            changed[key] = _other_value(random, value[key])
+        return changed
+    if isinstance(value, (list, tuple)) and value and random.random() < 0.8:
+        place = random.randrange(len(value))
+        return type(value)(_other_value(random, each) if at == place else each for at, each in enumerate(value))
+    return deepcopy(random.choice(STRANGE))
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_values_in_checkpoints(seed: int, training: Path, content: tuple[bytes, dict[str, Any]]) -> None:
+    path = training / CHECKPOINT
+    torch.save(_other_value(Random(seed), content[1]), path)
+    _read_checkpoint(path)
+    path.unlink()
+
+
+# --- regression -----------------------------------------------------------------------------------
+
+
+@cache
+def _baseline() -> dict[str, Any]:
+    """The shipped baseline, with few episodes."""
+    found: dict[str, Any] = json.loads((FOLDER / "regression" / "shipped" / "suite.baseline.json").read_text("utf-8"))
+    found["references"] = [{**each, "accounts": each["accounts"][:2]} for each in found["references"][:2]]
+    return found
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_baselines(seed: int, folder: Path) -> None:
+    path = folder / "it.baseline.json"
+    path.write_bytes(mutated_json(Random(seed), _baseline()).encode("utf-8", "surrogatepass"))
+    check(lambda: read_baseline(path))
+
+
+@given(seed=SEEDS)
+@times(60)
+def test_what_runs_keep(seed: int, folder: Path) -> None:
+    path, account = folder / "kept.json", _baseline()["references"][0]["accounts"][0]
+    document = {"identity": "it", "content": account}
+    path.write_bytes(mutated_json(Random(seed), document).encode("utf-8", "surrogatepass"))
+    assert check(lambda: read_kept(Account, path, "it"))
