@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.waiting import HANG_S
 from tltlc.temporary import remove_abandoned, temporaries
 from tltlc.writing import write_files
 
@@ -64,7 +65,7 @@ def test_a_signal_ends_a_command_in_order(number: signal.Signals, tmp_path: Path
     with stopped_before_renaming(tmp_path) as running:
         assert len(temporary(tmp_path)) == FILES + 1
         running.send_signal(number)
-        out, _ = running.communicate(timeout=60)
+        out, _ = running.communicate(timeout=HANG_S)
     assert (running.returncode, out) == (128 + number, "")
     assert list((tmp_path / "out").iterdir()) == []
 
@@ -72,7 +73,7 @@ def test_a_signal_ends_a_command_in_order(number: signal.Signals, tmp_path: Path
 def test_a_signal_that_is_ignored_stays_ignored(tmp_path: Path) -> None:
     with stopped_before_renaming(tmp_path, ignoring="SIGHUP") as running:
         running.send_signal(signal.SIGHUP)
-        running.communicate("go on\n", timeout=60)
+        running.communicate("go on\n", timeout=HANG_S)
     assert running.returncode == 0
     assert (len(list((tmp_path / "out").iterdir())), temporary(tmp_path)) == (FILES, [])
 
@@ -90,7 +91,7 @@ def test_a_living_process_keeps_its_temporary_files(tmp_path: Path) -> None:
         before = temporary(tmp_path)
         write_files(tmp_path / "out", {"other": "text"})
         assert temporary(tmp_path) == before
-        running.communicate("go on\n", timeout=60)
+        running.communicate("go on\n", timeout=HANG_S)
     assert running.returncode == 0
     assert (len(list((tmp_path / "out").iterdir())), temporary(tmp_path)) == (FILES + 1, [])
 

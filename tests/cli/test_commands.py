@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
 
 from tltlc.cli.command_line import BUILT_IN
+from tltlc.diagnostics.codes import codes
 
 
 @pytest.mark.parametrize("command", BUILT_IN)
@@ -47,7 +49,10 @@ def test_explain(code: str, tltlc) -> None:  # type: ignore[no-untyped-def]
 
 
 def test_explain_suggests(tltlc) -> None:  # type: ignore[no-untyped-def]
-    assert "did you mean `TLT0003`, `TLT0004` or `TLT0005`?" in tltlc("explain", "TLT0006").err
+    unused = next(code for code in (f"TLT{number:04}" for number in range(1, 1000)) if code not in codes())
+    suggested = re.findall(r"`(TLT\d{4})`", tltlc("explain", unused).err.partition("did you mean ")[2])
+    assert len(suggested) == 3
+    assert set(suggested) <= set(codes())
     assert "`TLT0201`" in tltlc("explain", "TLT2001").err
     assert "`TLT0942`" in tltlc("explain", "TLT9999").err
 

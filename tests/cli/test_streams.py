@@ -16,6 +16,7 @@ from typing import Final
 import pytest
 
 from tests.cli.conftest import ROOT
+from tests.waiting import HANG_S
 from tltlc.cli.command_line import BUILT_IN, OF_THE_RUNTIME, cli
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs descriptors that a shell closes")
@@ -221,7 +222,7 @@ def test_commands_that_stay_begin_and_end(
             assert running.stderr is not None
             assert any("until Ctrl-C" in line for line in running.stderr)
             running.send_signal(signal.SIGINT)
-            _, err = running.communicate(timeout=60)
+            _, err = running.communicate(timeout=HANG_S)
         finally:
             running.kill()
     assert (running.returncode, err) == (130, "")
