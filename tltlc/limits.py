@@ -80,7 +80,10 @@ MESSAGE_HEAD: Final = Limit(size=1 << 13)
 """A header line of the language server's protocol."""
 
 TRACE_LINE: Final = Limit(size=1 << 20, depth=32, values=50_000)
-"""A line of a trace; the number of lines has no limit, since traces are read as a stream."""
+"""A row of a trace; the number of rows has no limit, since traces are read as a stream.
+
+``depth`` and ``values``, counted as commas, are those of a line of JSON. Generated monitors have the same limits.
+"""
 
 MINED_TRACE: Final = Limit(size=1 << 28)
 """A trace that `tltlc mine` holds in memory."""

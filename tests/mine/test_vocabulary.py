@@ -27,7 +27,7 @@ def names(text: str, there: set[str]) -> list[str]:
 
 
 def test_columns_are_atoms_where_they_hold_truths_alone() -> None:
-    found = columns(b"alive,health,near(s1)\ntrue,1,0\nfalse,0.5,1\n")
+    found = columns(b"alive,health,near(s1)\ntrue,1,0\nfalse,0.5,1\n", "run.csv")
     assert found == {"alive": True, "health": False, "near(s1)": True}
     words = of_columns(found)
     assert [atom.name for atom in words.reader.atoms] == ["alive", "near(s1)"]
@@ -35,9 +35,15 @@ def test_columns_are_atoms_where_they_hold_truths_alone() -> None:
 
 
 def test_columns_of_json_lines() -> None:
-    found = columns(b'{"alive": true, "health": 0.5, "name": "x"}\n\n{"alive": 0, "health": 1, "late": true}\n')
+    found = columns(
+        b'{"alive": true, "health": 0.5, "name": "x"}\n\n{"alive": 0, "health": 1, "late": true}\n', "run.csv"
+    )
     assert found == {"alive": True, "health": False}
-    assert columns(b'{"alive": true, "doors": [1], "name": "x"}\n') == {"alive": True, "doors": False, "name": False}
+    assert columns(b'{"alive": true, "doors": [1], "name": "x"}\n', "run.csv") == {
+        "alive": True,
+        "doors": False,
+        "name": False,
+    }
 
 
 def test_only_shared_columns_count() -> None:
@@ -52,7 +58,7 @@ def test_columns_that_are_called_like_no_atom_are_left_out(column: str) -> None:
 
 
 def test_a_column_that_stands_twice_is_told_by_the_reader() -> None:
-    found = columns(b"a,a\ntrue,false\n")
+    found = columns(b"a,a\ntrue,false\n", "run.csv")
     assert found == {"a": True}
     with pytest.raises(TltlError) as raised:
         read([TraceFile("run.csv", b"a,a\ntrue,false\n")], of_columns(found))

@@ -6,12 +6,13 @@ import csv
 import io
 from collections.abc import Mapping
 from math import isfinite
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.expression_eval import evaluate
 from tltlc.monitor import Monitor, Step
+from tltlc.monitor.trace_rows import Lines, Table, read_rows
 from tltlc.monitor.traces import Sample, read_trace
 from tltlc.record import record
 
@@ -25,11 +26,19 @@ COLUMNS: Final = (
 
 @record
 class Refusal:
-    """Why a trace is refused, at which step (from 1), and the signals or atoms that are to blame."""
+    """Why a trace is refused, at which step (from 1), and the signals or atoms that are to blame.
+
+    ``line`` is that of the file (from 1) where it cannot be read; None where the monitor refuses a sample.
+    """
 
     kind: Kind
     step: int
     names: tuple[str, ...] = ()
+    line: int | None = None
+
+    def document(self) -> dict[str, Any]:
+        """The refusal in the index of the corpus."""
+        return {"kind": self.kind, "step": self.step, "names": list(self.names), "line": self.line}
 
 
 @record
@@ -57,7 +66,7 @@ def expected(fspa: Fspa, trace: bytes) -> Expected:
         for sample in read_trace(io.BytesIO(trace), "trace", fspa.signals):
             rows.append(_cells(len(rows) + 1, monitor.step(sample)))
     except TltlError as error:
-        refusal = _refusal(fspa, error.diagnostics[0].code, len(rows) + 1, trace, sample)
+        refusal = _refusal(fspa, error.diagnostics[0], len(rows) + 1, trace, sample)
     return Expected(tuple(rows), refusal, len(monitor.notices))
 
 
@@ -67,23 +76,33 @@ def _cells(number: int, step: Step) -> tuple[str, ...]:
     return (str(number), str(step.state), step.verdict, *flags, *numbers, step.limiting or "")
 
 
-def _refusal(fspa: Fspa, code: str, step: int, trace: bytes, sample: Sample) -> Refusal:
+def _refusal(fspa: Fspa, error: Diagnostic, step: int, trace: bytes, sample: Sample) -> Refusal:
     """The refusal that a diagnostic's code stands for; what it says in words is found out anew."""
-    if code == "TLT0620":
+    if error.code == "TLT0620":
         return Refusal("no sample", step)
-    if code == "TLT0621":
-        header = next(csv.reader(io.StringIO(trace.decode("utf-8-sig"), newline=""), skipinitialspace=True))
-        there = {cell.strip() for cell in header}
-        return Refusal("missing signal", step, tuple(each.name for each in fspa.signals if each.name not in there))
-    if code == "TLT0612":
-        infinite = [signal.name for signal in fspa.signals if not isfinite(sample[signal.name])]
-        return Refusal("not finite", step, tuple(infinite[:1])) if infinite else Refusal("bad cell", step)
-    if code == "TLT0613":
+    if error.code == "TLT0612":
+        return Refusal("not finite", step, tuple(_infinite(fspa, sample)[:1]))
+    if error.code == "TLT0613":
         kind, atom = _without_value(fspa, sample)
         return Refusal(kind, step, (atom,))
-    if code == "TLT0614":
+    if error.code == "TLT0614":
         return Refusal("together", step, _together(fspa, sample))
-    return Refusal("bad cell", step)
+    label = error.labels[0]
+    line, _ = label.source.position(label.span.start)
+    if error.code == "TLT0621":
+        return Refusal("missing signal", step, _missing(fspa, trace), line)
+    return Refusal("bad cell", step, line=line)
+
+
+def _missing(fspa: Fspa, trace: bytes) -> tuple[str, ...]:
+    """The signals that have no column."""
+    table = read_rows(Lines(io.BytesIO(trace), "trace"))
+    header = table.header if isinstance(table, Table) else ()
+    return tuple(signal.name for signal in fspa.signals if signal.name not in header)
+
+
+def _infinite(fspa: Fspa, sample: Sample) -> list[str]:
+    return [signal.name for signal in fspa.signals if not isfinite(sample[signal.name])]
 
 
 def _without_value(fspa: Fspa, sample: Sample) -> tuple[Kind, str]:

@@ -2,36 +2,34 @@
 
 from __future__ import annotations
 
-import csv
+import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Final
 
-from tltlc.json_text import loads
-from tltlc.limits import TRACE_LINE
+from tltlc.monitor.trace_rows import Lines, Table, cell_number, read_rows
 
-_TRUTHS: Final = {"true", "false", "1", "0", "1.0", "0.0"}
+Row = Sequence[tuple[str, bool]]
 
 
-def columns(data: bytes) -> dict[str, bool]:
+def columns(data: bytes, name: str) -> dict[str, bool]:
     """The columns of a trace in order, each with whether all its values are true or false.
 
-    Lenient: what cannot be read is left to whoever reads the trace in earnest.
+    ``name`` is what messages call the trace.
+
+    Raises:
+        TltlError: TLT0622, a line cannot be read.
     """
-    lines = data.decode(errors="replace").removeprefix("\ufeff").splitlines()
-    first = next((line for line in lines if line.strip()), "")
-    rows = _json(lines) if first.lstrip().startswith("{") else _csv(lines)
     found: dict[str, bool] = {}
     count = 0
     seen: dict[str, int] = {}
-    for row in rows:
+    for row in _rows(Lines(io.BytesIO(data), name)):
         count += 1
-        for name, is_truth in row:
-            found[name] = found.get(name, True) and is_truth
-        # A column that stands twice is told by whoever reads it.
-        for name in {name for name, _ in row}:
-            seen[name] = seen.get(name, 0) + 1
+        for column, is_truth in row:
+            found[column] = found.get(column, True) and is_truth
+        # A column that stands twice is an error only where a signal is read from it.
+        for column in {column for column, _ in row}:
+            seen[column] = seen.get(column, 0) + 1
     # A line of JSON may leave a signal out: then it is no column of the trace.
-    return {name: is_truth for name, is_truth in found.items() if seen[name] == count}
+    return {column: is_truth for column, is_truth in found.items() if seen[column] == count}
 
 
 def shared(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]:
@@ -44,25 +42,11 @@ def shared(all_columns: Iterable[Mapping[str, bool]]) -> dict[str, bool]:
     }
 
 
-Row = Sequence[tuple[str, bool]]
-
-
-def _csv(lines: Sequence[str]) -> Iterator[Row]:
-    rows = csv.reader(lines, skipinitialspace=True)
-    try:
-        header = [cell.strip() for cell in next(rows, [])]
-        for row in rows:
-            if row:
-                yield [(name, cell.strip().lower() in _TRUTHS) for name, cell in zip(header, row, strict=False)]
-    except csv.Error:
-        return
-
-
-def _json(lines: Sequence[str]) -> Iterator[Row]:
-    for line in lines:
-        try:
-            found = loads(line, TRACE_LINE) if line.strip() else None
-        except (ValueError, RecursionError):
-            continue
-        if isinstance(found, dict):
+def _rows(lines: Lines) -> Iterator[Row]:
+    trace = read_rows(lines)
+    if isinstance(trace, Table):
+        for cells in trace.rows:
+            yield [(name, cell_number(cell) in (0, 1)) for name, cell in zip(trace.header, cells, strict=True)]
+    elif trace is not None:
+        for found in trace.rows:
             yield [(name, isinstance(value, (int, float)) and value in (0, 1)) for name, value in found.items()]

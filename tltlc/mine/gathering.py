@@ -32,7 +32,7 @@ def gathered(
     seen = []
     for file in (*good, *bad):
         tell(f"looking at {file.name}")
-        seen.append(Columns(file.name, columns(file.data)))
+        seen.append(Columns(file.name, columns(file.data, file.name)))
         if not seen[-1].columns:
             check(file)
     there = shared([each.columns for each in seen])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import nan
 
@@ -61,7 +62,7 @@ def check(file: TraceFile) -> None:
 
 
 def _rows(file: TraceFile, signals: Sequence[Signal]) -> Iterator[Sample]:
-    return read_trace(file.data.splitlines(keepends=True), file.name, signals)
+    return read_trace(io.BytesIO(file.data), file.name, signals)
 
 
 def _letters(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+
 from tltlc.automaton.fspa import Fspa
 from tltlc.monitor import Monitor
 from tltlc.monitor.traces import read_trace
@@ -36,7 +38,7 @@ def as_csv(fspa: Fspa, witness: Witness, monitor: Monitor | None = None) -> str:
     text = csv_text(fspa, witness.samples)
     monitor = Monitor(fspa) if monitor is None else monitor
     monitor.reset()
-    trace = read_trace(text.encode().splitlines(keepends=True), "the witness", fspa.signals)
+    trace = read_trace(io.BytesIO(text.encode()), "the witness", fspa.signals)
     _check(fspa, witness, [monitor.step(sample).state for sample in trace])
     return text
 

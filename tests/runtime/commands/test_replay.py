@@ -226,7 +226,7 @@ def test_between_decisions_bodies_are_on_their_ways(episode: Episode) -> None:
 def test_the_signals_are_judged_alike_again(tltlc, recorded: Path, episode: Episode) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     written: Outcome = tltlc("replay", FILE, "-o", "run.csv")
     assert (written.status, written.err.splitlines()[1]) == (0, f"judge it with: {judged_with(episode, 'run.csv')}")
-    lines = Path("run.csv").read_bytes().splitlines(keepends=True)
+    lines = BytesIO(Path("run.csv").read_bytes())
     monitor = Monitor(episode.fspa, episode.params)
     for row, sample in enumerate(read_trace(lines, "run.csv", episode.fspa.signals), start=1):
         step = monitor.step(sample)
