@@ -176,7 +176,7 @@ def test_the_same_on_special_cases(compiler: str, tmp_path: Path) -> None:
         found = programs.run(place, trace_of(samples, [signal.name for signal in fspa.signals]))
         status, out, err = expected(programs.fspas[place], samples)
         # The program reads cells, and says what stood there.
-        err = err.replace("the signal `open` is 0.5, not", "the signal `open` is `0.5`, not")
+        err = err.replace("step 3: the signal `open` is 0.5, not", "line 4: the signal `open` is `0.5`, not")
         err = err.replace("the signal `x` is inf, not a finite number", "no finite number for the signal `x`")
         assert found == (status, out, err)
 

@@ -76,7 +76,6 @@ def problems(runner: Runner, name: str, folder: Path, trace: bytes, expected: Ex
     (folder / f"{name}.trace.csv").write_bytes(trace)
     command = [word.format(name=name) for word in (*runner.run, "--full", "{name}.trace.csv")]
     done = subprocess.run(command, cwd=folder, capture_output=True, timeout=LONGEST_RUN_S)
-    refusal = expected.refusal
-    error = None if refusal is None else {"kind": refusal.kind, "step": refusal.step, "names": refusal.names}
+    error = expected.refusal and expected.refusal.document()
     out, err, rows = done.stdout.decode(), done.stderr.decode(), [COLUMNS, *expected.rows]
     return differences(done.returncode, out, err, rows, expected.warnings, error, runner.tolerance)

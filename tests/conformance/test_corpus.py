@@ -83,7 +83,7 @@ def test_a_folder_holds_a_case_and_the_index_tells_of_all() -> None:
 def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     """As its page says, with a monitor that is right, and with one that is not."""
     write_files(tmp_path / "corpus", files())
-    names = ("cells", "functions", "ranges")
+    names = ("cells", "functions", "ranges", "trace_lines")
     for name in names:
         fspa = CASES[name]().fspa
         write_files(tmp_path / "build", emit("python", fspa))
@@ -131,7 +131,7 @@ def test_artefacts_are_sound_and_the_rows_are_those_of_the_monitor() -> None:
             continue
         lines = corpus()[f"{name}.expected.csv"].decode().splitlines()
         assert lines[0] == ",".join(COLUMNS)
-        for number, sample in enumerate(read_trace(corpus()[f"{name}.csv"].splitlines(True), name, fspa.signals), 1):
+        for number, sample in enumerate(read_trace(io.BytesIO(corpus()[f"{name}.csv"]), name, fspa.signals), 1):
             step = monitor.step(sample)
             if "names" not in name:
                 assert lines[number].startswith(f"{number},{step.state},{step.verdict},")

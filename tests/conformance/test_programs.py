@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import subprocess
 from collections.abc import Callable
+from pathlib import Path
+from threading import Timer
 
 import pytest
 
@@ -14,14 +16,22 @@ from tests.backends.monitors import FAR, HEAD, Outcome, expected, trace_of
 from tests.conformance.runner import LONGEST_RUN_S, Runner, build, runners, write
 from tltlc.conformance.case import Case
 from tltlc.conformance.corpus import CASES
+from tltlc.limits import TRACE_LINE
 
 NAME = "cover_and_hide"
+ROW_BYTES = TRACE_LINE.size
 WAYS = [
     b"\xef\xbb\xbfhealth,distance(s1),distance(s2),distance(exit)\n1,20,20,20\n",
     b'\xef\xbb\xbf"health",distance(s1),distance(s2),distance(exit)\n1,20,20,20',
     b'\r\n\r\n health ,\t"distance(s1)" ,distance(s2), distance(exit)\r\n\r\n 1 , 20\t,2e1,"20" \r\n\r\n',
     b'x,health,distance(s1),distance(s2),distance(exit)\n"a,\nb""c",True,20,20,+20.\n',
-    b"health,distance(s1),distance(s2),distance(exit)\r1,20,20,20\r",
+    # A cell of the greatest size.
+    b"x,health,distance(s1),distance(s2),distance(exit)\n"
+    + b"-" * (ROW_BYTES - len(b",1,20,20,20"))
+    + b",1,20,20,20\n",
+    b'x,health,distance(s1),distance(s2),distance(exit)\n"'
+    + b"\n" * (ROW_BYTES - len(b'"",1,20,20,20'))
+    + b'",1,20,20,20',
 ]
 
 # What a message says, with `…` for what is the language's own.
@@ -29,26 +39,36 @@ ERRORS = [
     ("", "the trace holds no sample"),
     ("\n\n", "the trace holds no sample"),
     (HEAD, "the trace holds no sample"),
-    ("health,distance(s1)\n1\n", "the trace has no column for `distance(s2)` and `distance(exit)`"),
-    ("distance(exit)\n1\n", "the trace has no column for `distance(s1)`, `distance(s2)` and `health`"),
-    ("health,distance(s1),distance(s2)\n1\n", "the trace has no column for `distance(exit)`"),
+    ("health,distance(s1)\n1\n", "line 1: the trace has no column for `distance(s2)` and `distance(exit)`"),
+    ("\ndistance(exit)\n1\n", "line 2: the trace has no column for `distance(s1)`, `distance(s2)` and `health`"),
+    ("health,distance(s1),distance(s2)\n1\n", "line 1: the trace has no column for `distance(exit)`"),
     ('{"health": 1}\n', "the trace is JSON, and this program reads CSV: `tltlc monitor` takes both"),
-    (f"health,{HEAD}1,1,1,1,1\n", "two columns are called `health`"),
-    (f"{HEAD}1,1\n", "step 1: 2 values under 4 columns"),
-    (f"{HEAD}x,1,1,1\n", "step 1: the signal `health` is `x`, no number"),
-    (f"{HEAD}0x1,1,1,1\n", "step 1: the signal `health` is `0x1`, no number"),
-    (f"{HEAD}--1,1,1,1\n", "step 1: the signal `health` is `--1`, no number"),
-    (f"{HEAD},1,1,1\n", "step 1: the signal `health` is ``, no number"),
+    (' \t{, "health" 1}\n', "the trace is JSON, and this program reads CSV: `tltlc monitor` takes both"),
+    (f"health,{HEAD}1,1,1,1,1\n", "line 1: two columns are called `health`"),
+    (f"{HEAD}1,1\n", "line 2: 2 values under 4 columns"),
+    (f"{HEAD}x,1,1,1\n", "line 2: the signal `health` is `x`, no number"),
+    (f"{HEAD}0x1,1,1,1\n", "line 2: the signal `health` is `0x1`, no number"),
+    (f"{HEAD}--1,1,1,1\n", "line 2: the signal `health` is `--1`, no number"),
+    (f"{HEAD},1,1,1\n", "line 2: the signal `health` is ``, no number"),
     (f"{HEAD}nan,1,1,1\n", "step 1: …`health`"),
     (f"{HEAD}-Inf,1,1,1\n", "step 1: …`health`"),
     (f"{HEAD}1e999,1,1,1\n", "step 1: …`health`"),
-    (f'{HEAD}"1,1,1,1\n', "step 1: a quote is not closed, or goes on behind its end"),
-    (f'{HEAD}"1"2,1,1,1\n', "step 1: a quote is not closed, or goes on behind its end"),
+    (f'{HEAD}"1,1,1,1\n', "line 2: a quote is not closed"),
+    (f'{HEAD}"1"2,1,1,1\n', "line 2: a cell goes on after its quotes"),
+    (f"{HEAD}1\r,1,1,1\n", "line 2: a carriage return stands alone"),
+    (f"{HEAD}\0,1,1,1\n", "line 2: it is not UTF-8, or holds a NUL"),
+    (f"{HEAD}\n{'-' * (ROW_BYTES + 1)}\n", "line 3: more than 1048576 bytes"),
+    (f"{HEAD}1,1,1,{' ' * 3 * ROW_BYTES}1", "line 2: more than 1048576 bytes"),
+    (f'{HEAD}1,1,1,"{chr(10) * ROW_BYTES}\xe9', "line 2: more than 1048576 bytes"),
+    # Digits that no regular expression should go through again and again.
+    (f"{HEAD}{'1' * 200_000}x,1,1,1\n", "line 2: the signal `health` is `1…no number"),
+    (f"{HEAD}1{' ' * 200_000}1,1,1,1\n", "line 2: the signal `health` is `1…no number"),
     (f"{HEAD}1,0.5,0.5,20\n", "step 1: `near(s1)` and `near(s2)` hold at once, against …"),
 ]
 USAGE = [[], ["--full"], ["-", "--full"], ["--full", "a", "b"], ["--what", "a"]]
 
 Run = Callable[..., Outcome]
+Program = tuple[Path, list[str]]
 
 
 @pytest.fixture(scope="session")
@@ -61,8 +81,8 @@ USABLE = [runner for runner in runners() if runner.name != "python" and runner.m
 
 
 @pytest.fixture(scope="session", params=USABLE, ids=lambda runner: runner.name)
-def run(request: pytest.FixtureRequest, case: Case, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Runs the program of a language on a trace, a file's or that of standard input."""
+def program(request: pytest.FixtureRequest, case: Case, tmp_path_factory: pytest.TempPathFactory) -> Program:
+    """The program of a language: the folder in which it lies, and how it is started there."""
     runner: Runner = request.param
     folder = tmp_path_factory.mktemp(runner.name)
     write(runner, case, folder)
@@ -70,11 +90,17 @@ def run(request: pytest.FixtureRequest, case: Case, tmp_path_factory: pytest.Tem
         build(runner, NAME, folder)
     else:
         runner.build_all(folder, (NAME,))
+    return folder, [word.format(name=NAME) for word in runner.run]
+
+
+@pytest.fixture(scope="session")
+def run(program: Program) -> Run:
+    """Runs the program of a language on a trace, a file's or that of standard input."""
+    folder, command = program
 
     def run(*arguments: str, trace: str | bytes = "") -> Outcome:
         data = trace.encode() if isinstance(trace, str) else trace
         (folder / "trace.csv").write_bytes(data)
-        command = [word.format(name=NAME) for word in runner.run]
         done = subprocess.run(
             [*command, *arguments], cwd=folder, input=data, capture_output=True, timeout=LONGEST_RUN_S
         )
@@ -95,12 +121,12 @@ def test_files_and_standard_input(run: Run, case: Case) -> None:
     assert run("-", trace=trace) == (status, short, err)
 
 
-@pytest.mark.parametrize("trace", WAYS)
+@pytest.mark.parametrize("trace", WAYS, ids=range(len(WAYS)))
 def test_ways_to_write_a_trace(run: Run, case: Case, trace: bytes) -> None:
     assert run("--full", "trace.csv", trace=trace) == expected(case.fspa, [FAR])
 
 
-@pytest.mark.parametrize(("trace", "message"), ERRORS)
+@pytest.mark.parametrize(("trace", "message"), ERRORS, ids=range(len(ERRORS)))
 def test_traces_that_are_refused(run: Run, trace: str, message: str) -> None:
     status, out, err = run("trace.csv", trace=trace)
     assert (status, out) == (1, "")
@@ -112,9 +138,37 @@ def test_rows_come_before_an_error(run: Run) -> None:
     status, out, err = run("trace.csv", trace=f"{HEAD}1,20,20,20\n2,20,20,20\n1,20,?,20\n")
     assert (status, out.count("\n")) == (1, 3)
     assert err == (
-        "error: step 3: the signal `distance(s2)` is `?`, no number\n"
+        "error: line 4: the signal `distance(s2)` is `?`, no number\n"
         "warning: step 2: the signal `health` is 2, outside [0, 1]: it counts as 1\n"
     )
+
+
+@pytest.mark.parametrize("byte", [b"\0", b"\xe9", b"\r"])
+def test_standard_input_is_read_as_bytes(run: Run, byte: bytes) -> None:
+    trace = f"{HEAD}1,20,20,20\n1,20,".encode() + byte + b",20\n"
+    assert run("-", trace=trace) == run("trace.csv", trace=trace)
+    assert run("-", trace=trace)[2].startswith("error: line 3: ")
+
+
+def test_rows_come_as_the_samples_do(program: Program) -> None:
+    """A game that still runs may write the trace; Godot reads all of it first."""
+    folder, command = program
+    if "godot3-server" in command:
+        pytest.skip("Godot reads standard input to its end")
+    with subprocess.Popen([*command, "-"], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as running:
+        assert running.stdin is not None and running.stdout is not None
+        # It ends a program that waits for more, and with it the test.
+        deadline = Timer(2 * LONGEST_RUN_S, running.kill)
+        deadline.start()
+        for number in (1, 2):
+            running.stdin.write(f"{HEAD if number == 1 else ''}1,20,20,20\n".encode())
+            running.stdin.flush()
+            header = running.stdout.readline() if number == 1 else b"step,"
+            assert header.startswith(b"step,")
+            assert running.stdout.readline().startswith(f"{number},".encode())
+        running.stdin.close()
+        deadline.cancel()
+    assert running.returncode == 0
 
 
 @pytest.mark.parametrize("path", ["missing.csv", "."])

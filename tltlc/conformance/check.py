@@ -22,8 +22,6 @@ from pathlib import Path
 from typing import Any
 
 NUMBERS = ("progress", "reward", "robustness")
-OF_A_FILE = ("no sample", "missing signal", "bad cell")
-"""Errors that are those of the file: messages need not tell the step."""
 LONGEST_RUN_S = 60
 
 
@@ -151,8 +149,9 @@ def _in_words(err: str, warnings: int, error: Mapping[str, Any] | None) -> Itera
     elif len(errors) != 1:
         yield f"{len(errors)} errors in: {err}"
     else:
-        if error["kind"] not in OF_A_FILE and not errors[0].startswith(f"error: step {error['step']}: "):
-            yield f"an error at step {error['step']}, not: {errors[0]}"
+        place = f"line {error['line']}" if error["line"] is not None else f"step {error['step']}"
+        if error["kind"] != "no sample" and not errors[0].startswith(f"error: {place}: "):
+            yield f"an error at {place}, not: {errors[0]}"
         for name in error["names"]:
             if not re.search(rf"(?<!\w){re.escape(name)}(?!\w)", errors[0]):
                 yield f"the error does not name {name}: {errors[0]}"

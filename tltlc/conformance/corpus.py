@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from tltlc import backends
 from tltlc.automaton.fspa import Fspa
-from tltlc.conformance import arithmetic, borders, operators, random_cases, shapes, written
+from tltlc.conformance import arithmetic, borders, odd_traces, operators, random_cases, shapes, written
 from tltlc.conformance.case import Case, Makers
 from tltlc.conformance.expected import COLUMNS, Expected, Refusal, expected
 from tltlc.expression import Const, Op, nodes
@@ -21,6 +21,7 @@ CASES: Final[Makers] = {
     **arithmetic.CASES,
     **borders.CASES,
     **shapes.CASES,
+    **odd_traces.CASES,
     **random_cases.CASES,
 }
 
@@ -78,6 +79,8 @@ def _folder(case: Case, outcomes: Sequence[Expected]) -> backends.Files:
 
 def _said(refusal: Refusal) -> str:
     lines = [f"kind: {refusal.kind}", f"step: {refusal.step}", *(f"name: {name}" for name in refusal.names)]
+    if refusal.line is not None:
+        lines.insert(2, f"line: {refusal.line}")
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -87,7 +90,7 @@ def _entry(case: Case, outcomes: Sequence[Expected]) -> dict[str, Any]:
     traces = []
     for number, outcome in enumerate(outcomes, start=1):
         refusal = outcome.refusal
-        error = refusal and {"kind": refusal.kind, "step": refusal.step, "names": list(refusal.names)}
+        error = refusal and refusal.document()
         stem = f"{name}/{name}.{number}"
         row: dict[str, Any] = {"trace": f"{stem}.csv", "expected": f"{stem}.expected.csv", "rows": len(outcome.rows)}
         traces.append(row | {"warnings": outcome.warnings, "error": error})
