@@ -22,6 +22,7 @@ from tltlc.spec_file import STDIN, STDIN_NAME, input_error, split, standard_inpu
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
     from tltlc.monitor.run import Outcome, Row
+    from tltlc.monitor.trace_rows import Stream
 
 
 @click.command(
@@ -64,24 +65,31 @@ def command(spec: str, trace: str, as_json: bool, settings: Settings, format: st
 
 
 @contextmanager
-def _opened(trace: str) -> Iterator[Iterator[bytes]]:
-    """The lines of the trace as they come in; error TLT0001, now or while they are read."""
+def _opened(trace: str) -> Iterator[Stream]:
+    """The trace, to be read line by line; error TLT0001, now or while it is read."""
     if trace == STDIN:
-        yield _lines(standard_input(), STDIN_NAME)
+        yield _Trace(standard_input(), STDIN_NAME)
         return
     try:
         file = Path(trace).open("rb")  # noqa: SIM115 (closed below; only the opening may fail with TLT0001)
     except (OSError, ValueError) as error:
         raise input_error(trace, error) from None
     with file:
-        yield _lines(file, trace)
+        yield _Trace(file, trace)
 
 
-def _lines(file: BinaryIO, name: str) -> Iterator[bytes]:
-    try:
-        yield from file
-    except OSError as error:
-        raise input_error(name, error) from None
+class _Trace:
+    """A file whose reading fails with TLT0001."""
+
+    def __init__(self, file: BinaryIO, name: str) -> None:
+        self._file, self._name = file, name
+
+    def readline(self, size: int = -1, /) -> bytes:
+        """The next line, or its first ``size`` bytes; nothing at the end."""
+        try:
+            return self._file.readline(size)
+        except OSError as error:
+            raise input_error(self._name, error) from None
 
 
 def _shown(trace: str) -> str:
