@@ -112,3 +112,27 @@ def test_a_record_checks_itself() -> None:
         Share(2)
     with pytest.raises(ValueError, match="-1 is no share"):
         replace(Share(), value=-1)
+
+
+def test_a_hash_that_is_kept() -> None:
+    hashes = []
+
+    class Counted:
+        def __hash__(self) -> int:
+            hashes.append(self)
+            return 3
+
+    @record
+    class Tree:
+        """Hashes its parts once."""
+
+        hashed_once = True
+        part: object
+
+    tree, counted = Tree(1), Tree(Counted())
+    assert hash(tree) == hash(Tree(1)) == hash(tree)
+    assert (tree == Tree(1), tree == Tree(2), repr(tree)) == (True, False, repr(tree).replace("2", "1"))
+    assert hash(counted) == hash(counted)
+    assert len(hashes) == 1
+    with pytest.raises(AttributeError):
+        tree._hash = 4  # type: ignore[attr-defined]

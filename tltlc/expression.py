@@ -43,6 +43,7 @@ class Param:
 class Op:
     """An operator or function over expressions; ``clamp`` takes (x, low, high), ``min`` and ``max`` two or more."""
 
+    hashed_once = True
     op: ArithmeticOp
     args: tuple[Expression, ...]
 
@@ -51,6 +52,7 @@ class Op:
 class Condition:
     """A comparison of two expressions, or ``and``, ``or``, ``not`` over conditions."""
 
+    hashed_once = True
     op: ConditionOp
     args: tuple[Union[Expression, Condition], ...]
 
@@ -59,6 +61,7 @@ class Condition:
 class When:
     """The first case whose condition holds, else ``otherwise``."""
 
+    hashed_once = True
     cases: tuple[tuple[Condition, Expression], ...]
     otherwise: Expression
 

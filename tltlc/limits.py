@@ -109,7 +109,9 @@ PLAYGROUND_CHILD: Final = Process(memory=2 << 30, work_s=60)
 """A process that answers one request to the playground."""
 
 WORK: Final[Mapping[str, int]] = {
-    "predicate cases": 200_000,
+    "check of a predicate": 600_000,
+    "checks of all predicates": 1_500_000,
+    "arithmetic of all atoms": 200_000,
     "guard literals": 1_500_000,
 }
 """How many steps a checker may take, by what it counts."""

@@ -33,14 +33,16 @@ def record(cls: type[R]) -> type[R]:
 
     A value given in the class is a field's default.  Records compare and hash by class and fields,
     cannot be changed, can be pickled, and match positionally.  A method ``__post_init__`` checks the fields of a new
-    one.  Raises TypeError where a field without default follows one with a default.
+    one.  A class with ``hashed_once = True`` keeps its hash: that of a deep tree takes long.
+
+    Raises TypeError where a field without default follows one with a default.
     """
     names = tuple(cls.__annotations__)
     body = {key: value for key, value in cls.__dict__.items() if key not in (*names, "__dict__", "__weakref__")}
     defaults = tuple(cls.__dict__[name] for name in names if name in cls.__dict__)
     if any(name in cls.__dict__ for name in names[: len(names) - len(defaults)]):
         raise TypeError(f"{cls.__name__}: a field without a default follows one with a default")
-    body["__slots__"] = names
+    body["__slots__"] = (*names, "_hash") if body.get("hashed_once") else names
     body["__match_args__"] = names
     made: Any = type(cls.__name__, cls.__bases__, body)
     fill = [(index, made.__dict__[name].__set__) for index, name in enumerate(names)]
@@ -68,6 +70,8 @@ def record(cls: type[R]) -> type[R]:
         "__setattr__": _refused,
         "__delattr__": _refused,
     }
+    if body.get("hashed_once"):
+        methods["__hash__"] = _kept_hash(made, values_of)
     for name, method in methods.items():
         if name not in body:
             setattr(made, name, method)
@@ -88,6 +92,21 @@ def _values_getter(names: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
         return lambda _: ()
     get = attrgetter(*names)
     return get if len(names) > 1 else lambda value: (get(value),)
+
+
+def _kept_hash(made: Any, values_of: Callable[[Any], tuple[Any, ...]]) -> Callable[[Any], int]:
+    """The method ``__hash__`` that computes it once."""
+    keep = made.__dict__["_hash"].__set__
+
+    def kept_hash(self: Any) -> int:
+        try:
+            return self._hash  # type: ignore[no-any-return]
+        except AttributeError:
+            value = hash((made, values_of(self)))
+            keep(self, value)
+            return value
+
+    return kept_hash
 
 
 def _arguments(

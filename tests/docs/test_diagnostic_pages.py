@@ -21,7 +21,7 @@ ABBREVIATED = {"TLT0103", "TLT0317"}
 AT_RUN_TIME = {"TLT0613": "TLT0306", "TLT0616": "TLT0306"}
 """A source that would cause these is answered before it runs, as their pages say."""
 
-FROM_A_SOURCE_TOO = {"TLT0501", *AT_RUN_TIME}
+FROM_A_SOURCE_TOO = {"TLT0501", "TLT0503", *AT_RUN_TIME}
 
 
 OF_RULES = {*(rule.code for rule in rules()), ALLOWED_IN_VAIN}

@@ -18,8 +18,10 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tables import STARTS, load
+from tltlc.limits import WORK
 from tltlc.record import replace
 from tltlc.resolve import context, quantities, scope, units
+from tltlc.resolve.predicate_check import cases, check
 from tltlc.source import SourceFile
 
 PAGE = (DOCS / "language.md").read_text(encoding="utf-8")
@@ -188,8 +190,12 @@ def test_limits() -> None:
         [nesting.MAX_BRACKETS],
         [nesting.MAX_DEPTH],
         [quantities.DEEPEST_ARITHMETIC],
+        [WORK["arithmetic of all atoms"]],
         [context.LARGEST_EXPANSION],
         [context.MOST_EXPANSIONS],
+        [WORK["check of a predicate"], WORK["checks of all predicates"]],
+        [check.LARGEST_SIZE, cases.LARGEST_NUMBER_OF_CASES],
+        [cases.MOST_MEETING_CASES],
         [DEFAULT_STATE_BUDGET],
         [PRIME_LIMIT],
         [TOTAL_PRIME_LIMIT],

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import ROOT
 from tests.resolve.helpers import codes, resolved
+from tltlc.grammar.parser import parse
+from tltlc.limits import WORK
+from tltlc.resolve.imports import standard_library
+from tltlc.resolve.options import ResolveOptions
+from tltlc.resolve.predicate_check import work
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
 
 
 def test_a_wrong_range_is_an_error_with_a_witness() -> None:
@@ -54,3 +66,140 @@ def test_numbers_passed_on_are_checked_where_they_are_known() -> None:
 def test_the_whole_range_of_a_param_counts() -> None:
     assert codes("signal x in [0, 4] param m in [4, 8] = 5 predicate p in [0, 1] = x / m spec s = F p") == []
     assert codes("signal x in [0, 4] param m in [2, 8] = 5 predicate p in [0, 1] = x / m spec s = F p") == ["TLT0306"]
+
+
+SIGNALS = "".join(f"signal {name} in [-1, 1] " for name in "xyz")
+LINE = "(x^3 * y + {}.5e-8 * y * z^2 + x * z) / 4"
+"""Values so near to each other that a jump is neither proved nor found."""
+
+
+def nested(depth: int, first: int = 0) -> str:
+    """``when`` in the last case of ``when``, over three signals."""
+    value = LINE.format(first + 99)
+    for n in range(depth):
+        a, b = "xyz"[n % 3], "xyz"[(n + 1) % 3]
+        test = f"{a} + {round(0.1 + n / 9, 3)} * {b} > {round(1.8 * n / depth - 0.9, 3)}"
+        value = f"(when {test}: {LINE.format(first + n)} otherwise: {value})"
+    return value
+
+
+def balanced(parts: list[str], op: str) -> str:
+    while len(parts) > 1:
+        parts = [f"({op.join(parts[n : n + 2])})" for n in range(0, len(parts), 2)]
+    return parts[0]
+
+
+def steps(count: int, op: str = "+") -> str:
+    """A sum or product of ``when`` with two cases each."""
+    cases = [f"(when {'xyz'[n % 3]} > {n / count}: x * y otherwise: 0.1)" for n in range(count)]
+    return f"{balanced(cases, op)} / {count}"
+
+
+def chain(count: int) -> str:
+    """One ``when`` with many cases."""
+    cases = [f"when {'xyz'[n % 3]} > {1 - 2 * n / count}: {'xyz'[n % 2]} / {n + 2}" for n in range(count)]
+    return f"{' '.join(cases)} otherwise: 0.1"
+
+
+@pytest.mark.parametrize(
+    ("body", "codes_of_it", "why"),
+    [
+        (nested(8), ["TLT0503"], "the check takes too many steps: 600,000 are allowed"),
+        (nested(16), ["TLT0503"], "the check takes too many steps: 600,000 are allowed"),
+        (nested(22), ["TLT0503"], "the check takes too many steps: 600,000 are allowed"),
+        (nested(40), ["TLT0503"], "more than 24 cases of its `when` may meet"),
+        (chain(16), ["TLT0402"], None),
+        (chain(60), ["TLT0503"], "more than 24 cases of its `when` may meet"),
+        (chain(200), ["TLT0503"], "its `when` splits it into more than 64 cases"),
+        (steps(16), ["TLT0503"], "its `when` splits it into more than 64 cases"),
+        (steps(16, "*"), ["TLT0503"], "its `when` splits it into more than 64 cases"),
+        (steps(5, "*"), ["TLT0402"], None),
+        (
+            f"when {balanced([f'(x*y > {n / 300} and y > {n} * z)' for n in range(1, 120)], ' or ')}: x otherwise: y",
+            ["TLT0503"],
+            "its `when` splits it into more than 64 cases",
+        ),
+        (
+            f"when {balanced([f'x > {n / 999} and {0.5 + n / 999} > x' for n in range(240)], ' and ')}: x otherwise: y",
+            ["TLT0503"],
+            "its `when` splits it into more than 64 cases",
+        ),
+        (balanced(["x"] * 1500, "+") + " / 1500", ["TLT0503"], "it has more than 2,000 operands and operators"),
+        # What is wrong at a point is an error, however much there is to prove.
+        (f"3 * ({steps(16)}) + 2", ["TLT0306"], None),
+        (f"2 + {nested(40)}", ["TLT0306"], None),
+    ],
+)
+def test_a_check_ends_within_its_steps(
+    body: str, codes_of_it: list[str], why: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TLTLC_CACHE_DIR", "")
+    with work.limited(10**9) as spent:
+        _, found = resolved(f"{SIGNALS} predicate p in [-1, 1] = {body} spec s = F p")
+    assert 10**9 - spent.left <= WORK["check of a predicate"]
+    assert [diagnostic.code for diagnostic in found] == codes_of_it
+    assert why is None or found[0].labels[0].message == why
+
+
+def test_the_checks_of_all_predicates_end_within_their_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TLTLC_CACHE_DIR", "")
+    monkeypatch.setitem(WORK, "check of a predicate", 50_000)  # type: ignore[attr-defined]
+    monkeypatch.setitem(WORK, "checks of all predicates", 150_000)  # type: ignore[attr-defined]
+    predicates = " ".join(f"predicate p{n} in [-1, 1] = {nested(8, n)}" for n in range(6))
+    with work.limited(10**9) as spent:
+        _, found = resolved(f"{SIGNALS} {predicates} spec s = F (p0 & p1 & p2 & p3 & p4 & p5)")
+    assert 10**9 - spent.left <= 150_000
+    assert [diagnostic.code for diagnostic in found] == ["TLT0503"] * 4
+    assert found[3].title == "the predicate `p3` and 2 more predicates were not checked"
+    assert all(diagnostic.severity == "warning" for diagnostic in found)
+
+
+def test_the_same_steps_are_counted_where_answers_are_remembered(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path))
+    text = f"{SIGNALS} predicate p in [-1, 1] = {nested(3)} spec s = F p"
+    counted = []
+    for _ in range(2):
+        with work.limited(10**9) as spent:
+            codes(text)
+        counted.append(10**9 - spent.left)
+    assert counted[0] == counted[1]
+
+
+def test_predicates_inside_predicates_do_not_grow_without_end() -> None:
+    doubled = " ".join(f"predicate p{n} in [-1, 1] = p{n - 1} * p{n - 1}" for n in range(1, 31))
+    found = codes(f"signal x in [-1, 1] predicate p0 in [-1, 1] = x {doubled} spec s = F p30")
+    assert set(found) == {"TLT0503", "TLT0315"}
+    many = " & ".join(f"p12 > {n / 1000}" for n in range(200))
+    found = codes(f"signal x in [-1, 1] predicate p0 in [-1, 1] = x {doubled} spec s = F ({many})")
+    assert set(found) == {"TLT0503", "TLT0315"}
+
+
+def test_numbers_of_any_length_end_a_proof() -> None:
+    from tltlc.expression import Const, Op, Signal
+    from tltlc.resolve.predicate_check.elimination import GiveUpError
+    from tltlc.resolve.predicate_check.exact import _Translation
+    from tltlc.resolve.predicate_check.normal_form import TooLargeError, quotient
+    from tltlc.resolve.predicate_check.region import Region
+
+    for exponent, compute, error in (
+        (12.0, quotient, TooLargeError),
+        (8.0, _Translation(Region({Signal("x"): (0.0, 1.0)}, {})).term, GiveUpError),
+    ):
+        power = Op("*", (Const(1e300), Signal("x")))
+        for _ in range(8):
+            power = Op("^", (power, Const(exponent)))
+        with pytest.raises(error):
+            compute(power)
+
+
+@pytest.mark.parametrize("folder", [standard_library(), ROOT / "examples"], ids=["standard library", "examples"])
+def test_libraries_and_examples_need_a_hundredth_of_the_steps(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TLTLC_CACHE_DIR", "")
+    for path in sorted(folder.glob("*.tltl")):
+        module, _ = parse(SourceFile(str(path), path.read_text("utf-8")))
+        with work.limited(10**9) as spent:
+            _, found = resolve(module, ResolveOptions())
+        assert 10**9 - spent.left < WORK["check of a predicate"] / 100
+        assert not {"TLT0401", "TLT0402", "TLT0503"} & {diagnostic.code for diagnostic in found}

@@ -42,7 +42,7 @@ def holds(expression: Expression, x: float, y: float = 0.0) -> bool:
     return found > 0.0
 
 
-@settings(max_examples=2000, deadline=None)
+@settings(max_examples=1000, deadline=None)
 @given(THREE, FINITE)
 def test_a_threshold_decides_as_the_exact_comparison_does(ends: Sequence[float], x: float) -> None:
     low, threshold, high = ends
@@ -54,7 +54,7 @@ def test_a_threshold_decides_as_the_exact_comparison_does(ends: Sequence[float],
             assert holds(robustness(fixed, side), number) == (Fraction(number) < Fraction(threshold))
 
 
-@settings(max_examples=2000, deadline=None)
+@settings(max_examples=1000, deadline=None)
 @given(THREE, THREE, FINITE, FINITE)
 def test_two_sides_decide_as_the_exact_comparison_does(
     of_x: Sequence[float], of_y: Sequence[float], x: float, y: float

@@ -13,17 +13,19 @@ import pytest
 from tltlc.expression import Const, Expression, Op, Param, Signal
 from tltlc.resolve.predicate_check import memory
 
+YES, NO = memory.Answer(True, 7), memory.Answer(False, 8)
 
-def refuse() -> bool:
+
+def refuse() -> memory.Answer:
     raise AssertionError("the answer should have been remembered")
 
 
 def test_an_answer_is_computed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path / "new"))
-    assert memory.answer("one", lambda: True)
-    assert not memory.answer("two", lambda: False)
-    assert memory.answer("one", refuse)
-    assert not memory.answer("two", refuse)
+    assert memory.answer("one", lambda: YES) == YES
+    assert memory.answer("two", lambda: NO) == NO
+    assert memory.answer("one", refuse) == YES
+    assert memory.answer("two", refuse) == NO
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["predicates.json"]
 
 
@@ -34,26 +36,31 @@ def test_an_answer_is_computed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         b"{",
         b"\xff\xfe",
         b"[]",
-        b'{"version": 1, "answers": 3}',
-        b'{"version": 0, "answers": {"KEY": true}}',
-        b'{"version": 1, "answers": {"KEY": "yes"}}',
+        b'{"version": 2, "answers": 3}',
+        b'{"version": 1, "answers": {"KEY": true}}',
+        b'{"version": 2, "answers": {"KEY": true}}',
+        b'{"version": 2, "answers": {"KEY": ["yes", 1]}}',
+        b'{"version": 2, "answers": {"KEY": [true]}}',
+        b'{"version": 2, "answers": {"KEY": [true, -1]}}',
+        b'{"version": 2, "answers": {"KEY": [true, true]}}',
+        b'{"version": 2, "answers": {"KEY": [true, 1e300]}}',
         b"[" * 100_000,
     ],
 )
 def test_a_damaged_file_is_as_good_as_none(content: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path))
-    memory.answer("one", lambda: False)
+    memory.answer("one", lambda: NO)
     file = tmp_path / "predicates.json"
     (key,) = json.loads(file.read_text())["answers"]
     file.write_bytes(content.replace(b"KEY", key.encode()))
-    assert memory.answer("one", lambda: False) is False
-    assert memory.answer("one", refuse) is False
+    assert memory.answer("one", lambda: NO) == NO
+    assert memory.answer("one", refuse) == NO
 
 
 def test_a_folder_that_cannot_be_made_does_no_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("TLTLC_CACHE_DIR", str(tmp_path / "file" / "below"))
-    assert memory.answer("one", lambda: True)
+    assert memory.answer("one", lambda: YES) == YES
 
 
 def test_the_folder_follows_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:

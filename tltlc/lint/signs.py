@@ -6,11 +6,13 @@ from itertools import islice
 from math import inf
 from typing import Final, Literal, Protocol
 
+from tltlc.limits import WORK
 from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases
 from tltlc.resolve.predicate_check.check import box_of
 from tltlc.resolve.predicate_check.proof import TOLERANCE, Task, unproved
 from tltlc.resolve.predicate_check.region import Region
 from tltlc.resolve.predicate_check.witness import points, value_at
+from tltlc.resolve.predicate_check.work import OutOfWorkError, limited
 from tltlc.resolve.spec import Atom, Param, Signal
 
 Sign = Literal["positive", "not positive", "negative", "not negative"]
@@ -41,23 +43,31 @@ _RANGES: Final[dict[Sign, tuple[float, float]]] = {
 
 
 def can_be(sign: Sign, atom: Atom, of: Declares, tries: int = _MOST_POINTS) -> bool:
-    """Whether a search of so many tries finds values of signals and params for which an atom has this sign."""
-    box, bools = box_of(atom.expression, *_declared(of))
-    for point in islice(points(atom.expression, box, bools), tries):
-        value = value_at(atom.expression, point).value
-        if value is not None and _has(sign, value):
-            return True
+    """Whether a search finds values of signals and params for which an atom has this sign.
+
+    It takes so many tries, and no more steps than a check of a predicate.
+    """
+    try:
+        with limited(WORK["check of a predicate"]):
+            box, bools = box_of(atom.expression, *_declared(of))
+            for point in islice(points(atom.expression, box, bools), tries):
+                value = value_at(atom.expression, point).value
+                if value is not None and _has(sign, value):
+                    return True
+    except OutOfWorkError:
+        pass
     return False
 
 
 def is_always(sign: Sign, atom: Atom, of: Declares) -> bool:
     """Whether it is proved that the value of an atom has this sign for all values of its signals and params."""
     low, high = _RANGES[sign]
-    box, _ = box_of(atom.expression, *_declared(of))
     try:
-        tasks = [Task(case.value, case.constraints, low, high) for case in cases(atom.expression)]
-        return not unproved(tasks, Region(box, {}))
-    except (TooManyCasesError, RecursionError):
+        with limited(WORK["check of a predicate"]):
+            box, _ = box_of(atom.expression, *_declared(of))
+            tasks = [Task(case.value, case.constraints, low, high) for case in cases(atom.expression)]
+            return not unproved(tasks, Region(box, {}))
+    except (OutOfWorkError, TooManyCasesError, RecursionError):
         return False
 
 

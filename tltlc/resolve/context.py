@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import Any
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.expression import Expression
+from tltlc.expression import Expression, nodes
 from tltlc.grammar.tree import Call, Expr, Name
 from tltlc.grammar.walk import parts
+from tltlc.limits import WORK
 from tltlc.logic.formula import Formula, atom
 from tltlc.record import record
 from tltlc.resolve.problem import Log, ResolutionError, problem
@@ -66,6 +68,7 @@ class Context:
     """
 
     __slots__ = (
+        "_arithmetic",
         "_names",
         "_sizes",
         "atoms",
@@ -97,6 +100,7 @@ class Context:
         self.broken: set[int] = set()
         self.expansions = 0
         self.values: dict[Any, Any] = {}
+        self._arithmetic = 0
         self._names: dict[int, tuple[str, ...]] = {}
         self._sizes: dict[Formula, int] = {}
 
@@ -106,7 +110,13 @@ class Context:
         return self.signals.setdefault(found.name, found)
 
     def atom(self, name: str, expression: Expression, doc: str, source: SourceFile, span: Span) -> Formula:
-        """The atom of that name; raises ResolutionError where the name already stands for something else."""
+        """The atom of that name.
+
+        Raises ResolutionError where the name already stands for something else (TLT0216), or all atoms have too much
+        arithmetic (TLT0315).
+        """
+        if name not in self.atoms:
+            self._count_arithmetic(expression, source, span)
         known = self.atoms.setdefault(name, Atom(name, expression, doc))
         if known.expression != expression:
             raise problem(
@@ -117,6 +127,20 @@ class Context:
                 advice="rename one of them: names of atoms must differ in the compiled automaton",
             )
         return atom(name)
+
+    def _count_arithmetic(self, expression: Expression, source: SourceFile, span: Span) -> None:
+        left = WORK["arithmetic of all atoms"] - self._arithmetic
+        size = sum(1 for _ in islice(nodes(expression), left + 1))
+        if size > left:
+            raise problem(
+                "TLT0315",
+                f"the arithmetic of all atoms has more than {WORK['arithmetic of all atoms']:,} parts",
+                source,
+                span,
+                "with the predicates that it uses written out",
+                advice="use predicates inside each other less often, or let the game compute the value",
+            )
+        self._arithmetic += size
 
     def recursion(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
         """The problem of a let or predicate that is being expanded already, reported once."""

@@ -7,8 +7,11 @@ from itertools import islice
 
 from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When, nodes
 from tltlc.record import record
+from tltlc.resolve.predicate_check.work import spend
 
 LARGEST_NUMBER_OF_CASES = 64
+MOST_MEETING_CASES = 24
+"""Of a `when` whose continuity is checked; their pairs count."""
 
 
 class TooManyCasesError(Exception):
@@ -70,10 +73,13 @@ def size(expression: Expression, most: int) -> int:
 
 def variables(expression: Expression | Condition) -> dict[Signal | Param, None]:
     """The signals and params that an expression reads, in order of appearance."""
-    return dict.fromkeys(node for node in nodes(expression) if isinstance(node, (Signal, Param)))
+    found = list(nodes(expression))
+    spend(1 + len(found) // 10)
+    return dict.fromkeys(node for node in found if isinstance(node, (Signal, Param)))
 
 
 def _expand(expression: Expression, before: Constraints, extremes: bool) -> Iterator[Case]:
+    spend()
     if isinstance(expression, When):
         remaining: list[Constraints] = [before]
         for condition, value in expression.cases:
@@ -123,6 +129,7 @@ def _split_extreme(op: str, args: tuple[Expression, ...], before: Constraints) -
 
 def _where(condition: Condition, truth: bool, before: Constraints, extremes: bool) -> Iterator[Constraints]:
     """The ways in which a condition is true (or false), as constraints added to ``before``."""
+    spend()
     if condition.op == "not":
         yield from _where(_condition(condition.args[0]), not truth, before, extremes)
     elif condition.op in ("and", "or"):
@@ -149,6 +156,7 @@ def _difference(a: Expression, b: Expression) -> Expression:
 
 
 def _collect_operands(node: Expression, before: Constraints, result: list[Case]) -> None:
+    spend()
     if isinstance(node, Op):
         for arg in node.args:
             _collect_operands(arg, before, result)

@@ -1,8 +1,8 @@
 """Checks a predicate: is its value within the declared range, and is it continuous between ``when`` cases?
 
-Every answer is one of three: proved (no finding), wrong at a concrete point, or unproved.  The
-means, cheapest first: interval arithmetic, a search for a wrong point, exact signs and subdivision,
-remembered answers, sympy.  Only the last imports it.
+Every answer is one of four: proved (no finding), wrong at a concrete point, unproved, or unchecked, where the answer
+would take more work than a check may do.  The means, cheapest first: interval arithmetic, a search for a wrong point,
+exact signs and subdivision, remembered answers, sympy.  Only the last imports it.
 """
 
 from __future__ import annotations
@@ -13,13 +13,31 @@ from math import inf
 from typing import Literal
 
 from tltlc.expression import Expression, Signal, When
+from tltlc.limits import WORK
 from tltlc.record import record
 from tltlc.resolve import spec
-from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases, condition_operands, size, variables, whens
+from tltlc.resolve.predicate_check.cases import (
+    LARGEST_NUMBER_OF_CASES,
+    MOST_MEETING_CASES,
+    TooManyCasesError,
+    cases,
+    condition_operands,
+    size,
+    variables,
+    whens,
+)
 from tltlc.resolve.predicate_check.proof import Task, unproved
 from tltlc.resolve.predicate_check.region import Box, Region, Variable
+from tltlc.resolve.predicate_check.work import OutOfWorkError, apart, limited, spend
 
-FindingKind = Literal["range_wrong", "range_unproved", "discontinuous", "continuity_unproved"]
+FindingKind = Literal[
+    "range_wrong",
+    "range_unproved",
+    "range_unchecked",
+    "discontinuous",
+    "continuity_unproved",
+    "continuity_unchecked",
+]
 
 
 _NO_POINT: Mapping[str, float] = {}
@@ -30,7 +48,7 @@ class Finding:
     """What is wrong with a predicate, or could not be shown.
 
     ``witness`` gives the value of each signal and param at the point that ``message`` speaks of; it is
-    empty where the kind ends in ``unproved``.
+    empty where the kind ends in ``unproved`` or ``unchecked``.
     """
 
     kind: FindingKind
@@ -48,21 +66,55 @@ def check_predicate(
     """The findings on a predicate whose declared range is ``[low, high]``, for all signal and param values.
 
     ``signals`` and ``params`` hold at least those that the expression reads, by name; an end of a range
-    that is None is open.  At most one finding on the range and one on continuity.  Never raises.
+    that is None is open.  At most one finding on the range and one on continuity.  Takes a bounded number of steps
+    and never raises.
     """
-    if size(expression, _LARGEST_SIZE) > _LARGEST_SIZE:
-        return (_TOO_LARGE,)
-    box, bools = box_of(expression, signals, params)
-    predicate = Predicate(expression, box, bools, low, high)
+    with limited(_MOST_STEPS):
+        if size(expression, LARGEST_SIZE) > LARGEST_SIZE:
+            return (_unchecked("range", f"it has more than {LARGEST_SIZE:,} operands and operators"),)
+        try:
+            box, bools = box_of(expression, signals, params)
+            return _findings(Predicate(expression, box, bools, low, high))
+        except (RecursionError, OutOfWorkError):
+            return (_unchecked("range", _TOO_LONG),)
+
+
+LARGEST_SIZE = 2000
+_MOST_STEPS = WORK["check of a predicate"]
+_STEPS_FOR_A_WITNESS = _MOST_STEPS // 3
+"""What is left for a search for a wrong point after a proof has been given up."""
+_STEPS_OF_A_QUESTION = _MOST_STEPS // 3
+"""What a proof with sympy may take."""
+_TOO_LONG = f"the check takes too many steps: {_MOST_STEPS:,} are allowed"
+
+
+def _unchecked(what: Literal["range", "continuity"], why: str) -> Finding:
+    return Finding("range_unchecked" if what == "range" else "continuity_unchecked", why)
+
+
+def _findings(predicate: Predicate) -> tuple[Finding, ...]:
+    """On the range, then on continuity; only where the former can be checked is the latter."""
     try:
-        found = (_check_range(predicate), _check_continuity(predicate))
-    except (TooManyCasesError, RecursionError):
-        return (_TOO_LARGE,)
-    return tuple(finding for finding in found if finding is not None)
+        with limited(_MOST_STEPS - _STEPS_FOR_A_WITNESS):
+            found = _check_range(predicate)
+    except TooManyCasesError:
+        return (_wrong(predicate) or _unchecked("range", _TOO_MANY_CASES),)
+    except OutOfWorkError:
+        return (_wrong(predicate) or _unchecked("range", _TOO_LONG),)
+    return tuple(finding for finding in (found, _bounded_continuity(predicate)) if finding is not None)
 
 
-_LARGEST_SIZE = 2000
-_TOO_LARGE = Finding("range_unproved", "the expression is too large to check")
+def _bounded_continuity(predicate: Predicate) -> Finding | None:
+    try:
+        return _check_continuity(predicate)
+    except TooManyCasesError:
+        return _unchecked("continuity", _TOO_MANY_MEETINGS)
+    except OutOfWorkError:
+        return _unchecked("continuity", _TOO_LONG)
+
+
+_TOO_MANY_CASES = f"its `when` splits it into more than {LARGEST_NUMBER_OF_CASES} cases"
+_TOO_MANY_MEETINGS = f"more than {MOST_MEETING_CASES} cases of its `when` may meet"
 
 
 @record
@@ -84,16 +136,27 @@ def _check_range(predicate: Predicate) -> Finding | None:
     doubtful = unproved(tasks, whole)
     if not doubtful:
         return None
-    from tltlc.resolve.predicate_check.witness import find_outside
-
-    witness = find_outside(predicate.expression, predicate.box, predicate.bools, low, high)
-    if witness is not None:
-        values = _by_name(witness.point)
-        what = witness.reason if witness.value is None else f"is {_number(witness.value)}"
-        return Finding("range_wrong", f"{_where(values)}the value {what}", values)
+    wrong = _wrong(predicate)
+    if wrong is not None:
+        return wrong
     if _proves_exactly("range", predicate, doubtful, whole):
         return None
     return Finding("range_unproved", f"could not prove that the value stays in [{_number(low)}, {_number(high)}]")
+
+
+def _wrong(predicate: Predicate) -> Finding | None:
+    """A point at which the value leaves its range, or has none, as far as the search gets."""
+    from tltlc.resolve.predicate_check.witness import find_outside
+
+    try:
+        witness = find_outside(predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high)
+    except OutOfWorkError:
+        return None
+    if witness is None:
+        return None
+    values = _by_name(witness.point)
+    what = witness.reason if witness.value is None else f"is {_number(witness.value)}"
+    return Finding("range_wrong", f"{_where(values)}the value {what}", values)
 
 
 def _check_continuity(predicate: Predicate) -> Finding | None:
@@ -102,10 +165,7 @@ def _check_continuity(predicate: Predicate) -> Finding | None:
     )
     doubtful: list[Task] = []
     for when in whens(predicate.expression):
-        try:
-            tasks = _doubtful_borders(when, predicate)
-        except TooManyCasesError:
-            return unproved_finding
+        tasks = _doubtful_borders(when, predicate)
         if not tasks:
             continue
         doubtful += tasks
@@ -136,16 +196,24 @@ def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[Task], whol
     """True if sympy proves the tasks that are left of a question, or once did."""
     from tltlc.resolve.predicate_check import memory
 
-    def compute() -> bool:
+    def compute() -> memory.Answer:
         if sys.platform == "emscripten":
             # A browser has no sympy: what it alone could prove stays unproved.
-            return False
+            return memory.Answer(False, 0)
         from tltlc.resolve.predicate_check.exact import proves_all
 
-        return proves_all(tasks, whole)
+        # Apart from all other work, so that the answer depends on the question alone and can be remembered.
+        with apart(_STEPS_OF_A_QUESTION) as work:
+            try:
+                proved = proves_all(tasks, whole)
+            except OutOfWorkError:
+                proved = False
+            return memory.Answer(proved, _STEPS_OF_A_QUESTION - max(0, work.left))
 
     text = memory.question(kind, predicate.expression, predicate.box, predicate.bools, predicate.low, predicate.high)
-    return memory.answer(text, compute)
+    found = memory.answer(text, compute)
+    spend(found.steps)
+    return found.proved
 
 
 def box_of(

@@ -13,13 +13,12 @@ from math import inf
 
 from tltlc.expression import Expression, Op, Signal
 from tltlc.record import record
-from tltlc.resolve.predicate_check.cases import Case, Constraint, TooManyCasesError, variables
+from tltlc.resolve.predicate_check.cases import MOST_MEETING_CASES, Case, Constraint, TooManyCasesError, variables
 from tltlc.resolve.predicate_check.interval import UndefinedError
 from tltlc.resolve.predicate_check.proof import Task, holds_at_once, proves_defined, proves_within
 from tltlc.resolve.predicate_check.region import Region, Variable
 
 _PARTS = 30
-_MOST_CASES = 24
 
 
 @record
@@ -34,7 +33,7 @@ class Meeting:
 
 def meetings(all_cases: Sequence[Case], whole: Region, bools: frozenset[Variable]) -> Iterator[Meeting]:
     """The pairs of cases with different values that may meet.  Raises TooManyCasesError."""
-    if len(all_cases) > _MOST_CASES:
+    if len(all_cases) > MOST_MEETING_CASES:
         raise TooManyCasesError
     for first, second in combinations(all_cases, 2):
         if first.value == second.value:

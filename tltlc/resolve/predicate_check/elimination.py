@@ -19,6 +19,7 @@ from tltlc.resolve.predicate_check.cases import Constraint
 from tltlc.resolve.predicate_check.interval import Interval, UndefinedError
 from tltlc.resolve.predicate_check.proof import TOLERANCE, proves_within
 from tltlc.resolve.predicate_check.region import Region, bound
+from tltlc.resolve.predicate_check.work import spend
 
 LARGEST_DEGREE = 8
 
@@ -27,6 +28,8 @@ _MOST_OPERATIONS = 150
 _MOST_TERMS = 3000
 _PARTS = 10
 _SURELY_POSITIVE = 1e-12
+_STEPS_OF_SYMPY = 300
+"""What a call of sympy counts as at least."""
 
 Term = Any  # a sympy expression: sympy brings no types
 Ranges = Mapping[Term, Interval]
@@ -50,6 +53,7 @@ class Prover:
         self.steps += 1
         if self.steps > _MOST_STEPS:
             raise GiveUpError
+        spend(5 * _STEPS_OF_SYMPY)
         f = _simplified(f)
         limits = [_simplified(limit) for limit in limits]
         if any(limit.is_number and _number(limit) < -TOLERANCE for limit in limits):
@@ -191,11 +195,14 @@ def _real_where(candidate: Term) -> Iterator[Term]:
 
 
 def _simplified(f: Term) -> Term:
-    if f.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I) or f.count_ops() > _MOST_OPERATIONS:
+    operations = f.count_ops()
+    if f.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I) or operations > _MOST_OPERATIONS:
         raise GiveUpError
     variables = len(f.free_symbols)
-    if comb(variables + _total_degree(f), variables) > _MOST_TERMS:
+    terms = comb(variables + _total_degree(f), variables)
+    if terms > _MOST_TERMS:
         raise GiveUpError
+    spend(_STEPS_OF_SYMPY + 20 * operations + 10 * terms)
     return sympy.factor(sympy.together(f))
 
 

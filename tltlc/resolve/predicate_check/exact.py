@@ -15,7 +15,7 @@ from tltlc.expression import Const, Expression, Op
 from tltlc.resolve.predicate_check.cases import Constraint, TooManyCasesError, cases
 from tltlc.resolve.predicate_check.elimination import LARGEST_DEGREE, GiveUpError, Prover, Term
 from tltlc.resolve.predicate_check.interval import Interval, UndefinedError
-from tltlc.resolve.predicate_check.normal_form import exact
+from tltlc.resolve.predicate_check.normal_form import MOST_BITS, exact
 from tltlc.resolve.predicate_check.proof import Task, proves_defined, proves_within
 from tltlc.resolve.predicate_check.region import Region, bound
 
@@ -83,9 +83,7 @@ class _Translation:
             if node.op in ("+", "-", "*", "/", "neg"):
                 return self._arithmetic(node)
             if node.op == "^" and isinstance(exponent, Const) and exponent.value == int(exponent.value):
-                if abs(exponent.value) > LARGEST_DEGREE:
-                    raise GiveUpError
-                return self.term(node.args[0]) ** int(exponent.value)
+                return _power(self.term(node.args[0]), int(exponent.value))
         return self._symbol(node)
 
     def _arithmetic(self, node: Op) -> Term:
@@ -106,6 +104,14 @@ class _Translation:
                 difference = self.term(node.args[0]) - symbol**2
                 self.equations += [difference, -difference]
         return self._symbols[node]
+
+
+def _power(base: Term, exponent: int) -> Term:
+    """Raises GiveUpError where the exponent or the numbers in the result are too large to work with."""
+    bits = max((number.p.bit_length() + number.q.bit_length() for number in base.atoms(sympy.Rational)), default=0)
+    if abs(exponent) > LARGEST_DEGREE or bits * abs(exponent) > MOST_BITS:
+        raise GiveUpError
+    return base**exponent
 
 
 def _divisors(value: Expression) -> Iterator[Expression]:

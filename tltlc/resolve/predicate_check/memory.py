@@ -15,18 +15,28 @@ from pathlib import Path
 
 from tltlc.expression import Condition, Const, Expression, Op, When
 from tltlc.json_text import load
-from tltlc.limits import REPORT
+from tltlc.limits import REPORT, WORK
+from tltlc.record import record
 from tltlc.resolve.predicate_check.cases import variables
 from tltlc.resolve.predicate_check.region import Box, Variable
 from tltlc.temporary import temporaries
 
-CHECKER_VERSION = 1  # raise it whenever an answer may change
+CHECKER_VERSION = 2  # raise it whenever an answer may change
 
 _FILE_NAME = "predicates.json"
 _MOST_ANSWERS = 2000
+_MOST_STEPS = WORK["check of a predicate"]
 
 
-def answer(question: str, compute: Callable[[], bool]) -> bool:
+@record
+class Answer:
+    """Whether something is proved, and the steps that this took: they count where it is remembered, too."""
+
+    proved: bool
+    steps: int
+
+
+def answer(question: str, compute: Callable[[], Answer]) -> Answer:
     """The remembered answer to a question, or the computed one, which is remembered from then on."""
     from hashlib import sha256
 
@@ -68,7 +78,7 @@ def cache_folder() -> Path | None:
         return None
 
 
-def _read(path: Path) -> dict[str, bool]:
+def _read(path: Path) -> dict[str, Answer]:
     """The answers in a file; none where it is missing, damaged or of another version."""
     try:
         content = load(path, REPORT)
@@ -79,15 +89,20 @@ def _read(path: Path) -> dict[str, bool]:
     answers = content.get("answers")
     if not isinstance(answers, dict):
         return {}
-    return {key: value for key, value in answers.items() if isinstance(value, bool)}
+    return {key: Answer(*value) for key, value in answers.items() if _is_answer(value)}
 
 
-def _write(path: Path, answers: Mapping[str, bool]) -> None:
+def _is_answer(value: object) -> bool:
+    return isinstance(value, list) and [type(part) for part in value] == [bool, int] and 0 <= value[1] <= _MOST_STEPS
+
+
+def _write(path: Path, answers: Mapping[str, Answer]) -> None:
+    kept = {key: [answer.proved, answer.steps] for key, answer in answers.items()}
     # Without it, the answers only take longer the next time.
     with suppress(OSError), temporaries() as made:
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = made.path(path)
-        temporary.write_text(json.dumps({"version": CHECKER_VERSION, "answers": answers}, indent=1), "utf-8")
+        temporary.write_text(json.dumps({"version": CHECKER_VERSION, "answers": kept}), "utf-8")
         temporary.replace(path)
 
 

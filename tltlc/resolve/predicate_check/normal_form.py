@@ -7,13 +7,13 @@ factor is a signal, a param or any other expression that is not built by ``+ - *
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import lru_cache
 
 from tltlc.expression import Const, Expression, Op, Param, Signal
 from tltlc.record import record
 from tltlc.resolve.predicate_check import interval
 from tltlc.resolve.predicate_check.interval import Interval
 from tltlc.resolve.predicate_check.region import Region, bound
+from tltlc.resolve.predicate_check.work import current, spend
 
 Monomial = frozenset[tuple[Expression, int]]
 Polynomial = dict[Monomial, Fraction]
@@ -21,6 +21,8 @@ Polynomial = dict[Monomial, Fraction]
 ONE: Monomial = frozenset()
 _MOST_TERMS = 200
 _LARGEST_EXPONENT = 12
+MOST_BITS = 10_000
+"""Of a coefficient: enough for any float to the power of four."""
 
 
 class TooLargeError(Exception):
@@ -35,9 +37,25 @@ class Quotient:
     denominator: Polynomial
 
 
-@lru_cache(maxsize=512)
 def quotient(expression: Expression) -> Quotient:
-    """The normal form of an expression without ``when``.  Raises TooLargeError."""
+    """The normal form of an expression without ``when``; remembered while a check lasts.  Raises TooLargeError."""
+    work = current()
+    if work is None or not isinstance(expression, Op):
+        return _quotient(expression)
+    spend()
+    if expression not in work.memo:
+        try:
+            work.memo[expression] = _quotient(expression)
+        except TooLargeError as error:
+            work.memo[expression] = error
+    found = work.memo[expression]
+    if isinstance(found, TooLargeError):
+        raise TooLargeError
+    assert isinstance(found, Quotient)
+    return found
+
+
+def _quotient(expression: Expression) -> Quotient:
     if isinstance(expression, Const):
         return Quotient(constant(exact(expression.value)), constant(1))
     if isinstance(expression, Op):
@@ -67,6 +85,7 @@ def polynomial_bound(polynomial: Polynomial, region: Region) -> Interval:
     """
     total = _sum_of_terms(polynomial, region)
     for expression, known in region.known.items():
+        spend(1 + len(polynomial) // 4)
         try:
             other = quotient(expression)
         except TooLargeError:
@@ -81,6 +100,7 @@ def polynomial_bound(polynomial: Polynomial, region: Region) -> Interval:
 
 def add(a: Polynomial, b: Polynomial, scale: Fraction | int = 1) -> Polynomial:
     """``a + scale * b``."""
+    spend(len(b))
     result = dict(a)
     for monomial, coefficient in b.items():
         total = result.get(monomial, Fraction(0)) + scale * coefficient
@@ -95,13 +115,14 @@ def multiply(a: Polynomial, b: Polynomial) -> Polynomial:
     """The product.  Raises TooLargeError."""
     if len(a) * len(b) > _MOST_TERMS * 10:
         raise TooLargeError
+    spend(2 * len(a) * len(b))
     result: Polynomial = {}
     for left, x in a.items():
         for right, y in b.items():
             monomial = _join(left, right)
             result[monomial] = result.get(monomial, Fraction(0)) + x * y
     result = {monomial: coefficient for monomial, coefficient in result.items() if coefficient}
-    if len(result) > _MOST_TERMS:
+    if len(result) > _MOST_TERMS or any(_bits(coefficient) > MOST_BITS for coefficient in result.values()):
         raise TooLargeError
     return result
 
@@ -109,6 +130,7 @@ def multiply(a: Polynomial, b: Polynomial) -> Polynomial:
 def substitute(polynomial: Polynomial, factor: Expression, by: Polynomial) -> Polynomial:
     """The polynomial with ``factor`` replaced.  Raises TooLargeError."""
     result: Polynomial = {}
+    spend(len(polynomial))
     for monomial, coefficient in polynomial.items():
         exponent = next((n for base, n in monomial if base == factor), 0)
         rest = frozenset(pair for pair in monomial if pair[0] != factor)
@@ -174,6 +196,10 @@ def _power(base: Quotient, exponent: int) -> Quotient:
     return Quotient(above, below) if exponent >= 0 else Quotient(below, above)
 
 
+def _bits(number: Fraction) -> int:
+    return number.numerator.bit_length() + number.denominator.bit_length()
+
+
 def _join(a: Monomial, b: Monomial) -> Monomial:
     exponents = dict(a)
     for factor, exponent in b:
@@ -197,6 +223,7 @@ def _ratio(a: Polynomial, b: Polynomial) -> Fraction | None:
 
 def _sum_of_terms(polynomial: Polynomial, region: Region) -> Interval:
     total: Interval = (0.0, 0.0)
+    spend(len(polynomial))
     for monomial, coefficient in polynomial.items():
         term = _point(coefficient)
         for factor, exponent in monomial:

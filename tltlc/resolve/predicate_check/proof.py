@@ -15,6 +15,7 @@ from tltlc.record import record, replace
 from tltlc.resolve.predicate_check.cases import Constraints, size
 from tltlc.resolve.predicate_check.interval import EVERYTHING, Interval, UndefinedError, meet
 from tltlc.resolve.predicate_check.region import Region, bound
+from tltlc.resolve.predicate_check.work import spend
 
 TOLERANCE = 1e-9  # what rounding may add to a value that lies on a bound
 MOST_PARTS = 300
@@ -37,6 +38,7 @@ def unproved(tasks: Sequence[Task], whole: Region) -> list[Task]:
     nodes = sum(size(task.value, _NODES_OF_ALL) for task in tasks)
     parts = max(_FEWEST_PARTS, min(MOST_PARTS, _NODES_OF_ALL // max(1, nodes)))
     left = []
+    spend(nodes // 10)
     for task in tasks:
         region = whole.where(task.constraints)
         if region is not None and not proves_within(task.value, region, task.low, task.high, parts):

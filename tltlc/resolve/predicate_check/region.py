@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import copysign, inf, log1p, sqrt
 
 from tltlc.expression import Const, Expression, Op, Param, Signal
@@ -10,6 +10,7 @@ from tltlc.record import record, replace
 from tltlc.resolve.predicate_check import interval
 from tltlc.resolve.predicate_check.cases import Constraint
 from tltlc.resolve.predicate_check.interval import EVERYTHING, Interval, UndefinedError
+from tltlc.resolve.predicate_check.work import spend
 
 Variable = Signal | Param
 Box = Mapping[Variable, Interval]
@@ -47,11 +48,13 @@ class Region:
     def narrowed(self) -> Region | None:
         """The same points in a box as small as the known bounds allow, or None if they exclude each other."""
         box = dict(self.box)
+        narrowing = _Narrowing(box)
         for _ in range(_ROUNDS if self.known else 0):
             before = dict(box)
+            spend(len(box))
             try:
                 for expression, bounds in self.known.items():
-                    found = _narrow(expression, bounds, box)
+                    found = narrowing.narrow(expression, bounds)
                     if expression in self.nonzero and found == (0.0, 0.0):
                         return None
             except _EmptyError:
@@ -75,6 +78,7 @@ def _with_chains(constraints: Iterable[Constraint]) -> list[Constraint]:
     """The constraints, and ``a - c`` wherever they order a, b and c: the bounds of each alone do not show it."""
     given = list(constraints)
     differences = [c for c in given if isinstance(c.difference, Op) and c.difference.op == "-"]
+    spend(len(differences) * len(differences) // 4)
     for upper in differences:
         for lower in differences:
             (a, b), (also_b, c) = _operands(upper), _operands(lower)
@@ -95,19 +99,28 @@ def bound(expression: Expression, region: Region) -> Interval:
     Raises UndefinedError where the expression may have no value somewhere in the region.
     """
     value = _bound(expression, region)
-    known = region.known.get(expression)
+    known = region.known.get(expression) if region.known else None
     return (interval.meet(value, known) or known) if known else value
 
 
 def _bound(expression: Expression, region: Region) -> Interval:
+    spend()
     if isinstance(expression, Const):
         return expression.value, expression.value
     if isinstance(expression, (Signal, Param)):
         return region.box[expression]
     assert isinstance(expression, Op), "cases have no `when`"
-    args = [bound(arg, region) for arg in expression.args]
+    nonzero = expression.op == "/" and bool(region.nonzero) and expression.args[1] in region.nonzero
+    return _combined(expression, [bound(arg, region) for arg in expression.args], nonzero)
+
+
+def _combined(expression: Op, args: list[Interval], nonzero: bool) -> Interval:
+    """The bounds of an operation from those of its arguments, ``nonzero``: its divisor is not 0.
+
+    Raises UndefinedError where it may have no value.
+    """
     if expression.op == "/":
-        quotient = interval.divide(args[0], args[1], nonzero=expression.args[1] in region.nonzero)
+        quotient = interval.divide(args[0], args[1], nonzero=nonzero)
         return (1.0, 1.0) if expression.args[0] == expression.args[1] else quotient
     if expression.op == "-" and expression.args[0] == expression.args[1]:
         return 0.0, 0.0
@@ -150,58 +163,91 @@ class _EmptyError(Exception):
     """No point of the box satisfies the constraints."""
 
 
-def _narrow(expression: Expression, target: Interval, box: dict[Variable, Interval]) -> Interval:
-    """Shrink the box to where the expression can lie in ``target``; returns what is left of ``target``.
+class _Narrowing:
+    """Shrinks a box to where expressions lie within bounds: forward evaluation, then each operator's inverse (HC4)."""
 
-    Forward evaluation, then each operator's inverse on the way back (the contractor HC4).
-    """
-    left = interval.meet(_loose_bound(expression, box), target)
-    if left is None:
-        raise _EmptyError
-    if isinstance(expression, (Signal, Param)):
-        box[expression] = left
-    elif isinstance(expression, Op):
-        _narrow_args(expression, left, box)
-    return left
+    def __init__(self, box: dict[Variable, Interval]) -> None:
+        self._box = box
+        self._bounds: dict[Op, Interval | None] = {}
+
+    def narrow(self, expression: Expression, target: Interval) -> Interval:
+        """Shrink the box to where the expression can lie in ``target``; returns what is left of ``target``.
+
+        Raises _EmptyError where it can lie there nowhere.
+        """
+        spend()
+        left = interval.meet(self._bound(expression), target)
+        if left is None:
+            raise _EmptyError
+        if isinstance(expression, (Signal, Param)):
+            if self._box[expression] != left:
+                self._box[expression] = left
+                self._bounds.clear()
+        elif isinstance(expression, Op):
+            self._narrow_args(expression, left)
+        return left
+
+    def _narrow_args(self, expression: Op, value: Interval) -> None:
+        op, args = expression.op, expression.args
+        if op == "neg":
+            self.narrow(args[0], interval.negate(value))
+        elif op in ("+", "-") and len(args) == 2:
+            self._narrow_sum(op, args, value)
+        elif op == "*" and len(args) == 2:
+            for one, other in ((args[0], args[1]), (args[1], args[0])):
+                divisor = self._bound(other)
+                if divisor[0] > 0 or divisor[1] < 0:
+                    self.narrow(one, interval.divide(value, divisor))
+        elif op == "/":
+            self.narrow(args[0], interval.multiply(value, self._bound(args[1])))
+        elif op in ("min", "max"):
+            for arg in args:
+                self.narrow(arg, (value[0], inf) if op == "min" else (-inf, value[1]))
+        elif op == "abs":
+            inner = self._bound(args[0])
+            side = value if inner[0] >= 0 else interval.negate(value) if inner[1] <= 0 else (-value[1], value[1])
+            self.narrow(args[0], side)
+        elif op == "sqrt":
+            self.narrow(args[0], interval.power((max(0.0, value[0]), max(0.0, value[1])), (2.0, 2.0)))
+        elif op == "^" and args[1] == Const(2.0):
+            high = interval.root((0.0, max(0.0, value[1])))[1]
+            inner = self._bound(args[0])
+            low = interval.root((max(0.0, value[0]),) * 2)[0] if inner[0] >= 0 else -high
+            self.narrow(args[0], (low, high))
+
+    def _narrow_sum(self, op: str, args: Sequence[Expression], value: Interval) -> None:
+        b = self._bound(args[1])
+        self.narrow(args[0], (interval.subtract if op == "+" else interval.add)(value, b))
+        a = self._bound(args[0])
+        self.narrow(args[1], interval.subtract(value, a) if op == "+" else interval.subtract(a, value))
+
+    def _bound(self, expression: Expression) -> Interval:
+        """The bounds of an expression in the box as it is now, EVERYTHING where it may have no value."""
+        return self._computed(expression) or EVERYTHING
+
+    def _computed(self, expression: Expression) -> Interval | None:
+        if isinstance(expression, Const):
+            return expression.value, expression.value
+        if isinstance(expression, (Signal, Param)):
+            return self._box[expression]
+        assert isinstance(expression, Op), "cases have no `when`"
+        if expression not in self._bounds:
+            spend()
+            self._bounds[expression] = self._of_operation(expression)
+        return self._bounds[expression]
+
+    def _of_operation(self, expression: Op) -> Interval | None:
+        args = [self._computed(arg) for arg in expression.args]
+        try:
+            return _combined(expression, [_defined(arg) for arg in args], nonzero=False)
+        except UndefinedError:
+            return None
 
 
-def _narrow_args(expression: Op, value: Interval, box: dict[Variable, Interval]) -> None:
-    op, args = expression.op, expression.args
-    if op == "neg":
-        _narrow(args[0], interval.negate(value), box)
-    elif op in ("+", "-") and len(args) == 2:
-        a, b = (_loose_bound(arg, box) for arg in args)
-        _narrow(args[0], (interval.subtract if op == "+" else interval.add)(value, b), box)
-        a = _loose_bound(args[0], box)
-        _narrow(args[1], interval.subtract(value, a) if op == "+" else interval.subtract(a, value), box)
-    elif op == "*" and len(args) == 2:
-        for one, other in ((args[0], args[1]), (args[1], args[0])):
-            divisor = _loose_bound(other, box)
-            if divisor[0] > 0 or divisor[1] < 0:
-                _narrow(one, interval.divide(value, divisor), box)
-    elif op == "/":
-        _narrow(args[0], interval.multiply(value, _loose_bound(args[1], box)), box)
-    elif op in ("min", "max"):
-        for arg in args:
-            _narrow(arg, (value[0], inf) if op == "min" else (-inf, value[1]), box)
-    elif op == "abs":
-        inner = _loose_bound(args[0], box)
-        side = value if inner[0] >= 0 else interval.negate(value) if inner[1] <= 0 else (-value[1], value[1])
-        _narrow(args[0], side, box)
-    elif op == "sqrt":
-        _narrow(args[0], interval.power((max(0.0, value[0]), max(0.0, value[1])), (2.0, 2.0)), box)
-    elif op == "^" and args[1] == Const(2.0):
-        high = interval.root((0.0, max(0.0, value[1])))[1]
-        inner = _loose_bound(args[0], box)
-        low = interval.root((max(0.0, value[0]),) * 2)[0] if inner[0] >= 0 else -high
-        _narrow(args[0], (low, high), box)
-
-
-def _loose_bound(expression: Expression, box: Box) -> Interval:
-    try:
-        return bound(expression, Region(box, {}))
-    except UndefinedError:
-        return EVERYTHING
+def _defined(bounds: Interval | None) -> Interval:
+    if bounds is None:
+        raise UndefinedError
+    return bounds
 
 
 def _length(side: Interval) -> float:

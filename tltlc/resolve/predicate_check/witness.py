@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
 from itertools import islice, permutations, product
 from math import inf, isfinite, prod
 
@@ -11,6 +12,7 @@ from tltlc.expression_eval import evaluate
 from tltlc.record import record
 from tltlc.resolve.predicate_check.interval import Interval, midpoint
 from tltlc.resolve.predicate_check.region import Box, Variable
+from tltlc.resolve.predicate_check.work import OutOfWorkError, spend
 
 Point = Mapping[Variable, float]
 
@@ -32,6 +34,7 @@ class Witness:
 
 def value_at(expression: Expression, point: Point) -> Witness:
     """The value of an expression at a point, or what goes wrong there."""
+    spend(_cost(expression) + len(point) // 4)
     signals = {variable.name: value for variable, value in point.items() if isinstance(variable, Signal)}
     params = {variable.name: value for variable, value in point.items() if isinstance(variable, Param)}
     try:
@@ -45,27 +48,37 @@ def value_at(expression: Expression, point: Point) -> Witness:
     return Witness(point, value) if isfinite(value) else Witness(point, None, "is too large to compute")
 
 
+@lru_cache(maxsize=512)
+def _cost(expression: Expression) -> int:
+    """The steps that computing a value counts as."""
+    return 1 + sum(1 for _ in nodes(expression)) // 3
+
+
 def find_outside(
     expression: Expression, box: Box, bools: frozenset[Variable], low: float, high: float
 ) -> Witness | None:
     """A point of the box where the value is missing or clearly outside ``[low, high]``, or None.
 
     Simple points come first; a later point replaces an earlier one only if it is much worse.
-    ``bools`` are the variables that are 0 or 1 and nothing between.
+    ``bools`` are the variables that are 0 or 1 and nothing between.  Raises OutOfWorkError if none is found in time.
     """
 
     def excess(witness: Witness) -> float:
         return inf if witness.value is None else max(low - witness.value, witness.value - high)
 
     best: Witness | None = None
-    for point in points(expression, box, bools):
-        here = value_at(expression, point)
-        if best is None or excess(here) > max(excess(best), 1.5 * excess(best)):
-            best = here
-        if best.value is None:
-            return best
-    if best is not None and excess(best) <= CLEARLY:
-        best = _climb(best, excess, expression, box, bools)
+    try:
+        for point in points(expression, box, bools):
+            here = value_at(expression, point)
+            if best is None or excess(here) > max(excess(best), 1.5 * excess(best)):
+                best = here
+            if best.value is None:
+                return best
+        if best is not None and excess(best) <= CLEARLY:
+            best = _climb(best, excess, expression, box, bools)
+    except OutOfWorkError:
+        if best is None or excess(best) <= CLEARLY:
+            raise
     return best if best is not None and excess(best) > CLEARLY else None
 
 
@@ -73,6 +86,7 @@ def points(expression: Expression, box: Box, bools: frozenset[Variable]) -> Iter
     """Corners and a grid as far as they are few, points where two variables are equal, scattered points."""
     names = list(box)
     extra = tuple(dict.fromkeys(_constants(expression)))
+    spend(_cost(expression) + len(names) * (len(extra) + 20) // 10)
     axes = [_axis(box[name], name in bools, extra) for name in names]
     grid = [dict(zip(names, values, strict=True)) for values in _grid(axes)]
     yield from grid
