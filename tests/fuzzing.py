@@ -22,8 +22,8 @@ SEEDS: Final = st.integers(0, 2**64 - 1)
 
 
 def times(usual: int) -> settings:
-    """So many inputs in `make test`, and a hundred times as many in `make fuzz`."""
-    count = usual if settings.default.derandomize else 100 * usual
+    """So many inputs in `make test`, and thirty times as many in `make fuzz`."""
+    count = usual if settings.default.derandomize else 30 * usual
     return settings(max_examples=count, deadline=None, suppress_health_check=list(HealthCheck))
 
 
