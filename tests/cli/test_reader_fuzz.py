@@ -135,7 +135,7 @@ def test_requests_to_the_playground(seed: int) -> None:
     assert "a bug in tltlc" not in answered
 
 
-@pytest.mark.parametrize("value", {*NUMBERS, *VALUES, *PIECES})
+@pytest.mark.parametrize("value", dict.fromkeys((*NUMBERS, *VALUES, *PIECES)))
 def test_params(value: str) -> None:
     source = SourceFile("it.tltl", f"{LIBRARY.text}spec s = F p\n")
     check(lambda: compile_source(source, CompileOptions(params={"bound": value})))
