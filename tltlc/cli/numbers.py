@@ -7,8 +7,8 @@ from typing import Any, Final, NoReturn
 
 import click
 
-LARGEST: Final = 2**53
-"""Up to here, every reader of JSON holds whole numbers exactly; sums of two fit into 64 bits."""
+LARGEST: Final = 2**62
+"""Sums of two fit into 64 bits."""
 _MOST_DIGITS: Final = 20
 
 

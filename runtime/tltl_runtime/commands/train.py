@@ -17,7 +17,7 @@ from tltl_runtime.commands.workers import WorkersType
 from tltl_runtime.texts import duration, share
 from tltl_runtime.training.choices import Method
 from tltlc.cli import exits
-from tltlc.cli.numbers import FiniteRange, WholeRange
+from tltlc.cli.numbers import WholeRange
 from tltlc.cli.report import Report
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ Watching, from another terminal:
 @click.option(
     "--minutes",
     metavar="M",
-    type=FiniteRange(),
+    type=float,
     callback=_setting("stop", "minutes"),
     help="End after so many minutes of training (0: no limit).",
 )
