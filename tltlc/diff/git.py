@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
@@ -22,11 +21,10 @@ _PLAIN_FILES: Final = (b"100644", b"100755")
 
 @record
 class _File:
-    """A plain file of a revision: the name of its content in git, its path, and its size in bytes."""
+    """A plain file of a revision: the name of its content in git, and its path."""
 
     name: str
     path: str
-    size: int
 
 
 def repository(folder: Path, revision: str) -> Path:
@@ -58,52 +56,66 @@ def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[
         TltlError: TLT0751, git does not give the files; TLT0764, they are more than :data:`tltlc.limits.REVISION`
             allows; TLT0009, a path leads out of the folder; TLT0005, the system refuses to write.
     """
-    files = _wanted(_files(repository, commit), is_wanted, revision)
+    files = _wanted(_files(repository, commit, revision), is_wanted, revision)
+    _check_sizes(repository, files, revision)
     unpack(folder, _contents(repository, files, revision), f"the revision `{revision}`")
 
 
 def _wanted(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: str) -> list[_File]:
     """Those of the files that are wanted; error TLT0764 where they, or all of them, are too many."""
     wanted: list[_File] = []
-    size = 0
     for count, file in enumerate(files):
         if count >= REVISION_PATHS:
             raise _too_large(revision, f"more than {REVISION_PATHS:,} paths")
         if is_wanted(file.path):
             wanted.append(file)
-            size += file.size
-            if len(wanted) > (REVISION.values or 0):
-                raise _too_large(revision, f"more than {REVISION.values:,} specs and artefacts")
-            if size > REVISION.size:
-                raise _too_large(revision, f"more than {REVISION.size >> 20} MiB of specs and artefacts")
+        if len(wanted) > (REVISION.values or 0):
+            raise _too_large(revision, f"more than {REVISION.values:,} specs and artefacts")
     return wanted
 
 
-def _files(repository: Path, commit: str) -> Iterator[_File]:
-    """The plain files of a commit, as git lists them; the caller may stop before the end."""
-    with _listing(repository, commit) as stream:
-        rest = b""
-        while block := stream.read(1 << 16):
-            *lines, rest = (rest + block).split(b"\0")
-            for line in lines:
-                about, _, path = line.partition(b"\t")
-                mode, kind, name, size = about.split()
-                if mode in _PLAIN_FILES and kind == b"blob" and size.isdigit():
-                    yield _File(name.decode(), os.fsdecode(path), int(size))
+def _files(repository: Path, commit: str, revision: str) -> Iterator[_File]:
+    """The plain files of a commit, as git lists them; the caller may stop before the end.
 
-
-@contextmanager
-def _listing(repository: Path, commit: str) -> Iterator[IO[bytes]]:
-    """What git prints of the tree of a commit, while it prints it; git is ended with the block."""
+    Raises TltlError, TLT0751, where git cannot list them all.
+    """
     from subprocess import DEVNULL, PIPE, Popen
 
-    command = ["git", "-C", str(repository), "ls-tree", "-r", "-l", "-z", "--full-tree", commit]
+    command = ["git", "-C", str(repository), "ls-tree", "-r", "-z", "--full-tree", commit]
     with Popen(command, stdin=DEVNULL, stdout=PIPE, stderr=DEVNULL, env=_environment()) as git:
         assert git.stdout is not None
         try:
-            yield git.stdout
-        finally:
+            yield from _listed(git.stdout)
+        except GeneratorExit:
             git.kill()
+            raise
+        if git.wait() != 0:
+            raise _no_version(f"git cannot list the files of the revision `{revision}`", "repair it: `git fsck`")
+
+
+def _listed(stream: IO[bytes]) -> Iterator[_File]:
+    """The plain files in what ``git ls-tree -r -z`` prints."""
+    rest = b""
+    while block := stream.read(1 << 16):
+        *lines, rest = (rest + block).split(b"\0")
+        for line in lines:
+            about, _, path = line.partition(b"\t")
+            mode, kind, name = about.split()
+            if mode in _PLAIN_FILES and kind == b"blob":
+                yield _File(name.decode(), os.fsdecode(path))
+
+
+def _check_sizes(repository: Path, files: Sequence[_File], revision: str) -> None:
+    """Error TLT0751 where git lacks the content of a file, TLT0764 where they are too large together."""
+    given = "".join(f"{file.name}\n" for file in files).encode()
+    lines = (_run(repository, "cat-file", "--batch-check=%(objectsize)", given=given) or b"").splitlines()
+    for file, line in zip(files, lines, strict=False):
+        if not line.isdigit():
+            raise _not_given(file, revision)
+    if len(lines) < len(files):
+        raise _not_given(files[len(lines)], revision)
+    if sum(map(int, lines)) > REVISION.size:
+        raise _too_large(revision, f"more than {REVISION.size >> 20} MiB of specs and artefacts")
 
 
 def _contents(repository: Path, files: Sequence[_File], revision: str) -> Iterator[tuple[str, bytes]]:
@@ -115,10 +127,14 @@ def _contents(repository: Path, files: Sequence[_File], revision: str) -> Iterat
         end = contents.find(b"\n", start)
         header = contents[start:end].split()
         if end < 0 or len(header) != 3:
-            raise _no_version(f"git does not give `{file.path}` of the revision `{revision}`", "fetch it: `git fetch`")
+            raise _not_given(file, revision)
         size = int(header[2])
         yield file.path, contents[end + 1 : end + 1 + size]
         start = end + size + 2
+
+
+def _not_given(file: _File, revision: str) -> TltlError:
+    return _no_version(f"git does not give `{file.path}` of the revision `{revision}`", "fetch it: `git fetch`")
 
 
 def _run(folder: Path, *arguments: str, given: bytes = b"") -> bytes | None:

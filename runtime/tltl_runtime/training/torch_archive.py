@@ -25,6 +25,12 @@ _GLOBALS: Final = {
 }
 """The classes and functions that a file of plain data and tensors names."""
 _PICKLE: Final = "data.pkl"
+_MARK, _TUPLE, _ORDERED, _OTHER = "mark", "tuple", "class OrderedDict", "other"
+"""The kinds of values on the stack of a pickle; an empty tuple is another value."""
+_PROTOCOL: Final = 2
+"""That of the pickles which ``torch.save`` writes."""
+_OPCODES: Final = 20
+"""More operations of a pickle than any value or tensor takes."""
 
 
 class TorchArchiveError(ValueError):
@@ -36,9 +42,9 @@ def read_torch(data: bytes) -> Any:
 
     Raises TorchArchiveError where the bytes are something else, are damaged, or pass :data:`tltlc.limits.CHECKPOINT`.
     """
-    _check_archive(data)
+    stored = _checked(data)
     try:
-        content = torch.load(BytesIO(data), map_location="cpu", weights_only=True)
+        content = torch.load(BytesIO(stored), map_location="cpu", weights_only=True)
     except Exception as error:
         # torch raises exceptions of many classes for files that it does not understand.
         raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
@@ -46,8 +52,11 @@ def read_torch(data: bytes) -> Any:
     return content
 
 
-def _check_archive(data: bytes) -> None:
-    """Check the members of the archive: stored as they are, whole, and with no call but those of plain data."""
+def _checked(data: bytes) -> bytes:
+    """The same archive, its members checked: stored as they are, whole, and with no call but those of plain data.
+
+    It is written anew, since a hostile archive can show other members to torch than to Python.
+    """
     # torch reads a file that begins otherwise as its older format, whatever archive follows.
     if not data.startswith(b"PK\x03\x04"):
         raise TorchArchiveError("it is damaged, or no checkpoint (BadZipFile)")
@@ -60,9 +69,11 @@ def _check_archive(data: bytes) -> None:
                 raise TorchArchiveError("its parts are larger than the file")
             if archive.testzip():
                 raise TorchArchiveError("it is damaged")
-            pickles = [archive.read(member) for member in members if member.filename.rpartition("/")[2] == _PICKLE]
-        for pickled in pickles:
-            _check_calls(pickled)
+            contents = {member.filename: archive.read(member) for member in members}
+        for name, content in contents.items():
+            if name.rpartition("/")[2] == _PICKLE:
+                _check_calls(content)
+        return _archive(contents)
     except TorchArchiveError:
         raise
     except Exception as error:
@@ -70,13 +81,65 @@ def _check_archive(data: bytes) -> None:
         raise TorchArchiveError(f"it is damaged, or no checkpoint ({type(error).__name__})") from None
 
 
+def _archive(contents: Mapping[str, bytes]) -> bytes:
+    archive = BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as members:
+        for name, content in contents.items():
+            members.writestr(name, content)
+    return archive.getvalue()
+
+
 def _check_calls(pickled: bytes) -> None:
-    """Refuse a pickle that names any class or function but those of plain data and tensors."""
-    for opcode, argument, _ in pickletools.genops(pickled):
+    """Refuse a pickle that is too long, or does more than make plain data and tensors.
+
+    Keys of dicts must be no tuples: tuples that hold each other twice take a time that doubles with each level to hash.
+    """
+    stack: list[str] = []
+    memo: dict[int, str] = {}
+    for count, (opcode, argument, _) in enumerate(pickletools.genops(pickled)):
+        if count > _OPCODES * (CHECKPOINT.values or 0):
+            raise TorchArchiveError(f"it holds more than {CHECKPOINT.values:,} values")
+        if opcode.proto > _PROTOCOL or opcode.name in ("INST", "OBJ", "EXT1", "EXT2", "EXT4"):
+            raise TorchArchiveError("it holds more than plain data")
         if opcode.name == "GLOBAL" and argument not in _GLOBALS:
             raise TorchArchiveError(f"it holds more than plain data: {argument:.60}")
-        if opcode.name in ("STACK_GLOBAL", "INST", "EXT1", "EXT2", "EXT4"):
-            raise TorchArchiveError("it holds more than plain data")
+        taken = _taken(stack, opcode)
+        keys = taken[1::2] if opcode.name in ("SETITEM", "SETITEMS") else []
+        if _TUPLE in keys or (opcode.name == "REDUCE" and taken == [_ORDERED, _TUPLE]):
+            raise TorchArchiveError("a key in it is no text and no number")
+        if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
+            memo[int(str(argument))] = stack[-1]
+        elif opcode.name in ("BINGET", "LONG_BINGET", "GET"):
+            stack.append(memo[int(str(argument))])
+        else:
+            stack += _given(opcode, argument)
+
+
+def _taken(stack: list[str], opcode: pickletools.OpcodeInfo) -> list[str]:
+    """The kinds of the values that an operation takes from the stack, without the mark below them."""
+    if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
+        return []
+    count = len(opcode.stack_before)
+    if pickletools.markobject in opcode.stack_before:
+        below = opcode.stack_before.index(pickletools.markobject)
+        mark = len(stack) - 1 - stack[::-1].index(_MARK)
+        taken = [*stack[mark - below : mark], *stack[mark + 1 :]]
+        del stack[mark - below :]
+        return taken
+    taken = stack[len(stack) - count :]
+    del stack[len(stack) - count :]
+    return taken
+
+
+def _given(opcode: pickletools.OpcodeInfo, argument: object) -> list[str]:
+    """The kinds of the values that an operation puts onto the stack."""
+    if opcode.name == "MARK":
+        return [_MARK]
+    if opcode.name in ("TUPLE", "TUPLE1", "TUPLE2", "TUPLE3"):
+        return [_TUPLE]
+    if argument == "collections OrderedDict" and opcode.name == "GLOBAL":
+        return [_ORDERED]
+    return [_OTHER] * len(opcode.stack_after)
 
 
 def _check_values(content: object) -> None:

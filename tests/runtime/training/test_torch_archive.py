@@ -14,7 +14,9 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tltl_runtime.training import torch_archive
 from tltl_runtime.training.torch_archive import TorchArchiveError, read_torch
+from tltlc.limits import Limit
 
 
 def saved(value: object) -> bytes:
@@ -84,6 +86,41 @@ def test_a_value_that_nests_too_deep_is_refused() -> None:
         value = [value]
     with pytest.raises(TorchArchiveError, match="nests deeper than 32 levels"):
         read_torch(saved(value))
+
+
+@pytest.mark.parametrize(
+    "pickled",
+    [
+        b"\x80\x02}" + b")q\x00" + b"h\x00\x86q\x00".join([b"h\x00"] * 60) + b"K\x01s.",
+        b"\x80\x02ccollections\nOrderedDict\n])K\x01\x86a\x85R.",
+    ],
+    ids=["dict", "ordered dict"],
+)
+def test_keys_that_take_for_ever_to_hash_are_refused(pickled: bytes) -> None:
+    data = repacked(saved({}), lambda name, content: pickled if name.endswith("data.pkl") else content)
+    with pytest.raises(TorchArchiveError, match="no text and no number"):
+        read_torch(data)
+
+
+def test_more_operations_than_any_checkpoint_takes_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(torch_archive, "CHECKPOINT", Limit(size=1 << 20, depth=32, values=10))
+    with pytest.raises(TorchArchiveError, match="more than 10 values"):
+        read_torch(saved([None] * 1000))
+
+
+def test_torch_reads_the_members_that_were_checked() -> None:
+    """Python's reader finds the table of contents before the end, torch's where the last record says."""
+    good, bad = saved(torch.zeros(10)), repacked(saved(torch.ones(1000)), lambda _, c: c, zipfile.ZIP_DEFLATED)
+    start, end = bad.rindex(b"PK\x05\x06"), good.rindex(b"PK\x05\x06")
+    where = int.from_bytes(bad[start + 16 : start + 20], "little")
+    record = bytearray(good[end:])
+    record[16:20] = where.to_bytes(4, "little")
+    mixed = bad[:start] + good[:end] + bytes(record)
+    try:
+        found = read_torch(mixed)
+    except TorchArchiveError:
+        return
+    assert torch.equal(found, torch.zeros(10))
 
 
 def test_members_that_overlap_are_refused() -> None:
