@@ -45,7 +45,7 @@ def kill(client: Client) -> None:
 
 ENDS = [(shut_down, 0), (leave, 1), (hang_up, 1)]
 if os.name == "posix":
-    ENDS += [(interrupt, 130), (terminate, -signal.SIGTERM), (kill, -signal.SIGKILL)]
+    ENDS += [(interrupt, 130), (terminate, 128 + signal.SIGTERM), (kill, -signal.SIGKILL)]
 
 
 @pytest.mark.parametrize("busy", [False, True], ids=["idle", "busy"])
