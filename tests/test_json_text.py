@@ -42,6 +42,15 @@ def test_deep_nesting_is_refused(opening: str) -> None:
         loads(opening * 100_000, SMALL)
 
 
+@pytest.mark.parametrize("opening", ["[", '{"a":'])
+def test_nesting_is_counted_in_levels(opening: str) -> None:
+    closing = "]" if opening == "[" else "}"
+    limit = Limit(size=1, depth=5, values=10)
+    loads(opening * 5 + "0" + closing * 5, limit)
+    with pytest.raises(JsonLimitError, match="deeper than 5 levels"):
+        loads(opening * 6 + "0" + closing * 6, limit)
+
+
 def test_a_large_file_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "x.json"
     path.write_text(" " * 99 + "1")

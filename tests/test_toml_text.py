@@ -47,6 +47,8 @@ BOMBS = {
     "inline tables": "a = " + "{ a = " * 33 + "1" + " }" * 33,
     "a dotted key inside lists": "a = " + "[" * 20 + "{ " + ".".join("a" * 13) + " = 1 }" + "]" * 20,
     "many keys": "".join(f"a{number}=1\n" for number in range(TOML.values + 1)),
+    "many tables": "[[a]]\n" * (TOML.values // 2 + 1),
+    "many headers": "".join(f"[{number}]\n" for number in range(TOML.values + 1)),
     "a long list": "a = [" + "1," * TOML.values + "]",
 }
 

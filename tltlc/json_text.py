@@ -25,7 +25,7 @@ def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] 
     a float of a large one, or to read thousands of digits, fails.
 
     Raises:
-        JsonLimitError: it nests deeper than Python can read, or holds more values than ``limit`` allows.
+        JsonLimitError: it nests deeper, or holds more values, than ``limit`` allows.
         json.JSONDecodeError: it is not JSON.
         ValueError: it is not UTF-8.
         TypeError: it is no text.
@@ -35,9 +35,12 @@ def loads(text: str | bytes, limit: Limit, parse_constant: Callable[[str], Any] 
     if limit.values is not None and commas >= limit.values:
         raise JsonLimitError(f"it holds more than {limit.values:,} values")
     try:
-        return json.loads(text, parse_int=_whole_number, parse_constant=parse_constant)
+        value = json.loads(text, parse_int=_whole_number, parse_constant=parse_constant)
     except RecursionError:
         raise JsonLimitError("it nests too deep") from None
+    if limit.depth is not None and _nests_deeper(value, limit.depth):
+        raise JsonLimitError(f"it nests deeper than {limit.depth} levels")
+    return value
 
 
 def load(path: Path, limit: Limit) -> Any:
@@ -47,6 +50,17 @@ def load(path: Path, limit: Limit) -> Any:
     if len(data) > limit.size:
         raise JsonLimitError(f"it is larger than {limit.size >> 20} MiB")
     return loads(data, limit)
+
+
+def _nests_deeper(value: Any, depth: int) -> bool:
+    """Whether lists and objects stand in each other more than ``depth`` levels deep; takes no recursion."""
+    level = [value] if isinstance(value, (dict, list)) else []
+    for _ in range(depth):
+        if not level:
+            return False
+        parts = (outer.values() if isinstance(outer, dict) else outer for outer in level)
+        level = [inner for part in parts for inner in part if isinstance(inner, (dict, list))]
+    return bool(level)
 
 
 def _whole_number(digits: str) -> int | float:

@@ -17,7 +17,9 @@ from typing import IO, Final
 
 from tltlc.locking import try_lock
 
-_LOCK: Final = re.compile(r"(\.tltlc-[0-9]{1,20}-[0-9a-f]{16})\.lock")
+_NAME: Final = re.compile(r"(\.tltlc-[0-9]{1,20}-[0-9a-f]{16})(?:(\.lock)|-[0-9]+(?:\.[^.]+)?)")
+_MOST_LOCKS: Final = 200
+"""Lock files of others that one write looks at; what is left waits for the next one."""
 _ATTEMPTS: Final = 100
 """To get a lock file before another process that cleans up removes it; each failure takes such a process."""
 
@@ -72,10 +74,14 @@ def remove_abandoned(folder: Path) -> None:
     Only regular files with names of our own are touched, and no link is followed.
     """
     with suppress(OSError):
-        names = [entry.name for entry in os.scandir(folder) if entry.name.startswith(".tltlc-")]
-        for found in filter(None, map(_LOCK.fullmatch, names)):
+        names = list(filter(None, (_NAME.fullmatch(entry.name) for entry in os.scandir(folder))))
+        temporary: dict[str, list[str]] = {}
+        for name in names:
+            if not name[2]:
+                temporary.setdefault(name[1], []).append(name[0])
+        for lock in [name for name in names if name[2]][:_MOST_LOCKS]:
             with suppress(OSError):
-                _remove_of(folder, found[1], names)
+                _remove_of(folder, lock[1], temporary.get(lock[1], []))
 
 
 def _remove_of(folder: Path, beginning: str, names: list[str]) -> None:
@@ -88,7 +94,7 @@ def _remove_of(folder: Path, beginning: str, names: list[str]) -> None:
         return
     try:
         for name in names:
-            if re.fullmatch(rf"{re.escape(beginning)}-[0-9]+(\.[A-Za-z0-9]+)?", name) and _is_file(folder / name):
+            if _is_file(folder / name):
                 (folder / name).unlink(missing_ok=True)
     except BaseException:
         file.close()

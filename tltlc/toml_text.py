@@ -65,8 +65,9 @@ def _fits(value: object) -> bool:
 
 
 def _too_large(source: SourceFile, code: str) -> TltlError:
-    found = next((each for each in _MANY_DIGITS.finditer(source.text) if not _is_whole_number(each[0])), None)
-    label = (Label(source, Span(*found.span()), "this whole number"),) if found else ()
+    numbers = [match for match in _MANY_DIGITS.finditer(source.text) if not _is_whole_number(match[0])]
+    # One in a comment or a string looks the same: where there are several, none is named.
+    label = (Label(source, Span(*numbers[0].span()), "this whole number"),) if len(numbers) == 1 else ()
     title = f"`{source.name}` is not TOML: a whole number is too large"
     help_ = f"whole numbers end at {_WHOLE_NUMBERS[-1]:,}; write a larger number with an exponent, as in 1e20"
     return TltlError([Diagnostic(code, title, label, help_)])
@@ -88,6 +89,7 @@ def _check_limits(source: SourceFile) -> None:
         kind = token.lastgroup
         if kind == "open":
             depth += 1
+            values += 1
         elif kind == "close":
             depth = max(0, depth - 1)
         elif kind == "value":

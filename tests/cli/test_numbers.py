@@ -30,9 +30,7 @@ def test_every_option_refuses_what_is_too_large(command: str, parameter: click.P
 def test_whole_numbers() -> None:
     assert WholeRange().convert(str(LARGEST), None, None) == LARGEST
     assert WholeRange().convert("0" * 30 + "7", None, None) == 7
-    with pytest.raises(
-        click.BadParameter, match=r"`9{20}…` is too large: whole numbers end at 4,611,686,018,427,387,904"
-    ):
+    with pytest.raises(click.BadParameter, match=r"`9{20}…` is out of range: whole numbers go from -4,611,"):
         WholeRange().convert("9" * 21, None, None)
     with pytest.raises(click.BadParameter, match="is not in the range x>=1"):
         WholeRange(min=1).convert("0", None, None)

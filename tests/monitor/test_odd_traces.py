@@ -46,6 +46,8 @@ OBJECTS: Mapping[str, Odd] = {
     "no-break space": _bad('\u00a0{"x": 0.5, "seen": 1}'.encode()),
     "no-break space first": Odd('\u00a0{"x": 0.5, "seen": 1}'.encode(), line=1),
     "other keys": _object(b'{"x": 0.5, "seen": 1, "note": "\\u00e9\\n", "inner": {"x": [1, {"seen": null}]}, "": 1}'),
+    "a carriage return alone": _bad(b'{"x": 0.5,\r "seen": 1}'),
+    "two carriage returns": _bad(b'{"x": 0.5, "seen": 1}\r\r'),
     "a key twice": _bad(b'{"x": 0.5, "seen": 1, "x": 0.5}'),
     "another key twice": _bad(b'{"x": 0.5, "seen": 1, "a": 1, "a": 1}'),
     "an inner key twice": _bad(b'{"x": 0.5, "seen": 1, "a": {"b": 1, "b": 1}}'),

@@ -36,14 +36,6 @@ def statuses(answers: bytes) -> list[int]:
     return found
 
 
-def exchanged(server: Server, data: bytes) -> list[int]:
-    """The statuses that some bytes are answered with, if nothing more is sent."""
-    with connected(server) as connection:
-        connection.sendall(data)
-        connection.shutdown(socket.SHUT_WR)
-        return statuses(read_to_end(connection))
-
-
 def refused(server: Server, data: bytes) -> list[int]:
     """The same where the server is to hang up by itself."""
     with connected(server) as connection:

@@ -145,7 +145,7 @@ def test_who_does_not_read_its_answer_is_left() -> None:
         server.page.files["main.js"] = b"a" * (64 << 20)
         with connected(server) as connection:
             connection.sendall(b"GET /main.js HTTP/1.1\r\nHost: localhost\r\n\r\n")
-            assert eventually(lambda: len(server.open) == 1)
+            assert connection.recv(1)
             assert eventually(lambda: len(server.open) == 0)
 
 

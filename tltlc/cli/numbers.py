@@ -23,12 +23,12 @@ class WholeRange(click.IntRange):
         if len(digits) > _MOST_DIGITS and digits.isdecimal():
             self._fail(f"{text[:_MOST_DIGITS]}…", param, ctx)
         number = super().convert(value, param, ctx)
-        if number > LARGEST:
+        if abs(number) > LARGEST:
             self._fail(text, param, ctx)
         return number
 
     def _fail(self, shown: str, param: click.Parameter | None, ctx: click.Context | None) -> NoReturn:
-        self.fail(f"`{shown}` is too large: whole numbers end at {LARGEST:,}", param, ctx)
+        self.fail(f"`{shown}` is out of range: whole numbers go from -{LARGEST:,} to {LARGEST:,}", param, ctx)
 
 
 class FiniteRange(click.FloatRange):

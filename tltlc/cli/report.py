@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable
+from contextlib import suppress
 from types import TracebackType
 from typing import TextIO
 
@@ -31,16 +32,19 @@ class Report:
         """Show (or keep for the end) what was found."""
         new = tuple(each for each in dict.fromkeys(diagnostics) if each not in self.found)
         if self.format == "text":
-            if self.found and new:
-                print(file=sys.stderr)
-            show(new, "text", sys.stderr)
+            # A full standard error changes no verdict.
+            with suppress(OSError):
+                if self.found and new:
+                    print(file=sys.stderr)
+                show(new, "text", sys.stderr)
         self.found.update(dict.fromkeys(new))
         self.status = max(self.status, exits.status_of(new))
 
     def say(self, text: str) -> None:
         """Narration: a line on standard error, only beside diagnostics for people."""
         if self.format == "text":
-            print(text, file=sys.stderr)
+            with suppress(OSError):
+                print(text, file=sys.stderr, flush=True)
 
     def __enter__(self) -> Report:
         return self

@@ -232,6 +232,8 @@ def _object(line: str, lines: Lines) -> dict[str, Any]:
     try:
         if line.count(",") >= TRACE_LINE.values:
             raise _BadObjectError(f"this holds more than {TRACE_LINE.values:,} values")
+        if "\r" in line.removesuffix("\r"):
+            raise _BadObjectError("a carriage return stands alone")
         # Whole numbers may have more digits than Python's own reading takes.
         found = json.loads(line, parse_int=float, object_pairs_hook=_with_keys_once)
         if line.count("{") + line.count("[") > TRACE_LINE.depth and _depth(found) > TRACE_LINE.depth:

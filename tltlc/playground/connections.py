@@ -74,11 +74,14 @@ class Open:
         return True
 
     def make_room(self) -> bool:
-        """Close the connection that matters least, unless all of them wait for their answers."""
-        others = [each for each in self._all if each.doing is not Doing.ANSWERING]
+        """Close the connection that matters least.
+
+        None gives way that waits for its answer, or sends the body of a request whose head was good.
+        """
+        others = [connection for connection in self._all if connection.gives_way]
         if not others:
             return False
-        min(others, key=lambda each: (each.doing.value, each.since)).abort()
+        min(others, key=lambda connection: (connection.doing.value, connection.since)).abort()
         return True
 
     def remove(self, connection: Connection) -> None:
@@ -105,6 +108,12 @@ class Connection(asyncio.Protocol):
         self._timer: asyncio.TimerHandle | None = None
         self._task: asyncio.Task[None] | None = None
         self._closes = False
+
+    @property
+    def gives_way(self) -> bool:
+        """Whether it may be closed for a new one."""
+        is_sending = self.doing is Doing.READING and self._head is not None
+        return not is_sending and self.doing is not Doing.ANSWERING
 
     # --- what asyncio calls -------------------------------------------------------------------
 
