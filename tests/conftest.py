@@ -7,12 +7,13 @@ import shutil
 import signal
 import tempfile
 
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
-# How long an example takes says more of what else the machine does than of the code.
-settings.register_profile("fuzz", deadline=None, print_blob=True)
+# How long an example takes, or how long it takes to draw, says more of what else the machine does than of the code.
+settings.register_profile("any", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("fuzz", settings.get_profile("any"), print_blob=True)
 # The same examples in every run, so that a change is judged by what it changes; `make fuzz` draws others.
-settings.register_profile("tests", deadline=None, derandomize=True)
+settings.register_profile("tests", settings.get_profile("any"), derandomize=True)
 settings.load_profile("tests")
 
 LEFT_OUT = (

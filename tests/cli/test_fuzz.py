@@ -22,7 +22,9 @@ WORDS_OF_THE_LANGUAGE = (
     "3 m s % Hz steps inf true near alive s1 s2 exit within for after next eventually always /// //"
 )
 WORDS = [*WORDS_OF_THE_LANGUAGE.split(), "\n", '"', "\\", "\0", "é", "𝒰", "◇", "□", "∧"]
-EACH = settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+EACH = settings(
+    deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+)
 
 
 @st.composite

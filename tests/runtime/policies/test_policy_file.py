@@ -278,7 +278,9 @@ def test_tensors_that_overlap_or_lie_outside_are_refused(policy: Policy, offsets
     assert "TLT0840" in refused(with_header(json.dumps(header).encode(), rest))
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+)
 @given(data=st.data())
 def test_a_byte_that_changed_is_refused_or_another_policy_at_the_worst(policy: Policy, data: st.DataObject) -> None:
     written = bytearray(to_bytes(policy))
