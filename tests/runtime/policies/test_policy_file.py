@@ -282,7 +282,7 @@ def test_tensors_that_overlap_or_lie_outside_are_refused(policy: Policy, offsets
     max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
 )
 @given(data=st.data())
-def test_a_byte_that_changed_is_refused_or_another_policy_at_the_worst(policy: Policy, data: st.DataObject) -> None:
+def test_a_changed_byte_is_refused_or_gives_another_policy(policy: Policy, data: st.DataObject) -> None:
     written = bytearray(to_bytes(policy))
     length = 8 + int.from_bytes(written[:8], "little")
     place = data.draw(st.one_of(st.integers(0, length - 1), st.integers(0, len(written) - 1)))
