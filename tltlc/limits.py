@@ -113,6 +113,11 @@ WORK: Final[Mapping[str, int]] = {
     "checks of all predicates": 1_500_000,
     "arithmetic of all atoms": 200_000,
     "guard literals": 1_500_000,
+    "states of parts": 150_000,
+    "states of blamed parts": 40_000,
+    "edges": 1_000_000,
+    "partial products": 20_000_000,
+    "label nodes": 6_000_000,
 }
 """How many steps a checker may take, by what it counts."""
 

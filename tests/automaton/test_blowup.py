@@ -12,6 +12,7 @@ from tests.reference_formulas import read_formula
 from tltlc.automaton import blowup
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.limits import WORK
 from tltlc.logic.formula import Formula, and_, atom, eventually, next_, until, weak_next
 from tltlc.record import replace
 from tltlc.resolve.spec import Part, Spec
@@ -40,6 +41,35 @@ def test_the_budget_names_the_part_that_is_too_large() -> None:
 def test_parts_that_are_large_only_together_are_named_together() -> None:
     found = error(with_parts(*(eventually(atom(f"a{i}")) for i in range(8))), 100).diagnostics[0]
     assert [label.message for label in found.labels] == ["2 states alone; the parts multiply"] * 3
+
+
+def test_parts_are_looked_at_until_one_is_too_large_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    large = read_formula("G(a -> X X X X X X X X X X X X b)")
+    looked = looked_at(monkeypatch)
+    found = error(with_parts(read_formula("F c"), large, *(eventually(atom(f"a{i}")) for i in range(9))), 3_000)
+    assert [label.span for label in found.diagnostics[0].labels] == [Span(1, 2)]
+    assert looked == [Span(0, 1), Span(1, 2)]
+
+
+def test_of_very_many_parts_some_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(WORK, "states of blamed parts", 7)
+    looked = looked_at(monkeypatch)
+    found = error(with_parts(*(eventually(atom(f"a{i}")) for i in range(30))), 100).diagnostics[0]
+    assert [label.message for label in found.labels] == ["2 states alone; the parts multiply"] * 3
+    assert len(looked) == 4
+
+
+def looked_at(monkeypatch: pytest.MonkeyPatch) -> list[Span]:
+    """The parts whose own automata are made, as that happens."""
+    looked: list[Span] = []
+    size = blowup._size
+
+    def counted(part: Part, spec: Spec) -> blowup.Size | None:
+        looked.append(part.span)
+        return size(part, spec)
+
+    monkeypatch.setattr(blowup, "_size", counted)
+    return looked
 
 
 def test_the_budget_is_exact() -> None:

@@ -199,6 +199,9 @@ def test_limits() -> None:
         [DEFAULT_STATE_BUDGET],
         [PRIME_LIMIT],
         [TOTAL_PRIME_LIMIT],
+        [WORK["edges"]],
+        [WORK["states of parts"]],
+        [WORK["label nodes"]],
     ]
     assert {row[2] for row in rows("Limits")} <= set(codes())
 

@@ -9,9 +9,11 @@ from typing import Final, NamedTuple
 
 from tltlc.automaton.diagrams import Diagrams, OutOfSteps
 from tltlc.automaton.guards import TooManyPrimes
+from tltlc.automaton.labels import LabelsTooLong
 from tltlc.automaton.machine import OutOfStates, machine
 from tltlc.automaton.successors import Successors
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.limits import WORK
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.resolve.spec import Part, Spec
 
@@ -42,11 +44,24 @@ def recursion_room() -> Iterator[None]:
 def blow_up(spec: Spec, reason: Exception, state_budget: int) -> TltlError:
     """The error for a spec whose automaton outgrew a budget: TLT0501 (states) or TLT0502 (prime implicants)."""
     too_large = f"needs more than {state_budget} states" if isinstance(reason, OutOfStates) else why(reason)
-    return blamed(spec, reason, too_large, _size)
+    left = WORK["states of blamed parts"]
+
+    def size(part: Part, spec: Spec) -> Size | None:
+        nonlocal left
+        if left < 0:
+            # The parts that were looked at are more than a message names.
+            return Size(0, "")
+        found = _size(part, spec)
+        left -= found.number if found else 0
+        return found
+
+    return blamed(spec, reason, too_large, size)
 
 
 def why(reason: Exception) -> str:
     """What is the matter with the automaton where no budget of states or work is spent."""
+    if isinstance(reason, LabelsTooLong):
+        return f"needs labels of more than {WORK['label nodes']} operators and atoms"
     return "needs formulas that nest too deeply" if isinstance(reason, RecursionError) else "needs too much memory"
 
 
@@ -58,23 +73,35 @@ def blamed(
     ``too_large`` says what is the matter with the automaton where it is none of its guards; ``size`` is None of a part
     that is too large alone.
     """
-    sizes = {part: size(part, spec) for part in spec.parts}
-    alone = [part for part, found in sizes.items() if found is None]
+    sizes: dict[Part, Size | None] = {}
+    alone: list[Part] = []
+    for part in spec.parts:
+        sizes[part] = size(part, spec)
+        if sizes[part] is None:
+            # The first part that is too large alone is the one to blame.
+            alone.append(part)
+            break
     worst = sorted(((part, found) for part, found in sizes.items() if found), key=lambda each: -each[1].number)
     if not sizes:
         labels: tuple[Label, ...] = (Label(spec.source, spec.name_span),)
-    elif alone or len(sizes) == 1:
+    elif alone or len(spec.parts) == 1:
         labels = (_cause(next(iter(alone or sizes))),)
     else:
         labels = tuple(
             Label(part.source, part.span, f"{found.words} alone; the parts multiply") for part, found in worst[:3]
         )
     if isinstance(reason, TooManyPrimes):
-        verb = "has" if reason.whose == "a guard" else "have"
-        title = f"{reason.whose} of `{spec.name}` {verb} more than {reason.limit} prime implicants"
-        return TltlError([Diagnostic("TLT0502", title, labels, "split the spec, or name the condition as a predicate")])
+        return TltlError([Diagnostic("TLT0502", reason.title(spec.name), labels, _fewer_guards(spec, reason))])
     title = f"the automaton of `{spec.name}` {too_large}"
     return TltlError([Diagnostic("TLT0501", title, labels, advice)])
+
+
+def _fewer_guards(spec: Spec, reason: TooManyPrimes) -> str:
+    """What makes guards smaller, or fewer."""
+    if reason.whose == "a guard":
+        return "split the spec, or name the condition as a predicate"
+    order = "give the goals an order, or split the spec"
+    return order if spec.exclusive else f"declare atoms that never hold together `exclusive`, {order}"
 
 
 def _cause(part: Part) -> Label:

@@ -13,10 +13,11 @@ from tltlc.automaton.composition import minimal_machine as compose
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfSteps
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
-from tltlc.automaton.labels import Labels
+from tltlc.automaton.labels import Labels, LabelsTooLong
 from tltlc.automaton.machine import Machine, OutOfStates
 from tltlc.automaton.successors import Successors
 from tltlc.expression import Signal as SignalValue
+from tltlc.limits import WORK
 from tltlc.logic.bounded import bounded, with_bounds
 from tltlc.logic.formula import Formula, rebuild
 from tltlc.logic.normal_form import negation_normal_form
@@ -34,13 +35,13 @@ def build(spec: Spec, *, state_budget: int = DEFAULT_STATE_BUDGET) -> Fspa:
     """The minimal complete automaton of a specification over finite traces (semantics, section 3).
 
     Raises :class:`~tltlc.diagnostics.diagnostic.TltlError`: TLT0501 where more than ``state_budget``
-    states are needed on the way, TLT0502 where a guard has too many prime implicants; both name the
-    part of the spec that is to blame.
+    states are needed on the way, or labels get too long, TLT0502 where there are too many edges or prime
+    implicants; both name the part of the spec that is to blame.
     """
     with recursion_room():
         try:
             return _build(spec, state_budget)
-        except (OutOfStates, OutOfSteps, TooManyPrimes, RecursionError) as reason:
+        except (OutOfStates, OutOfSteps, TooManyPrimes, LabelsTooLong, RecursionError) as reason:
             raise blow_up(spec, reason, state_budget) from None
 
 
@@ -64,10 +65,7 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
     names = [atom.name for atom in spec.atoms]
     successors, minimal, allowed = minimal_machine(spec.formula, names, state_budget, spec.exclusive)
     diagrams = successors.diagrams
-    targets = {
-        leaf: [target for target in diagrams.leaves(minimal.transitions[diagrams.low[leaf]]) if target != IMPOSSIBLE]
-        for leaf in state_leaves(minimal, diagrams)
-    }
+    targets = _targets(minimal, diagrams)
     distance = distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
     order = breadth_first(next(iter(targets)), targets, distance)
     verdict = verdicts(targets, distance, accepting=lambda leaf: diagrams.high[leaf] == 1)
@@ -162,6 +160,22 @@ def state_leaves(minimal: Machine, diagrams: Diagrams) -> list[int]:
     return [initial, *(leaf for leaf in reached if leaf not in (initial, IMPOSSIBLE))]
 
 
+def _targets(minimal: Machine, diagrams: Diagrams) -> dict[int, list[int]]:
+    """The states that each state leads to, the initial state first; one edge goes to each.
+
+    Raises :class:`TooManyPrimes` where these are more edges than a spec may have.
+    """
+    found: dict[int, list[int]] = {}
+    left = WORK["edges"]
+    for leaf in state_leaves(minimal, diagrams):
+        reached = diagrams.leaves(minimal.transitions[diagrams.low[leaf]])
+        found[leaf] = [target for target in reached if target != IMPOSSIBLE]
+        left -= len(found[leaf])
+        if left < 0:
+            raise TooManyPrimes("the automaton", WORK["edges"], "edges")
+    return found
+
+
 def distances(targets: Mapping[int, list[int]], accepting: Callable[[int], bool]) -> dict[int, int | None]:
     """The least number of transitions to an accepting state, None for traps: backward breadth-first search."""
     sources: dict[int, list[int]] = {state: [] for state in targets}
@@ -232,14 +246,22 @@ def _edges(order: Sequence[int], minimal: Machine, guards: Guards, diagrams: Dia
 def _labels(
     source: Formula, successors: Successors, minimal: Machine, order: Sequence[int], allowed: int
 ) -> dict[int, Text]:
-    """The label of every state, with the operators of the source (``a -> b``, not ``!a | b``)."""
+    """The label of every state, with the operators of the source (``a -> b``, not ``!a | b``).
+
+    Raises :class:`LabelsTooLong` where they have more nodes together than the row "label nodes" of ``WORK`` allows.
+    """
     diagrams = successors.diagrams
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
     restored = {negation_normal_form(part): part for part in source.walk() if part.op in ("implies", "iff")}
-    formulas = {state: _restored(labels.label(state), restored) for state in minimal.transitions}
+    formulas: dict[int, Formula] = {}
+    left = WORK["label nodes"]
     own = labels.simplified(source)
-    if labels.size(own) <= labels.size(formulas[minimal.initial]):
-        formulas[minimal.initial] = own
+    for state in minimal.transitions:
+        formula = _restored(labels.label(state), restored)
+        formulas[state] = own if state == minimal.initial and labels.size(own) <= labels.size(formula) else formula
+        left -= labels.size(formulas[state])
+        if left < 0:
+            raise LabelsTooLong
     texts = {state: text_of(formula) for state, formula in formulas.items()}
     return {leaf: _at_the_end(texts[diagrams.low[leaf]], diagrams.high[leaf] == 1) for leaf in order}
 

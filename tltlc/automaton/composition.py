@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from heapq import heapify, heappop, heappush
 
-from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, LEAF, REJECT, TRUE, Diagrams, OutOfSteps
+from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, LEAF, TRUE, Diagrams, OutOfSteps
 from tltlc.automaton.machine import Machine, OutOfStates, machine
 from tltlc.automaton.successors import Successors
+from tltlc.limits import WORK
 from tltlc.logic.formula import Formula
 
 WHOLE_STEPS = 5_000
@@ -21,32 +22,52 @@ WHOLE_STEPS = 5_000
 def minimal_machine(successors: Successors, formula: Formula, state_budget: int, allowed: int = ACCEPT) -> Machine:
     """The minimal machine of a formula in negation normal form, as a whole where that is cheap, else by parts.
 
-    Raises as :func:`tltlc.automaton.machine.machine` does.
+    Raises as :func:`tltlc.automaton.machine.machine` does, and :class:`OutOfStates` where all parts and products
+    together need more states than the row "states of parts" of :data:`~tltlc.limits.WORK`, or three times the budget.
     """
-    whole = successors.obligation(formula)
-    if formula.op not in ("and", "or"):
-        return machine(successors, whole, state_budget, allowed)
-    try:
-        with successors.diagrams.at_most(WHOLE_STEPS):
-            return machine(successors, whole, state_budget, allowed)
-    except (OutOfStates, OutOfSteps, RecursionError):
-        return _by_parts(successors, formula, state_budget, allowed)
+    return _Composition(successors, state_budget, allowed).minimal(formula)
 
 
-def _by_parts(successors: Successors, formula: Formula, state_budget: int, allowed: int) -> Machine:
-    join = successors.diagrams.both if formula.op == "and" else successors.diagrams.either
-    machines = [minimal_machine(successors, part, state_budget, allowed) for part in formula.args]
-    # The running number breaks ties, so that the order is the same everywhere.
-    heap = [(len(made.transitions), number, made) for number, made in enumerate(machines)]
-    heapify(heap)
-    number = len(heap)
-    while len(heap) > 1:
-        (_, _, left), (_, _, right) = heappop(heap), heappop(heap)
-        product = join(_embedded(successors, left), _embedded(successors, right))
-        made = machine(successors, product, state_budget, allowed)
-        heappush(heap, (len(made.transitions), number, made))
-        number += 1
-    return heap[0][2]
+class _Composition:
+    """Makes the machine of one formula; counts the states of all machines on the way to it."""
+
+    def __init__(self, successors: Successors, state_budget: int, allowed: int) -> None:
+        self._successors = successors
+        self._state_budget = state_budget
+        self._allowed = allowed
+        self._left = max(WORK["states of parts"], 3 * state_budget)
+
+    def minimal(self, formula: Formula) -> Machine:
+        whole = self._successors.obligation(formula)
+        if formula.op not in ("and", "or"):
+            return self._machine(whole)
+        try:
+            with self._successors.diagrams.at_most(WHOLE_STEPS):
+                return self._machine(whole)
+        except (OutOfStates, OutOfSteps, RecursionError):
+            return self._by_parts(formula)
+
+    def _machine(self, obligation: int) -> Machine:
+        if self._left < 0:
+            raise OutOfStates
+        made = machine(self._successors, obligation, self._state_budget, self._allowed)
+        self._left -= len(made.representative)
+        return made
+
+    def _by_parts(self, formula: Formula) -> Machine:
+        diagrams = self._successors.diagrams
+        join = diagrams.both if formula.op == "and" else diagrams.either
+        machines = [self.minimal(part) for part in formula.args]
+        # The running number breaks ties, so that the order is the same everywhere.
+        heap = [(len(made.transitions), number, made) for number, made in enumerate(machines)]
+        heapify(heap)
+        number = len(heap)
+        while len(heap) > 1:
+            (_, _, left), (_, _, right) = heappop(heap), heappop(heap)
+            made = self._machine(join(_embedded(self._successors, left), _embedded(self._successors, right)))
+            heappush(heap, (len(made.transitions), number, made))
+            number += 1
+        return heap[0][2]
 
 
 def _embedded(successors: Successors, made: Machine) -> int:
@@ -56,7 +77,7 @@ def _embedded(successors: Successors, made: Machine) -> int:
     for state, transition in made.transitions.items():
         settled = _settled(diagrams, state, transition)
         obligations[state] = successors.new_state(state) if settled is None else settled
-    memo = {IMPOSSIBLE: REJECT}
+    memo = {IMPOSSIBLE: IMPOSSIBLE}
     for state, transition in made.transitions.items():
         if obligations[state] not in (FALSE, TRUE):
             successors.define_state(

@@ -189,6 +189,8 @@ class Diagrams:
             result = memo.get(key)
             if result is not None:
                 return result
+            if x == IMPOSSIBLE or y == IMPOSSIBLE:
+                return IMPOSSIBLE
             if len(memo) >= self.step_limit:
                 raise OutOfSteps
             ax, ay = atom[x], atom[y]

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, LEAF, REJECT, Diagrams
 from tltlc.automaton.fspa import Implicant
+from tltlc.limits import WORK
 from tltlc.logic import formula as build
 from tltlc.logic.printer import operand_text
 
@@ -20,20 +21,28 @@ TOTAL_PRIME_LIMIT = 1_500_000
 """Of one guard, and of all guards of an automaton together: a million of them takes up a gigabyte."""
 
 _MOST_REMEMBERED = 200_000
-"""Covers and primes of subfunctions that are kept from one guard to the next, which shares many of them."""
+_MOST_PRODUCTS_REMEMBERED = 1_000_000
+"""Covers and primes of subfunctions, and the products in them, that are kept for the next guard, which shares many."""
 
 _PRIMES_OF_CONSTANTS: dict[int, tuple[Cube, ...]] = {REJECT: (), ACCEPT: ((),)}
 
 
 class TooManyPrimes(Exception):
-    """Raised when a guard has more than :data:`PRIME_LIMIT` prime implicants, or products in its short form.
+    """Raised when the guards of an automaton are too large; ``whose`` and ``what`` say which count is over its limit.
 
-    Or all of them together more than :data:`TOTAL_PRIME_LIMIT`; ``whose`` is then "all guards", else "a guard".
+    These are the prime implicants of a guard, or the products of its short form (:data:`PRIME_LIMIT`), the prime
+    implicants of all guards (:data:`TOTAL_PRIME_LIMIT`), and the rows "edges" and "partial products" of
+    :data:`~tltlc.limits.WORK`.
     """
 
-    def __init__(self, whose: str = "a guard", limit: int = PRIME_LIMIT) -> None:
-        super().__init__(f"{whose}: more than {limit} prime implicants")
-        self.whose, self.limit = whose, limit
+    def __init__(self, whose: str = "a guard", limit: int = PRIME_LIMIT, what: str = "prime implicants") -> None:
+        super().__init__(f"{whose}: more than {limit} {what}")
+        self.whose, self.limit, self.what = whose, limit, what
+
+    def title(self, name: str) -> str:
+        """What happened, as the title of a diagnostic about the automaton of this name."""
+        verb = "have" if self.whose == "all guards" else "has"
+        return f"{self.whose} of `{name}` {verb} more than {self.limit} {self.what}"
 
 
 class Guards:
@@ -48,7 +57,10 @@ class Guards:
         "_negations",
         "_operands",
         "_pairs",
+        "_possible_cubes",
         "_primes",
+        "_products",
+        "_remembered",
         "_total",
     )
 
@@ -57,11 +69,14 @@ class Guards:
         self._allowed = allowed
         self._names = names
         self._total = 0
+        self._products = 0
+        self._remembered = 0
         positive = [operand_text(build.atom(name)) for name in names]
         self._operands = [text for name in positive for text in (f"!{name}", name)]
         self._pairs = [(atom, polarity) for atom in range(len(names)) for polarity in (False, True)]
         self._by_leaf: dict[int, dict[int, int]] = {}
         self._primes = dict(_PRIMES_OF_CONSTANTS)
+        self._possible_cubes: dict[Cube, bool] = {}
         self._covers: dict[tuple[int, int], tuple[tuple[Cube, ...], int]] = {}
         self._negations: dict[int, int] = {ACCEPT: REJECT, REJECT: ACCEPT}
 
@@ -110,9 +125,14 @@ class Guards:
         Letters that ``exclusive`` rules out are free, they go where the formula gets shorter.  Raises
         :class:`TooManyPrimes`.
         """
-        if len(self._covers) + len(self._primes) > _MOST_REMEMBERED:
+        if (
+            len(self._covers) + len(self._primes) > _MOST_REMEMBERED
+            or self._products - self._remembered > _MOST_PRODUCTS_REMEMBERED
+        ):
             self._covers.clear()
+            self._possible_cubes.clear()
             self._primes = dict(_PRIMES_OF_CONSTANTS)
+            self._remembered = self._products
         products = self._cover(guard, self._upper(guard))
         if len(products) == 1:
             return self._product(products[0])
@@ -165,7 +185,13 @@ class Guards:
         return self._diagrams.relabel(guard, negations.__getitem__, negations) if negation is None else negation
 
     def _possible(self, cube: Cube) -> bool:
-        """Whether some allowed letter meets the cube."""
+        """Whether some allowed letter meets the cube; guards share many cubes."""
+        known = self._possible_cubes.get(cube)
+        if known is None:
+            known = self._possible_cubes[cube] = self._is_met(cube)
+        return known
+
+    def _is_met(self, cube: Cube) -> bool:
         diagrams = self._diagrams
         rest = self._allowed
         wanted = {literal >> 1: literal & 1 for literal in cube}
@@ -196,8 +222,7 @@ class Guards:
                 *(((2 * atom), *cube) for cube in self._all_primes(low) if cube not in common),
                 *shared,
             )
-            if len(known) > PRIME_LIMIT:
-                raise TooManyPrimes
+            self._count(len(known))
             self._primes[function] = known
         return known
 
@@ -224,11 +249,18 @@ class Guards:
                 *((2 * atom, *cube) for cube in without),
                 *free,
             )
-            if len(cubes) > PRIME_LIMIT:
-                raise TooManyPrimes
+            self._count(len(cubes))
             found = cubes, disjoin(diagrams.node(atom, covered0, covered1), covered)
             self._covers[lower, upper] = found
         return found
+
+    def _count(self, products: int) -> None:
+        """Count the products that a function has; all functions on the way to a guard count."""
+        self._products += products
+        if products > PRIME_LIMIT:
+            raise TooManyPrimes
+        if self._products > WORK["partial products"]:
+            raise TooManyPrimes("all guards", WORK["partial products"], "partial products")
 
 
 def _cofactors(diagrams: Diagrams, function: int, atom: int) -> tuple[int, int]:

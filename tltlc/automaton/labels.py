@@ -31,6 +31,10 @@ _COST_OF_GIVING_UP = 30
 """A proof is given up after so many steps or pairs of states, and then counts as so many more."""
 
 
+class LabelsTooLong(Exception):
+    """Raised when all labels together have more operators and atoms than anything could show."""
+
+
 class Labels:
     """The labels of one machine's states.
 

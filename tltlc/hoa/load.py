@@ -150,8 +150,8 @@ def _text(words: str, formula_of: FormulaOf, *, finite: bool) -> Text:
 
 def _too_large(source: SourceFile, reason: Exception, options: ImportOptions) -> Diagnostic:
     if isinstance(reason, TooManyPrimes):
-        title = f"{reason.whose} of `{source.name}` needs more than {reason.limit} prime implicants"
-        return Diagnostic("TLT0502", title, help="name the condition as a predicate, and use that in the automaton")
+        help_ = "name the condition as a predicate, and use that in the automaton"
+        return Diagnostic("TLT0502", reason.title(source.name), help=help_)
     if isinstance(reason, OutOfStates):
         title = f"the automaton of `{source.name}` needs more than {options.state_budget} states"
         return Diagnostic("TLT0501", title, help="give a smaller one, or allow more by `--state-budget`")

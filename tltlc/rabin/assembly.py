@@ -8,7 +8,8 @@ from typing import Any, Protocol
 from tltlc.automaton.build import allowed_letters, breadth_first, distances
 from tltlc.automaton.diagrams import IMPOSSIBLE, Diagrams
 from tltlc.automaton.fspa import Edge, Guard, Pair, State, Text, Verdict
-from tltlc.automaton.guards import Guards
+from tltlc.automaton.guards import Guards, TooManyPrimes
+from tltlc.limits import WORK
 from tltlc.rabin.automaton import Rabin
 from tltlc.rabin.letters import LEAF, Letters
 from tltlc.record import record
@@ -79,6 +80,8 @@ def _edges(
                 made[guard] = Guard(guards.text(guard), guards.primes(guard))
             target, marks = leaves.values[diagrams.low[leaf]]
             found.append((number[state], number[target], sorted(marks), made[guard]))
+            if len(found) > WORK["edges"]:
+                raise TooManyPrimes("the automaton", WORK["edges"], "edges")
     found.sort(key=lambda each: each[:3])
 
     def marked(pair: int, kind: str) -> tuple[int, ...]:

@@ -6,6 +6,7 @@ from typing import Final
 
 from tltlc.automaton.blowup import ADVICE, Size, blamed, why
 from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.automaton.guards import TooManyPrimes
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.rabin.construct import rabin
 from tltlc.rabin.work import OutOfWork
@@ -30,7 +31,7 @@ def blow_up(spec: Spec, reason: Exception) -> TltlError:
             return Size(0, "")
         try:
             automaton = rabin(part.formula, [atom.name for atom in spec.atoms], spec.exclusive, _FOR_A_PART)
-        except (OutOfWork, OutOfSteps, RecursionError):
+        except (OutOfWork, OutOfSteps, TooManyPrimes, RecursionError):
             left -= _FOR_A_PART
             return None
         left -= _FOR_A_PART - automaton.letters.work.left

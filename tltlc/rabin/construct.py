@@ -13,6 +13,8 @@ from itertools import combinations, product
 from typing import Any, Final
 
 from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.automaton.guards import TooManyPrimes
+from tltlc.limits import WORK
 from tltlc.logic.formula import Formula
 from tltlc.rabin.after import After
 from tltlc.rabin.automaton import NO_MARKS, Rabin
@@ -50,7 +52,8 @@ def rabin(
 
     ``atoms`` are the names by whose place letters are read, by default those of the formula in order; of the atoms of
     a group of ``exclusive``, by their places, at most one holds in a letter.  Raises :class:`OutOfWork` after ``work``
-    steps, :class:`~tltlc.automaton.diagrams.OutOfSteps` where what remains of the formula becomes too large.
+    steps, :class:`~tltlc.automaton.diagrams.OutOfSteps` where what remains of the formula becomes too large, and
+    :class:`~tltlc.automaton.guards.TooManyPrimes` where it has too many edges.
     """
     normal = infinite_form(formula)
     return _Construction(normal, formula.atoms() if atoms is None else atoms, exclusive, work).automaton()
@@ -78,7 +81,7 @@ class _Construction:
                     second, _, _ = self._made(stands)
                     if (len(second.steps), second.pairs) < (len(first.steps), first.pairs):
                         return second
-        except (OutOfWork, OutOfSteps):
+        except (OutOfWork, OutOfSteps, TooManyPrimes):
             pass
         return first
 
@@ -94,6 +97,8 @@ class _Construction:
     def _made(self, stands: Labels) -> tuple[Rabin, Labels, Labels]:
         """The automaton, where some labels stand for others; of each label its state, and the place of its component,
         of which those that end the others come first.
+
+        Raises :class:`TooManyPrimes` where labels lead to others by more edges than a spec may have.
         """
         memo: dict[int, int] = {}
 
@@ -101,11 +106,21 @@ class _Construction:
             found = self._step(label)
             return self.letters.mapped(lambda each: stands.get(each, each), found, memo) if stands else found
 
+        edges = 0
+
+        def targets(label: int) -> list[int]:
+            nonlocal edges
+            found = self._targets(step_of(label))
+            edges += len(found)
+            if edges > WORK["edges"]:
+                raise TooManyPrimes("the automaton", WORK["edges"], "edges")
+            return found
+
         initial = stands.get(self.initial, self.initial)
         pieces: list[Piece] = []
         entry: dict[int, Place] = {}
         depth: Labels = {}
-        for number, group in enumerate(components([initial], lambda label: self._targets(step_of(label)))):
+        for number, group in enumerate(components([initial], targets)):
             piece = self._piece(step_of, group)
             pieces.append(piece)
             depth.update(dict.fromkeys(group, number))
