@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from bisect import bisect, insort
+from collections.abc import Iterable, Mapping, Sequence
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.grammar.allowed import spoken_of
 from tltlc.grammar.parser import parse
+from tltlc.grammar.tree import Module
+from tltlc.limits import WORK
 from tltlc.lint.rule import Edit, Finding
 from tltlc.lint.run import levelled, lint
 from tltlc.lint.scopes import after, keeping_scopes
@@ -57,23 +60,60 @@ def fix(
 
 def _applied(source: SourceFile, found: tuple[Finding, ...]) -> tuple[SourceFile, list[Diagnostic]]:
     """The text with all fixes that do not overlap and keep the scopes of comments, and what they mend."""
-    fixable = [finding for finding in found if finding.fix]
+    fixable = _apart([finding for finding in found if finding.fix])
     if not fixable:
         return source, []
     module, _ = parse(source)
-    has_scopes = bool(spoken_of(module))
+    if spoken_of(module):
+        applied, edits = _keeping_scopes(module, fixable)
+    else:
+        applied, edits = fixable, _edits(fixable)
+    return after(source, edits), [finding.diagnostic for finding in applied]
+
+
+def _apart(findings: Iterable[Finding]) -> list[Finding]:
+    """The findings whose edits overlap none of an earlier one; two may share an edit."""
+    apart: list[Finding] = []
+    spans: list[tuple[int, int]] = []
+    known: set[Edit] = set()
+    for finding in findings:
+        new = [(edit.span.start, edit.span.end) for edit in finding.fix if edit not in known]
+        if not any(_meets(span, spans) for span in new):
+            apart.append(finding)
+            known.update(finding.fix)
+            for span in new:
+                insort(spans, span)
+    return apart
+
+
+def _meets(span: tuple[int, int], spans: list[tuple[int, int]]) -> bool:
+    """Whether a span overlaps one of the sorted ones, which do not overlap each other."""
+    place = bisect(spans, span)
+    start, end = span
+    return any(other < end and start < stop for other, stop in spans[max(0, place - 1) : place + 1])
+
+
+def _edits(findings: Iterable[Finding]) -> tuple[Edit, ...]:
+    return tuple(dict.fromkeys(edit for finding in findings for edit in finding.fix))
+
+
+def _keeping_scopes(module: Module, findings: Sequence[Finding]) -> tuple[list[Finding], tuple[Edit, ...]]:
+    """The findings that can be fixed together without a change of what a comment speaks of, and their edits.
+
+    All are tried at once, then halves: a file has few that cannot be fixed. After some attempts, the rest is left.
+    """
+    applied: list[Finding] = []
     edits: tuple[Edit, ...] = ()
-    applied: list[Diagnostic] = []
-    for finding in fixable:
-        new = tuple(edit for edit in finding.fix if edit not in edits)
-        if any(_meet(edit, other) for edit in new for other in edits):
-            continue
-        together = keeping_scopes(module, edits + new) if has_scopes else edits + new
+    waiting = [list(findings)]
+    for _ in range(WORK["fixes tried"]):
+        if not waiting:
+            break
+        part = waiting.pop()
+        together = keeping_scopes(module, _edits([*applied, *part]))
         if together is not None:
+            applied += part
             edits = together
-            applied.append(finding.diagnostic)
-    return after(source, edits), applied
-
-
-def _meet(one: Edit, other: Edit) -> bool:
-    return one.span.start < other.span.end and other.span.start < one.span.end
+        elif len(part) > 1:
+            half = len(part) // 2
+            waiting += [part[half:], part[:half]]
+    return applied, edits

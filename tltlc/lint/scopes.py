@@ -14,10 +14,12 @@ from tltlc.source import SourceFile, Span
 
 def after(source: SourceFile, edits: Iterable[Edit]) -> SourceFile:
     """The text after edits that do not overlap."""
-    text = source.text
-    for edit in sorted(edits, key=lambda edit: edit.span.start, reverse=True):
-        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
-    return SourceFile(source.name, text)
+    pieces: list[str] = []
+    place = 0
+    for edit in sorted(edits, key=lambda edit: edit.span.start):
+        pieces += [source.text[place : edit.span.start], edit.text]
+        place = edit.span.end
+    return SourceFile(source.name, "".join([*pieces, source.text[place:]]))
 
 
 def keeping_scopes(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
