@@ -11,7 +11,7 @@ from email.utils import formatdate
 from enum import Enum
 from http import HTTPStatus
 from threading import Event
-from typing import Final, Protocol, cast
+from typing import Any, Final, Protocol, cast
 
 from tltlc.limits import MESSAGE, REQUEST_HEAD, REQUEST_LINE, Connections
 from tltlc.playground.request_head import Head, RefusedError, read_head
@@ -92,6 +92,13 @@ class Open:
         """Close all connections at once."""
         for connection in [*self._all]:
             connection.abort()
+
+
+def report_failure(task: asyncio.Task[Any]) -> None:
+    """Report what a task failed with, but for a signal, which ends the server and has its own report."""
+    error = None if task.cancelled() else task.exception()
+    if error is not None and not isinstance(error, KeyboardInterrupt):
+        task.get_loop().call_exception_handler({"message": "a task failed", "exception": error, "task": task})
 
 
 class Connection(asyncio.Protocol):
@@ -209,6 +216,7 @@ class Connection(asyncio.Protocol):
         del self._buffer[:length]
         self._now(Doing.ANSWERING)
         self._task = asyncio.get_running_loop().create_task(self._answer(head, body))
+        self._task.add_done_callback(report_failure)
 
     def _read_head(self) -> bool:
         """Whether the head is complete."""

@@ -18,7 +18,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
 from tltlc.limits import MESSAGE, PLAYGROUND, Connections
 from tltlc.playground.children import LIMIT_S, MOST_AT_ONCE, AbandonedError, Children
-from tltlc.playground.connections import Connection, Open, Response
+from tltlc.playground.connections import Connection, Open, Response, report_failure
 from tltlc.playground.request_head import Head, RefusedError
 from tltlc.playground.site import page_files
 from tltlc.record import replace
@@ -239,6 +239,7 @@ class Server:
         task: asyncio.Task[object] = self._loop.create_task(made)
         self._accepted.add(task)
         task.add_done_callback(self._accepted.discard)
+        task.add_done_callback(report_failure)
 
     def _wait(self) -> None:
         """The system has no descriptors left: look again once a connection has given way, or else in a while."""
