@@ -67,7 +67,9 @@ def test_only_infinite_traces_load_what_is_for_them(tmp_path: Path) -> None:
 
     assert not rabin("compile", EXAMPLE, "-t", "json,python,dot")
     assert not rabin("compile", "cover_and_hide.fspa.json", "-t", "mermaid")
-    assert rabin("explain", EXAMPLE) == rabin("witness", EXAMPLE) == {"tltlc.rabin", "tltlc.rabin.work"}
+    assert rabin("explain", EXAMPLE) == {"tltlc.rabin", "tltlc.rabin.work"}
+    # Strongly connected components are the same for every graph.
+    assert rabin("witness", EXAMPLE) == {"tltlc.rabin", "tltlc.rabin.work", "tltlc.rabin.graphs"}
     endless = tmp_path / "again.tltl"
     endless.write_text("signal a: bool\nspec again { semantics infinite  require G F a }\n", encoding="utf-8")
     assert "tltlc.rabin.construct" in rabin("compile", endless, "-t", "json")
