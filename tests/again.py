@@ -45,7 +45,7 @@ def run(seed: int, arguments: list[str]) -> subprocess.CompletedProcess[str]:
 
 @contextmanager
 def busy_processes(count: int) -> Iterator[None]:
-    """Have so many processes do nothing, and that without a pause, until the block ends."""
+    """Run this many busy processes until the block ends."""
     started = [get_context("spawn").Process(target=_work, args=(os.getpid(),), daemon=True) for _ in range(count)]
     for process in started:
         process.start()

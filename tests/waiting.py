@@ -12,7 +12,7 @@ from typing import Final, TypeVar
 Found = TypeVar("Found")
 
 HANG_S: Final = 900.0
-"""After so many seconds a test hangs: no busy machine is that slow. Pass it wherever a ``timeout`` is asked for."""
+"""Seconds after which a test counts as hanging; no busy machine is that slow. Pass it as every ``timeout``."""
 
 
 def until(event: Callable[[], Found], what: str, pause_s: float = 0.02) -> Found:

@@ -97,7 +97,7 @@ class Client:
         return False
 
     def until_it_analyses(self, cpu_s: float = 0.0) -> None:
-        """Wait until the process that analyses is there, and has used so many seconds of CPU time, on Linux."""
+        """Wait until the analysing process has used this much CPU time, in seconds; Linux only."""
         if sys.platform != "linux":
             assert self.is_quiet(2.0)
             return

@@ -218,7 +218,7 @@ def test_a_hand_on_the_keyboard(client: Client, tmp_path: Path) -> None:
             client.ask(f"textDocument/{method}", {"textDocument": {"uri": uri}, "position": at})
     client.change(uri, whole.replace("reach", "raech", 1), version + 1)
     # The diagnostics of texts in between may come first.
-    client.diagnostics(uri, lambda diagnostics: any("raech" in each["message"] for each in diagnostics))
+    assert client.diagnostics(uri, lambda diagnostics: any("raech" in each["message"] for each in diagnostics))
 
 
 def test_a_big_file_is_answered(client: Client, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Raw bytes to a server, and what comes back until it hangs up or has answered so many times."""
+"""Send raw bytes to a server, and read its answers."""
 
 from __future__ import annotations
 

@@ -169,7 +169,7 @@ def test_while_every_connection_waits_for_its_answer_a_new_one_is_told_so(monkey
 
 
 class Full:
-    """A listener of a system that has no descriptors left, until it is told otherwise."""
+    """A listener whose system has no file descriptors left, until the test frees them."""
 
     def __init__(self, listener: socket.socket) -> None:
         self.listener = listener

@@ -342,7 +342,7 @@ def _content(folder: Path) -> tuple[bytes, dict[str, Any]]:
 
 
 def _read_checkpoint(path: Path) -> None:
-    """Read a checkpoint and what is told of the training that left it."""
+    """Read a checkpoint, and the record of its training."""
 
     def read() -> None:
         run = run_in(path.parent)

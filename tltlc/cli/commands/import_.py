@@ -47,7 +47,7 @@ Examples:
 )
 @click.option("--name", metavar="NAME", callback=_name, help="Call the spec so (default: as the file does).")
 @click.option("--level", metavar="LEVEL", help="The level that it is for.")
-@click.option("--limit", metavar="STEPS", type=WholeRange(min=1), help="An episode ends after so many steps.")
+@click.option("--limit", metavar="STEPS", type=WholeRange(min=1), help="End each episode after this many steps.")
 @click.option(
     "--judge", type=click.Choice(("goal", "limit")), help="When an episode is over (default: by the automaton)."
 )

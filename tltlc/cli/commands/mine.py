@@ -58,7 +58,9 @@ Examples:
     help="What atoms there are: predicates of signals, of a file or of a library such as `stealth`, for all entities "
     "of the traces (default: the columns).",
 )
-@click.option("--top", metavar="N", type=WholeRange(1, 100), default=5, help="Propose so many (default: 5).")
+@click.option(
+    "--top", metavar="N", type=WholeRange(1, 100), default=5, help="Propose at most this many specs (default: 5)."
+)
 @click.option(
     "--min-support",
     metavar="SHARE",

@@ -44,7 +44,7 @@ def spend(steps: int = 1) -> None:
 
 @contextmanager
 def limited(steps: int) -> Iterator[Work]:
-    """Allow what happens inside so many steps, or as many as are left outside; they count outside, too."""
+    """Limit the block to ``steps``, and to what is left outside; its steps count outside, too."""
     outer = _CURRENT.get()
     allowed = steps if outer is None else min(steps, max(0, outer.left))
     work = Work(allowed)
@@ -59,7 +59,7 @@ def limited(steps: int) -> Iterator[Work]:
 
 @contextmanager
 def apart(steps: int) -> Iterator[Work]:
-    """Allow what happens inside so many steps, whatever is left outside; they do not count there."""
+    """Limit the block to ``steps`` of its own; they do not count outside."""
     work = Work(steps)
     token = _CURRENT.set(work)
     try:
