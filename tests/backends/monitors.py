@@ -34,10 +34,10 @@ Outcome = tuple[int, str, str]
 
 
 def trace_of(samples: Sequence[Sample], names: Sequence[str]) -> str:
+    """The samples as CSV.  The names are quoted, since a trace that begins with `{` is JSON."""
     text = io.StringIO()
-    writer = csv.writer(text)
-    writer.writerow([*names, "unused"])
-    writer.writerows([*(repr(sample[name]) for name in names), "-"] for sample in samples)
+    csv.writer(text, quoting=csv.QUOTE_ALL).writerow([*names, "unused"])
+    csv.writer(text).writerows([*(repr(sample[name]) for name in names), "-"] for sample in samples)
     return text.getvalue()
 
 

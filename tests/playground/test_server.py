@@ -24,7 +24,14 @@ from tltlc.playground.server import Server
 from tltlc.playground.start import start
 
 JSON = {"Content-Type": "application/json"}
-SLOW = "signal a: bool\nspec x = F[0,4000] a"
+PLACES = [f"place_{number}" for number in range(9)]
+SLOW = "".join(
+    [
+        *(f"signal {name}: bool\n" for name in PLACES),
+        *(f"spec s{number} = {' and '.join(f'eventually {name}' for name in PLACES)}\n" for number in range(200)),
+    ]
+)
+"""Two hundred specs of 512 states: each is within every budget, and all of them take minutes."""
 
 
 @contextmanager
