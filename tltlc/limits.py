@@ -118,6 +118,7 @@ WORK: Final[Mapping[str, int]] = {
     "edges": 1_000_000,
     "partial products": 20_000_000,
     "label nodes": 6_000_000,
+    "arrow nodes": 200_000,
     "fixes tried": 200,
 }
 """How many steps a checker may take, by what it counts."""

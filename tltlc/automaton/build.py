@@ -13,7 +13,7 @@ from tltlc.automaton.composition import minimal_machine as compose
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfSteps
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
-from tltlc.automaton.labels import Labels, LabelsTooLong
+from tltlc.automaton.labels import LONGEST_SIMPLIFIED, Labels, LabelsTooLong
 from tltlc.automaton.machine import Machine, OutOfStates
 from tltlc.automaton.successors import Successors
 from tltlc.expression import Signal as SignalValue
@@ -252,7 +252,7 @@ def _labels(
     """
     diagrams = successors.diagrams
     labels = Labels(successors, minimal, negation_normal_form(source), allowed)
-    restored = {negation_normal_form(part): part for part in source.walk() if part.op in ("implies", "iff")}
+    restored = _written_with_arrows(source, labels)
     formulas: dict[int, Formula] = {}
     left = WORK["label nodes"]
     own = labels.simplified(source)
@@ -264,6 +264,23 @@ def _labels(
             raise LabelsTooLong
     texts = {state: text_of(formula) for state, formula in formulas.items()}
     return {leaf: _at_the_end(texts[diagrams.low[leaf]], diagrams.high[leaf] == 1) for leaf in order}
+
+
+def _written_with_arrows(source: Formula, labels: Labels) -> dict[Formula, Formula]:
+    """The parts of the source that are ``->`` or ``<->``, by their normal form.
+
+    Parts that nobody reads are left out, and the largest parts where all have more nodes than the row "arrow nodes" of
+    ``WORK``.
+    """
+    parts = [part for part in source.walk() if part.op in ("implies", "iff")]
+    left = WORK["arrow nodes"]
+    written: dict[Formula, Formula] = {}
+    for part in sorted(parts, key=labels.size):
+        left -= labels.size(part)
+        if left < 0 or labels.size(part) > LONGEST_SIMPLIFIED:
+            break
+        written[negation_normal_form(part)] = part
+    return written
 
 
 def _restored(formula: Formula, restored: dict[Formula, Formula]) -> Formula:

@@ -21,7 +21,7 @@ _MEMBERS = 6
 _CANDIDATES = 3
 """Of the smallest obligations that a state stands for, as many are written out, and of these as many shortened."""
 
-_LONGEST_SIMPLIFIED = 200
+LONGEST_SIMPLIFIED = 200
 _LONGEST_PROVED = 60
 """Labels with more nodes than that are not rewritten, or not tried operand by operand: nobody reads them."""
 
@@ -95,6 +95,8 @@ class Labels:
         obligation = self._writer.without_shorter_bounds(obligation)
         support = self._writer.support(obligation)
         for variable in sorted(support, key=self._size_of_variable, reverse=True) if len(support) > 1 else ():
+            if self._work <= 0:
+                break
             for value in (False, True):
                 smaller = self._writer.restricted(obligation, (variable,), value)
                 if smaller != obligation and self._proved(smaller, state):
@@ -108,7 +110,7 @@ class Labels:
 
     def simplified(self, formula: Formula) -> Formula:
         """The formula after the named rewrites, unless it is too long for anybody to read."""
-        return formula if self.size(formula) > _LONGEST_SIMPLIFIED else simplify(formula, self._simplified)
+        return formula if self.size(formula) > LONGEST_SIMPLIFIED else simplify(formula, self._simplified)
 
     def _shortened(self, formula: Formula, state: int) -> Formula:
         formula = self.simplified(formula)

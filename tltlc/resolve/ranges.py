@@ -1,7 +1,8 @@
 """The range of an operator's result from the ranges of its arguments.
 
 Plain interval arithmetic without outward rounding: it gives the ends by which comparisons are
-scaled, where 0 to 1 must stay 0 to 1, and the values of constants.  Proofs about predicates use
+scaled, where 0 to 1 must stay 0 to 1, and the values of constants.  Each operation rounds as the
+evaluator's does, so no value of an expression lies outside its range by a rounding.  Proofs about predicates use
 the rigorous arithmetic of :mod:`tltlc.resolve.predicate_check`.
 """
 
@@ -9,7 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import reduce
-from math import exp, inf, isfinite, isnan, sqrt, tanh
+from math import exp, inf, isfinite, isnan, prod, sqrt, tanh
+
+from tltlc.expression_eval import MULTIPLIED_EXPONENTS
 
 Range = tuple[float, float]
 EVERYTHING: Range = (-inf, inf)
@@ -68,14 +71,20 @@ def _divide(a: Range, b: Range) -> Range:
 def _power(a: Range, b: Range) -> Range:
     exponent = b[0]
     if b[0] == b[1] and exponent == int(exponent):
-        if exponent < 0:
-            return _divide((1.0, 1.0), _power(a, (-exponent, -exponent)))
-        if exponent % 2 == 0:
-            a = _abs(a)
-        return a[0] ** int(exponent), a[1] ** int(exponent)
+        if exponent < 0 and a[0] <= 0 <= a[1]:
+            return EVERYTHING
+        ends = _abs(a) if exponent % 2 == 0 else a
+        values = [_integer_power(end, exponent) for end in ends]
+        return min(values), max(values)
     if a[0] < 0 or (a[0] == 0 and b[0] <= 0):
         return EVERYTHING
     return _corners(a, b, lambda x, y: float(x**y))
+
+
+def _integer_power(x: float, exponent: float) -> float:
+    """``x ^ exponent``, rounded as :func:`tltlc.expression_eval.evaluate` rounds it."""
+    factors = MULTIPLIED_EXPONENTS.get(exponent)
+    return float(x**exponent) if factors is None else prod([x] * (factors - 1), start=x)
 
 
 def _abs(a: Range) -> Range:
