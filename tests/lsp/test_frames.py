@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tltlc.limits import MESSAGE, MESSAGE_HEAD
 from tltlc.lsp.frames import Body, Fault, Frame, Frames
+from tltlc.lsp.json_end import JsonEnd
 
 MESSAGES = (b"{}", b'{"a": [1, "}"]}', b'{"text": "Content-Length: 3\\r\\n\\r\\n"}', b"[" + b"7, " * 300 + b"8]")
 
@@ -59,6 +60,46 @@ def test_a_header_inside_of_a_body_ends_it(extra: int) -> None:
 
 def test_a_body_that_is_broken_ends_at_the_next_header_too() -> None:
     assert bodies(framed(b'{"a": "b', 40) + framed(b"[]")) == [b'{"a": "b', b"[]"]
+
+
+@pytest.mark.parametrize("extra", [1, 2, 80, MESSAGE.size - 1000])
+@pytest.mark.parametrize("message", MESSAGES)
+def test_a_body_is_given_at_its_last_bracket_whatever_its_length(message: bytes, extra: int) -> None:
+    """An editor that waits for the answer sends nothing more."""
+    data = framed(message, extra)
+    assert Frames().feed(data) == [Body(message)]
+    reader = Frames()
+    assert [reader.feed(data[at : at + 1]) for at in range(len(data))][-1] == [Body(message)]
+    # The fault is known only when more comes.
+    assert reader.feed(framed(b"[]")) == [
+        Fault(f"a message is shorter than its header says: {len(message)} bytes, not {len(message) + extra}"),
+        Body(b"[]"),
+    ]
+
+
+@pytest.mark.parametrize("padding", [b" ", b"\n", b"\r\n\r\n", b"\t" * 100])
+def test_white_space_at_the_end_of_a_body_is_no_fault(padding: bytes) -> None:
+    data = framed(b"{}" + padding) * 2
+    assert frames(data) == [Body(b"{}")] * 2
+    assert frames(*(data[at : at + 1] for at in range(len(data)))) == [Body(b"{}")] * 2
+
+
+def test_what_stands_behind_the_last_bracket_is_told_once_and_passed_over() -> None:
+    fault = Fault("a message is shorter than its header says: 2 bytes, not 10")
+    for data in (framed(b"{} nothing", 0), framed(b"{} no\nthin"), framed(b"{}} = {}}", 1)):
+        assert frames(data + framed(b"[]")) == [Body(b"{}"), fault, Body(b"[]")]
+
+
+@given(st.recursive(st.none() | st.text(), st.lists, max_leaves=20), st.integers(1, 200), st.integers(0, 10**9))
+def test_the_end_of_a_json_text_is_found_in_whichever_pieces_it_comes(value: object, size: int, more: int) -> None:
+    message = json.dumps({'\\"}': value}, ensure_ascii=more % 2 == 0).encode()
+    end, data = JsonEnd(), bytearray()
+    for at in range(0, len(message), size):
+        assert end.find(data, len(message) + more) is None
+        # Each byte is looked at once, but for half an escape.
+        assert end._at >= len(data) - 1
+        data += message[at : at + size]
+    assert end.find(data, len(message) + more) == len(message)
 
 
 def test_a_length_above_the_limit_is_told_at_once() -> None:

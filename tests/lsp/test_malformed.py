@@ -229,6 +229,15 @@ def test_a_length_that_reaches_into_the_next_messages_loses_none(more: int, clie
     assert [each[:39] for each in client.errors] == ["a message is shorter than its header sa"]
 
 
+@pytest.mark.parametrize("more", [1, 10, 4000, MESSAGE.size - 1000])
+def test_a_length_that_is_too_large_keeps_no_answer_back(more: int, client: Client) -> None:
+    """The editor waits for the answer before it sends anything else."""
+    data = json.dumps(hover()).encode()
+    send(client, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
+    assert code_of(client, 900) is None
+    assert lives(client)
+
+
 def test_an_empty_line_that_is_missing(client: Client) -> None:
     data = json.dumps(hover()).encode()
     send(client, data, b"Content-Length: %d\r\n" % len(data))

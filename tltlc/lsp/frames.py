@@ -1,7 +1,9 @@
 """Cut what an editor sends into messages: headers, an empty line, and a body of as many bytes as a header says.
 
-Editors have faults, so lengths can be wrong. Then this goes on at the next header. A raw line ``Content-Length: N`` can
-be no part of a JSON text, since JSON has no line breaks inside strings; so wherever one stands, a message begins there.
+Editors have faults, so lengths can be wrong. A body ends at the bracket that closes its first one, even if its header
+says that more bytes come: an editor that waits for an answer sends no more. A body also ends at the next header. A raw
+line ``Content-Length: N`` can be no part of a JSON text, since JSON has no line breaks inside strings; so wherever one
+stands, a message begins there.
 """
 
 from __future__ import annotations
@@ -10,9 +12,12 @@ import re
 from typing import Final, Union
 
 from tltlc.limits import MESSAGE, MESSAGE_HEAD
+from tltlc.lsp.json_end import JsonEnd
 from tltlc.record import record
 
 _TYPE: Final = rb"Content-Type:[^\r\n]{0,200}"
+_WHITE: Final = b" \t\r\n"
+"""White space in JSON."""
 _SPACE: Final = rb"[ \t]{0,16}"
 _HEADER: Final = re.compile(
     rb"(?:%s\r?\n)?Content-Length:%s([0-9]{1,64})%s\r?\n" % (_TYPE, _SPACE, _SPACE), re.IGNORECASE
@@ -51,6 +56,11 @@ class Frames:
         self._length: int | None = None
         """What a header of the next message says."""
         self._in_body = False
+        self._json_end = JsonEnd()
+        self._left = 0
+        """How many bytes come behind the last bracket of the last body, as its header says."""
+        self._doubt: Fault | None = None
+        """What is wrong if they are more than white space."""
         self._is_lost = False
         """Whether it was said already that something is passed over."""
         self._found: list[Frame] = []
@@ -58,7 +68,7 @@ class Frames:
     def feed(self, data: bytes) -> list[Frame]:
         """What is complete with these bytes; it is the same in whichever pieces they come."""
         self._buffer += data
-        while self._read_body() if self._in_body else self._read_line():
+        while self._read_part():
             pass
         return self._taken()
 
@@ -67,6 +77,12 @@ class Frames:
         if self._in_body and self._buffer:
             self._give(len(self._buffer))
         return self._taken()
+
+    def _read_part(self) -> bool:
+        """Read the next part of a message; False where it is not complete."""
+        if self._in_body:
+            return self._read_body()
+        return self._read_padding() if self._left else self._read_line()
 
     def _taken(self) -> list[Frame]:
         found, self._found = self._found, []
@@ -109,6 +125,7 @@ class Frames:
             self._length, self._is_lost = None, True
         else:
             self._in_body = True
+            self._json_end = JsonEnd()
 
     def _pass_over(self, lost: bytes, *, is_long: bool) -> None:
         """Say once that something stands where a header should."""
@@ -127,26 +144,43 @@ class Frames:
     # --- bodies -------------------------------------------------------------------------------
 
     def _read_body(self) -> bool:
-        """Read a body, up to its length or to the next header; False where neither has come."""
+        """Read a body, up to its last bracket, its length or the next header; False where none of them has come."""
         length = self._length or 0
+        json_end = self._json_end.find(self._buffer, length)
+        limit = length if json_end is None else json_end
         start = max(0, self._searched - _OVERLAP)
         # Most bodies have no line breaks, which is soon known.
-        has_lines = self._buffer.find(b"\n", start, length) >= 0
-        header = _HEADER.search(self._buffer, start, length) if has_lines else None
+        has_lines = self._buffer.find(b"\n", start, limit) >= 0
+        header = _HEADER.search(self._buffer, start, limit) if has_lines else None
         if header:
-            self._give(header.start(), is_short=True)
+            self._found.append(_short(header.start(), length))
+            self._give(header.start())
+        elif json_end is not None:
+            self._left, self._doubt = length - json_end, _short(json_end, length)
+            self._give(json_end)
         elif len(self._buffer) >= length:
             begun = _begun_header(bytes(self._buffer[max(0, length - _OVERLAP) : length]))
-            self._give(length - begun, is_short=begun > 0)
+            if begun:
+                self._found.append(_short(length - begun, length))
+            self._give(length - begun)
         else:
             self._searched = len(self._buffer)
             return False
         return True
 
-    def _give(self, size: int, *, is_short: bool = False) -> None:
-        if is_short:
-            text = f"a message is shorter than its header says: {size} bytes, not {self._length}"
-            self._found.append(Fault(text))
+    def _read_padding(self) -> bool:
+        """Pass over white space behind the last bracket of a body; if anything else is there, its header was wrong."""
+        padding = self._buffer[: self._left]
+        blank = len(padding) - len(padding.lstrip(_WHITE))
+        self._drop(blank)
+        self._left -= blank
+        if blank < len(padding) and self._doubt:
+            self._found.append(self._doubt)
+            # What is passed over up to the next header is part of the same fault.
+            self._left, self._is_lost = 0, True
+        return self._left == 0
+
+    def _give(self, size: int) -> None:
         self._found.append(Body(bytes(self._buffer[:size])))
         self._drop(size)
         self._length, self._in_body, self._is_lost = None, False, False
@@ -154,6 +188,10 @@ class Frames:
     def _drop(self, size: int) -> None:
         del self._buffer[:size]
         self._searched = 0
+
+
+def _short(size: int, length: int) -> Fault:
+    return Fault(f"a message is shorter than its header says: {size} bytes, not {length}")
 
 
 def _beginnings(word: bytes, behind: bytes) -> bytes:
