@@ -101,3 +101,8 @@ def test_a_deleted_current_folder_is_no_bug(
     gone.rmdir()
     assert tltlc("check", EXAMPLE).status == 0
     assert tltlc("check", "hide.tltl").status == 3
+    (tmp_path / "above.tltl").write_text("signal a: bool\n", encoding="utf-8")
+    (tmp_path / "main.tltl").write_text('import "above.tltl"\nspec s = F a\n', encoding="utf-8")
+    done = tltlc("check", "../main.tltl")
+    assert done.status == 1
+    assert "the current folder has been deleted: start tltlc in another one" in done.err

@@ -123,6 +123,24 @@ def test_libraries_outside_are_refused(folder: Path) -> None:
     assert said("import common\nspec x = F a\n") == []
 
 
+@needs_links
+def test_libraries_are_read_where_the_folder_of_the_server_was_deleted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "secret.tltl").write_text(SECRET, encoding="utf-8")
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    with confined(readable_folders()):
+        assert said("import stealth\nspec x = G alive\n") == []
+        assert said("import none\nspec x = true\n")[0] == ("TLT0010", "there is no library `none`")
+        # The system would still lead from there to the folder above.
+        for target in ("secret.tltl", "../secret.tltl", "../none.tltl"):
+            assert said(f'import "{target}"\nspec x = true\n')[0][0] == "TLT0010"
+        assert said(f'import "{tmp_path.as_posix()}/secret.tltl"\nspec x = true\n')[0][0] == "TLT0777"
+
+
 def test_nothing_outside_is_read_or_seen_by_any_reader(folder: Path) -> None:
     secret = folder.parent / "secret.tltl"
     for path in (secret, Path("../secret.tltl"), folder / ".." / "secret.tltl", Path("a\0b")):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
+from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import is_file, may_read, outside, read_source
@@ -14,6 +15,7 @@ from tltlc.resolve.problem import Log, ResolutionError, problem
 from tltlc.source import SourceFile
 
 STANDARD_LIBRARY_NAME = "<standard library>"
+_NO_FILE: Final = "there is no file `{}` beside this one"
 
 
 @record
@@ -120,15 +122,18 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     """The absolute path of an imported file and the name to show for it."""
     target = declaration.target
     here = _folder(source)
-    folders = (here, *options.library_dirs, standard_library())
+    folders = tuple(folder for folder in (here, *options.library_dirs, standard_library()) if not _is_gone(folder))
     itself = Path(source.name).name
     if declaration.is_path:
         shown = here / target
+        if _is_gone(shown):
+            advice = "the current folder has been deleted: start tltlc in another one"
+            raise problem("TLT0010", _NO_FILE.format(target), source, declaration.target_span, advice=advice)
         _check_inside(shown, declaration, source)
         if not is_file(shown):
             raise problem(
                 "TLT0010",
-                f"there is no file `{target}` beside this one",
+                _NO_FILE.format(target),
                 source,
                 declaration.target_span,
                 advice=_similar(target, [path.name for path in _files(shown.parent) if path.name != itself])
@@ -144,6 +149,17 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
     known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
     advice = _similar(target, known) or "a library is a file NAME.tltl beside this one or in a --library folder"
     raise problem("TLT0010", f"there is no library `{target}`", source, declaration.target_span, advice=advice)
+
+
+def _is_gone(path: Path) -> bool:
+    """Whether a path is relative to the current folder, and that has been deleted: nothing is read through it."""
+    if path.is_absolute():
+        return False
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        return True
+    return False
 
 
 def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
