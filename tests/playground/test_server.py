@@ -333,6 +333,63 @@ def test_a_child_has_no_more_memory_than_it_may(monkeypatch: pytest.MonkeyPatch)
         assert (said["code"], said["title"]) == ("TLT0775", "this takes more memory than the playground has")
 
 
+ENDS = {
+    "sys.exit(0)": "the compiler's process ended with exit status 0",
+    "sys.exit(7)": "the compiler's process ended with exit status 7",
+    "raise ImportError('a broken installation')": "the compiler's process ended with exit status 1",
+    "raise MemoryError": "this takes more memory than the playground has",
+}
+if os.name == "posix":
+    for name in ("SIGKILL", "SIGSEGV", "SIGXCPU"):
+        ENDS[f"import os, signal; os.kill(os.getpid(), signal.{name})"] = (
+            f"the signal {name} ended the compiler's process"
+        )
+
+
+@pytest.mark.parametrize(("code", "title"), ENDS.items(), ids=str)
+def test_a_child_that_fails_is_reported_as_what_it_is(code: str, title: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    replaced_by(
+        f"from tltlc.playground import child, protocol\ndef fail(_): {code}\nprotocol.answer = fail\nchild.main()",
+        monkeypatch,
+    )
+    answering = children.Children(HANG_S)
+    try:
+        answered = answering.answer(b'{"text": ""}')
+    finally:
+        answering.close()
+    assert answered is not None
+    (said,) = json.loads(answered)["diagnostics"]
+    assert (said["code"], said["title"]) == ("TLT0775", title)
+    assert ("spec" in said["help"]) == ("memory" in title or "SIGKILL" in title)
+
+
+def test_a_child_that_died_while_it_waited_is_replaced() -> None:
+    with serving(HANG_S) as server:
+        ready = server.children._ready
+        assert ready is not None
+        ready.kill()
+        ready.wait()
+        assert json.loads(ask(server, "POST", "/api", "{}", JSON)[2]) == start()
+
+
+def test_what_is_at_work_when_the_server_ends_is_abandoned() -> None:
+    answering = children.Children(HANG_S)
+    outcomes: list[str] = []
+
+    def wait_for_answer() -> None:
+        try:
+            outcomes.append(str(answering.answer(json.dumps({"text": SLOW}).encode())))
+        except children.AbandonedError:
+            outcomes.append("abandoned")
+
+    asking = Thread(target=wait_for_answer)
+    asking.start()
+    assert eventually(lambda: bool(answering._running))
+    answering.close()
+    asking.join()
+    assert outcomes == ["abandoned"]
+
+
 @pytest.mark.skipif(os.name != "posix", reason="limits of this kind are those of POSIX")
 def test_a_lower_limit_that_is_there_already_stays() -> None:
     code = (

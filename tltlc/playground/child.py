@@ -14,10 +14,22 @@ from tltlc.files import confined
 from tltlc.limits import ANSWER, PLAYGROUND_CHILD
 
 NO_REQUEST: Final = 2
+NO_MEMORY: Final = 3
 
 
 def main() -> None:
-    """Load what a compilation needs, then wait for the request; exit status 2 where it is none."""
+    """Load what a compilation needs, then wait for the request.
+
+    The exit status is :data:`NO_REQUEST` if it is none, :data:`NO_MEMORY` if memory runs out.
+    """
+    try:
+        _answer_request()
+    except MemoryError:
+        # What Python itself prints for it, and its exit status, could mean anything.
+        sys.exit(NO_MEMORY)
+
+
+def _answer_request() -> None:
     from tltlc.playground.protocol import RequestError, answer, gave_up_on_size
 
     limit_resources()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -11,13 +12,16 @@ from time import monotonic
 from typing import Final
 
 from tltlc.limits import ANSWER
-from tltlc.playground.child import NO_REQUEST
+from tltlc.playground.child import NO_MEMORY, NO_REQUEST
 from tltlc.playground.protocol import TOO_LARGE, gave_up, gave_up_on_size
 
 LIMIT_S: Final = 10.0
 MOST_AT_ONCE: Final = 4
 _LOOK_S: Final = 0.1
 """Between two looks at whether somebody still waits."""
+
+_REPORT: Final = "try again; if it ends again, report it with the text"
+_KILLED: Final = "try again; the system does this if memory is short, and then a smaller spec may help"
 
 
 class AbandonedError(Exception):
@@ -58,8 +62,11 @@ class Children:
             return None
         if len(said) > ANSWER.size:
             return gave_up_on_size()
-        # The system ends a process that takes more memory than it may.
-        return gave_up(TOO_LARGE) if child.returncode else said.decode("utf-8")
+        if child.returncode or not said:
+            # Whoever closes this kills the children that work.
+            _check(lambda: self._closed)
+            return _failed(child.returncode)
+        return said.decode("utf-8")
 
     def close(self) -> None:
         """End the child that waits, and those that work: their requests are abandoned."""
@@ -75,7 +82,12 @@ class Children:
         with self._lock:
             if self._closed:
                 raise AbandonedError
-            child, self._ready = self._ready or _started(), None
+            ready, self._ready = self._ready, None
+            if ready is not None and ready.poll() is not None:
+                # It ended while it waited.
+                _end(ready)
+                ready = None
+            child = ready or _started()
             self._running.add(child)
             return child
 
@@ -125,6 +137,24 @@ def _exchange(child: subprocess.Popen[bytes], request: bytes) -> bytes:
         child.kill()
     child.wait()
     return answered
+
+
+def _failed(status: int) -> str:
+    """The answer where a child ended without one: what it ended with, and no cause that is not known."""
+    if status == NO_MEMORY:
+        return gave_up(TOO_LARGE)
+    if status >= 0:
+        return gave_up(f"the compiler's process ended with exit status {status}", _REPORT)
+    title = f"the signal {_signal_name(-status)} ended the compiler's process"
+    is_killed = -status == getattr(signal, "SIGKILL", None)
+    return gave_up(title, _KILLED if is_killed else _REPORT)
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return str(number)
 
 
 def _check(is_abandoned: Callable[[], bool]) -> None:
