@@ -72,7 +72,7 @@ def opened(
         page.on("pageerror", lambda error: wrong.append(str(error)))
         page.on("request", lambda request: asked.append(request.url))
         page.goto(address)
-        expect(page.locator("#picture svg")).to_be_visible(timeout=60_000)
+        expect(page.locator("#picture svg")).to_be_visible()
         yield page
         assert wrong == []
         assert [url for url in asked if not url.startswith((address.partition("#")[0], "data:"))] == []
@@ -82,6 +82,12 @@ def opened(
 
 def write(page: Page, text: str) -> None:
     page.get_by_label("Specification").fill(text)
+
+
+def kept_address(page: Page, before: str = "") -> str:
+    """The address once it holds a text that was not in it before: the page writes it there in a while."""
+    page.wait_for_url(lambda url: "#1." in url and url != before)
+    return page.url
 
 
 def summary(page: Page, text: str) -> None:
@@ -362,9 +368,10 @@ def test_a_server_that_is_gone_is_said_to_be(browser: Browser) -> None:
 
 def test_the_token_leaves_the_address_and_is_kept_for_reloads_and_other_tabs(browser: Browser, address: str) -> None:
     for page in opened(browser, address):
-        assert "token" not in page.url
+        before = kept_address(page)
         write(page, BROKEN)
         summary(page, "^1 error")
+        assert "token" not in kept_address(page, before)
         page.reload()
         summary(page, "^1 error")
         page.get_by_role("button", name="Copy link").click()
@@ -385,6 +392,50 @@ def test_without_the_token_the_page_says_which_address_to_open(browser: Browser,
     page.goto(f"{base}#{token}")
     summary(page, "^It compiles")
     made.close()
+
+
+STORED = "() => localStorage.getItem('token')"
+
+
+def test_a_link_with_a_wrong_token_takes_nothing_away(browser: Browser, address: str) -> None:
+    base, _, token = address.partition("#token=")
+    made = browser.new_context()
+    made.set_default_timeout(chromium.HANG_MS)
+    page = made.new_page()
+    page.goto(address)
+    summary(page, "^It compiles")
+    assert page.evaluate(STORED) == token
+    # In the same tab only the fragment changes; another tab begins with the link.
+    other = made.new_page()
+    for tab in (page, other):
+        tab.goto(f"{base}#token=junk")
+        tab.wait_for_function("() => !location.hash.includes('junk')")
+        expect(tab.locator("#picture svg")).to_be_visible()
+        assert tab.evaluate(STORED) == token
+        write(tab, BROKEN)
+        summary(tab, "^1 error")
+    # Without a token that the server accepts, the wrong one is not kept either.
+    stranger = browser.new_context().new_page()
+    stranger.goto(f"{base}#token=junk")
+    summary(stranger, "^It could not begin: open the address that `tltlc serve` shows")
+    assert stranger.evaluate(STORED) is None
+    stranger.context.close()
+    made.close()
+
+
+def test_a_tab_uses_the_token_that_another_tab_was_given(browser: Browser) -> None:
+    with serving(HANG_S) as server:
+        made = browser.new_context()
+        made.set_default_timeout(chromium.HANG_MS)
+        page, other = made.new_page(), made.new_page()
+        page.goto(server.address)
+        summary(page, "^It compiles")
+        server.page._token = b"new"
+        other.goto(f"{server.address.partition('#')[0]}#token=new")
+        summary(other, "^It compiles")
+        write(page, BROKEN)
+        summary(page, "^1 error")
+        made.close()
 
 
 def test_a_server_that_was_started_again_is_asked_with_its_new_token(browser: Browser) -> None:
@@ -479,8 +530,10 @@ def test_the_menu_names_the_example_that_is_open(page: Page) -> None:
 
 
 def test_the_picture_is_in_words_or_in_symbols(page: Page) -> None:
+    before = kept_address(page)
     write(page, MENDED)
     summary(page, "^It compiles$")
+    kept_address(page, before)
     trap = page.locator("#picture .state.violated .label")
     expect(trap).to_have_text("The spec is violated.")
     expect(page.locator("#state .formula")).to_have_count(0)

@@ -1,7 +1,7 @@
 // Whoever compiles: the server that the page comes from, or Python in a worker of the browser.
 // Both answer `ask({text, spec, letters})` with what tltlc.playground.view returns, and `ask({})` with how to start.
 
-import { token } from "./token.js";
+import { keepToken, refuseToken, token } from "./token.js";
 
 const LIMIT_MS = 10_000;
 const PATIENCE_MS = 3_000;
@@ -22,20 +22,30 @@ function byServer() {
     async ask(request) {
       // Only the last request matters.
       running?.abort();
-      running = new AbortController();
-      const answer = await fetch("api", {
-        method: "POST",
-        headers: { "Content-Type": "application/json", "Tltlc-Token": token() },
-        body: JSON.stringify(request),
-        signal: running.signal,
-      }).catch((error) => {
-        // Browsers have no word for it that would help.
-        throw error instanceof TypeError ? new Error("the server is gone; start `tltlc serve` again") : error;
-      });
+      const { signal } = (running = new AbortController());
+      let used;
+      let answer;
+      do {
+        used = token();
+        answer = await post(request, used, signal);
+      } while (answer.status === 403 && refuseToken(used));
       if (!answer.ok) throw new Error(REFUSED[answer.status] ?? `the server says: ${answer.statusText}`);
+      keepToken(used);
       return answer.json();
     },
   };
+}
+
+function post(request, used, signal) {
+  return fetch("api", {
+    method: "POST",
+    headers: { "Content-Type": "application/json", "Tltlc-Token": used },
+    body: JSON.stringify(request),
+    signal,
+  }).catch((error) => {
+    // Browsers have no word for it that would help.
+    throw error instanceof TypeError ? new Error("the server is gone; start `tltlc serve` again") : error;
+  });
 }
 
 function inBrowser() {
