@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import socket
+from collections.abc import Callable, Iterator
+from threading import Event
 
 import pytest
 
 from tests.playground.raw import connected, read_to_end, refused, statuses
 from tests.playground.test_server import JSON, ask, request, serving
+from tests.waiting import HANG_S
 from tltlc.limits import MESSAGE, REQUEST_HEAD, REQUEST_LINE
+from tltlc.playground.connections import Connection
 from tltlc.playground.server import Server
 from tltlc.playground.start import start
 
@@ -19,7 +23,7 @@ GET = b"GET / HTTP/1.1\r\n" + HOST
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[Server]:
-    with serving(60.0) as running:
+    with serving(HANG_S) as running:
         yield running
         assert json.loads(ask(running, "POST", "/api", "{}", JSON)[2]) == start()
 
@@ -155,8 +159,43 @@ def test_a_refusal_arrives_although_a_large_body_comes_behind_it(server: Server)
 def test_a_body_that_is_shorter_than_it_says(server: Server) -> None:
     with connected(server) as connection:
         connection.sendall(post(server, b"Content-Length: 3"))
-        connection.shutdown(1)
+        connection.shutdown(socket.SHUT_WR)
         assert statuses(read_to_end(connection)) == [400]
+
+
+@pytest.mark.parametrize("version", [b"1.1", b"1.0"])
+def test_a_client_that_sends_no_more_gets_its_answer(version: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    is_ended = Event()
+    with serving(HANG_S) as server, connected(server) as connection:
+        answer = server.children.answer
+        ended = Connection.eof_received
+
+        def see_end(connection: Connection) -> bool:
+            found = ended(connection)
+            is_ended.set()
+            return found
+
+        def answer_after_the_end(body: bytes, is_abandoned: Callable[[], bool]) -> str | None:
+            assert is_ended.wait(HANG_S)
+            return answer(body, is_abandoned)
+
+        monkeypatch.setattr(Connection, "eof_received", see_end)
+        monkeypatch.setattr(server.children, "answer", answer_after_the_end)
+        connection.sendall(request(server, "{}").replace(b"HTTP/1.1", b"HTTP/" + version))
+        connection.shutdown(socket.SHUT_WR)
+        found = statuses(read_to_end(connection))
+        # Interim answers are not known to the older version.
+        assert found[-1] == 200
+        assert set(found[:-1]) == ({100} if version == b"1.1" else set())
+
+
+def test_a_client_that_sends_no_more_gets_all_answers_in_order(server: Server) -> None:
+    several = request(server, "{}") + GET + b"\r\n" + request(server, '{"text": ""}')
+    for data, found in ((several * 2, [200] * 6), (several + b"GET /", [200, 200, 200, 400]), (b"", [])):
+        with connected(server) as connection:
+            connection.sendall(data)
+            connection.shutdown(socket.SHUT_WR)
+            assert [status for status in statuses(read_to_end(connection)) if status != 100] == found
 
 
 def test_several_requests_at_once_are_answered_in_order(server: Server) -> None:

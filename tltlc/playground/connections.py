@@ -1,6 +1,10 @@
 """The connections of a small HTTP server: how many, for how long, and what each of them is at.
 
 One thread serves all of them and sleeps until something happens. The server decides what is answered (:class:`Site`).
+
+A client that sends no more may still wait for its answer, or may have hung up; the system shows both in the same way.
+The server tells them apart by interim answers, which a client that waits passes over: a connection that nobody reads
+refuses them.
 """
 
 from __future__ import annotations
@@ -21,6 +25,11 @@ _MOST_BYTES: Final = REQUEST_HEAD.size + MESSAGE.size
 """How much may come while a request is answered: as much as the next one can have."""
 _MOST_HEAD: Final = 2 * REQUEST_HEAD.size + REQUEST_LINE.size + 2
 """How much of what has come is looked at for a head: empty lines, the first line and headers, and a little more."""
+
+
+_INTERIM: Final = b"HTTP/1.1 100 Continue\r\n\r\n"
+_INTERIM_S: Final = 0.2
+"""Seconds between two interim answers to a client that sends no more."""
 
 
 @record
@@ -76,7 +85,8 @@ class Open:
     def make_room(self) -> bool:
         """Close the connection that matters least.
 
-        None gives way that waits for its answer, or sends the body of a request whose head was good.
+        None gives way that waits for its answer, or sends the body of a request whose head was good. One that sends no
+        more does, since it may have hung up.
         """
         others = [connection for connection in self._all if connection.gives_way]
         if not others:
@@ -115,12 +125,16 @@ class Connection(asyncio.Protocol):
         self._timer: asyncio.TimerHandle | None = None
         self._task: asyncio.Task[None] | None = None
         self._closes = False
+        self._is_old = False
+        self._has_ended = False
+        """Whether the other side sends no more."""
 
     @property
     def gives_way(self) -> bool:
         """Whether it may be closed for a new one."""
         is_sending = self.doing is Doing.READING and self._head is not None
-        return not is_sending and self.doing is not Doing.ANSWERING
+        is_waiting = self.doing is Doing.ANSWERING and not self._has_ended
+        return not is_sending and not is_waiting
 
     # --- what asyncio calls -------------------------------------------------------------------
 
@@ -144,11 +158,16 @@ class Connection(asyncio.Protocol):
         elif len(self._buffer) > _MOST_BYTES:
             self.abort()
 
-    def eof_received(self) -> None:
-        """The other side sends no more: a request that is not complete never will be."""
-        if self.doing is Doing.READING:
-            self._refuse(HTTPStatus.BAD_REQUEST)
-        self._close()
+    def eof_received(self) -> bool:
+        """The other side sends no more; whether the connection stays open for the answers to what it has sent."""
+        self._has_ended = True
+        if self.doing is Doing.WRITING:
+            return True
+        if self.doing is Doing.ANSWERING:
+            self._look_for_a_reader()
+            return True
+        self._end()
+        return False
 
     def resume_writing(self) -> None:
         """Everything is sent."""
@@ -174,6 +193,19 @@ class Connection(asyncio.Protocol):
         self._hung_up.set()
         self._now(Doing.LEAVING)
         self._transport.close()
+
+    def _end(self) -> None:
+        """Close after the last answer; a request that is not complete never will be."""
+        if self.doing is Doing.READING:
+            self._refuse(HTTPStatus.BAD_REQUEST)
+        self._close()
+
+    def _look_for_a_reader(self) -> None:
+        """Send interim answers until the answer is there: after one that nobody took, the next one fails."""
+        if self.doing is not Doing.ANSWERING or self._is_old:
+            return
+        self._transport.write(_INTERIM)
+        self._timer = asyncio.get_running_loop().call_later(_INTERIM_S, self._look_for_a_reader)
 
     def _now(self, doing: Doing) -> None:
         """Begin something, for which there is so much time."""
@@ -214,7 +246,10 @@ class Connection(asyncio.Protocol):
             return
         head, body, self._head = self._head, bytes(self._buffer[:length]), None
         del self._buffer[:length]
+        self._is_old = head.is_old
         self._now(Doing.ANSWERING)
+        if self._has_ended:
+            self._look_for_a_reader()
         self._task = asyncio.get_running_loop().create_task(self._answer(head, body))
         self._task.add_done_callback(report_failure)
 
@@ -227,7 +262,7 @@ class Connection(asyncio.Protocol):
         self._site.check(head)
         del self._buffer[:end]
         if head.waits and not self._buffer:
-            self._transport.write(b"HTTP/1.1 100 Continue\r\n\r\n")
+            self._transport.write(_INTERIM)
         return True
 
     async def _answer(self, head: Head, body: bytes) -> None:
@@ -268,9 +303,17 @@ class Connection(asyncio.Protocol):
     def _sent(self) -> None:
         """Go on with the next request, or let the other side hang up: who closes first may cut off the answer."""
         if self._closes:
-            self._now(Doing.LEAVING)
-            if self._transport.can_write_eof():
-                self._transport.write_eof()
+            self._leave()
         else:
             self._now(Doing.IDLE)
             self._advance()
+            if self._has_ended and self.doing in (Doing.IDLE, Doing.READING):
+                self._end()
+
+    def _leave(self) -> None:
+        if self._has_ended:
+            self._close()
+            return
+        self._now(Doing.LEAVING)
+        if self._transport.can_write_eof():
+            self._transport.write_eof()

@@ -38,7 +38,8 @@ class Head:
     """A request without its body.
 
     ``path`` is the path of its target without escapes and query; ``headers`` have names in lower case; ``length`` is
-    that of the body in bytes, None where the request does not say; ``keeps`` is whether another request may follow.
+    that of the body in bytes, None where the request does not say; ``keeps`` is whether another request may follow;
+    ``is_old`` is whether the other side speaks HTTP/1.0, which has no interim answers.
     """
 
     method: str
@@ -46,6 +47,7 @@ class Head:
     headers: Mapping[str, str]
     length: int | None
     keeps: bool
+    is_old: bool
 
     @property
     def waits(self) -> bool:
@@ -127,7 +129,8 @@ def _head(method: str, path: str, headers: Mapping[str, str], is_old: bool) -> H
     if headers.get("expect", "100-continue").lower() != "100-continue":
         raise RefusedError(HTTPStatus.EXPECTATION_FAILED)
     closes = "close" in (word.strip() for word in headers.get("connection", "").lower().split(","))
-    return Head(method, path, headers, _length(headers.get("content-length")), not (is_old or closes))
+    length = _length(headers.get("content-length"))
+    return Head(method, path, headers, length, keeps=not (is_old or closes), is_old=is_old)
 
 
 def _length(written: str | None) -> int | None:
