@@ -14,6 +14,7 @@ import pytest
 from tests.playground.test_server import SLOW, serving
 from tests.runtime.regression.page import chromium
 from tests.waiting import HANG_S
+from tltlc.playground.opening import leading_to
 from tltlc.playground.site import PYODIDE, site_files
 from tltlc.playground.start import examples
 from tltlc.writing import write_files
@@ -391,6 +392,17 @@ def test_without_the_token_the_page_says_which_address_to_open(browser: Browser,
     # Only the fragment changes, so that the browser loads nothing anew by itself.
     page.goto(f"{base}#{token}")
     summary(page, "^It compiles")
+    made.close()
+
+
+def test_the_file_that_serve_opens_leads_to_the_page(browser: Browser, address: str) -> None:
+    made = browser.new_context()
+    made.set_default_timeout(chromium.HANG_MS)
+    page = made.new_page()
+    with leading_to(address) as uri:
+        page.goto(uri)
+        summary(page, "^It compiles")
+    assert "token" not in page.url
     made.close()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import json
 import os
 import re
 import signal
@@ -10,23 +11,29 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from html import unescape
 from pathlib import Path
+from urllib.request import url2pathname
 from zipfile import ZipFile
 
 import pytest
 
 from tests.cli.conftest import ROOT, inside, tltlc  # noqa: F401 (fixtures)
 from tests.waiting import HANG_S
+from tltlc.playground.opening import leading_to
 from tltlc.playground.site import PYODIDE
 
 needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="needs a signal that reaches one process alone")
 
 
 @contextmanager
-def served(*options: str, **environment: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
+def served(
+    *options: str, program: tuple[str, ...] = ("-m", "tltlc"), folder: Path | None = None, **environment: str
+) -> Iterator[tuple[subprocess.Popen[str], int]]:
     """A running ``tltlc serve``, and its port."""
     running = subprocess.Popen(
-        [sys.executable, "-m", "tltlc", "serve", "--port", "0", *options],
+        [sys.executable, *program, "serve", "--port", "0", *options],
+        cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
         stderr=subprocess.PIPE,
         text=True,
@@ -56,17 +63,47 @@ def test_it_serves_until_it_is_interrupted() -> None:
 
 
 BROWSER = """
-import sys, urllib.request
-sys.stderr.write(f"saw {len(urllib.request.urlopen(sys.argv[1]).read()) > 100}\\n")
+import json, os, re, sys, urllib.request
+path = urllib.request.url2pathname(sys.argv[1].removeprefix("file:"))
+address = re.search('href="([^"]+)"', open(path).read())[1]
+page = urllib.request.urlopen(address.partition("#")[0]).read()
+mode = os.stat(path).st_mode & 0o777
+seen = {"arguments": sys.argv, "path": path, "mode": mode, "address": address, "size": len(page)}
+sys.stderr.write(json.dumps(seen) + "\\n")
 """
 
 
 @needs_signals
-def test_a_browser_that_stays_in_the_foreground_is_served(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_browser_is_led_to_the_address_by_a_file_that_others_cannot_read(tmp_path: Path, number: int) -> None:
+    """The arguments of a process are seen by everybody. The browser stays in the foreground, and is answered."""
     (tmp_path / "browser.py").write_text(BROWSER)
-    with served("--open", BROWSER=f"{sys.executable} {tmp_path / 'browser.py'} %s") as (running, _):
+    with served("--open", BROWSER=f"{sys.executable} {tmp_path / 'browser.py'} %s") as (running, port):
         assert running.stderr is not None
-        assert running.stderr.readline() == "saw True\n"
+        seen = json.loads(running.stderr.readline())
+        base, _, token = seen["address"].partition("#token=")
+        assert (base, seen["mode"]) == (f"http://127.0.0.1:{port}/", 0o600)
+        assert seen["size"] > 100
+        assert len(token) == 32
+        assert not any(token in argument for argument in seen["arguments"])
+        running.send_signal(number)
+        running.wait(HANG_S)
+        assert not Path(seen["path"]).parent.exists()
+
+
+def test_the_file_leads_to_the_address_as_it_is() -> None:
+    address = "http://127.0.0.1:1/#token=a&b"
+    with leading_to(address) as uri:
+        text = Path(url2pathname(uri.removeprefix("file:"))).read_text(encoding="utf-8")
+    assert unescape(text).count(address) == 2
+
+
+@needs_signals
+def test_where_no_file_can_be_written_the_page_is_still_there(tmp_path: Path) -> None:
+    code = "import tempfile; tempfile.tempdir = 'none/there'\nfrom tltlc.cli.main import main; main()"
+    with served("--open", program=("-c", code)) as (running, _):
+        assert running.stderr is not None
+        assert running.stderr.readline() == "no temporary file can be written: open the address yourself\n"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system itself opens pages")

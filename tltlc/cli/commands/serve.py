@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import click
@@ -70,21 +71,33 @@ def _write(folder: Path, pyodide: Path) -> None:
 def _serve(port: int, opening: bool) -> None:
     from tltlc.playground.server import Server
 
-    with Server(port) as server:
+    with Server(port) as server, ExitStack() as stack:
         print(f"the playground is at {server.address} until Ctrl-C", file=sys.stderr, flush=True)
         if opening:
-            from threading import Thread
-
-            # Some browsers return when they are closed, and all of them need an answer before.
-            Thread(target=_open, args=(server.address,), daemon=True).start()
+            _open(server.address, stack)
         try:
             server.serve_forever()
         except KeyboardInterrupt:
             raise exits.StopQuietlyError(exits.interrupted()) from None
 
 
-def _open(address: str) -> None:
+def _open(address: str, stack: ExitStack) -> None:
+    """Have a browser open an address, by a file that stays until ``stack`` ends."""
+    from threading import Thread
+
+    from tltlc.playground.opening import leading_to
+
+    try:
+        file = stack.enter_context(leading_to(address))
+    except OSError:
+        print("no temporary file can be written: open the address yourself", file=sys.stderr, flush=True)
+        return
+    # Some browsers return when they are closed, and all of them need an answer before.
+    Thread(target=_start_browser, args=(file,), daemon=True).start()
+
+
+def _start_browser(file: str) -> None:
     import webbrowser
 
-    if not webbrowser.open(address):
+    if not webbrowser.open(file):
         print("no browser was found: open the address yourself", file=sys.stderr, flush=True)
