@@ -72,13 +72,17 @@ def project_for(path: str) -> Project:
         folder = Path(path).absolute().parent if path != "-" else Path.cwd()
     except FileNotFoundError:
         return Project()  # the current folder has been deleted: nothing is above it
-    for place in (folder, *folder.parents):
-        candidate = place / FILE_NAME
-        if is_file(candidate):
-            project = read_project(candidate)
-            libraries = project.libraries if Path(path).is_absolute() else map(_from_here, project.libraries)
-            return replace(project, libraries=tuple(libraries))
-    return Project()
+    file = project_file(folder)
+    if file is None:
+        return Project()
+    project = read_project(file)
+    libraries = project.libraries if Path(path).is_absolute() else map(_from_here, project.libraries)
+    return replace(project, libraries=tuple(libraries))
+
+
+def project_file(folder: Path) -> Path | None:
+    """The nearest project file in an absolute folder or above it; None where there is none."""
+    return next((place / FILE_NAME for place in (folder, *folder.parents) if is_file(place / FILE_NAME)), None)
 
 
 def read_project(path: Path) -> Project:

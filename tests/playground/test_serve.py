@@ -50,6 +50,12 @@ def served(
         running.communicate()
 
 
+def rest_of_errors(running: subprocess.Popen[str]) -> str:
+    """Standard error up to the end of the process, with what is in the buffer, which `communicate` leaves out."""
+    assert running.stderr is not None
+    return running.stderr.read()
+
+
 @needs_signals
 def test_it_serves_until_it_is_interrupted() -> None:
     with served() as (running, port):
@@ -58,8 +64,34 @@ def test_it_serves_until_it_is_interrupted() -> None:
         assert connection.getresponse().status == 200
         connection.close()
         running.send_signal(signal.SIGINT)
-        assert running.communicate(timeout=HANG_S)[1] == ""
-        assert running.returncode == 130
+        assert rest_of_errors(running) == ""
+        assert running.wait(HANG_S) == 130
+
+
+def said_behind_the_address(*options: str, folder: Path) -> str:
+    """What `tltlc serve` says on standard error until it answers, less its first line."""
+    with served(*options, folder=folder) as (running, port):
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=HANG_S)
+        connection.request("GET", "/")
+        connection.getresponse().read()
+        connection.close()
+        running.send_signal(signal.SIGINT)
+        return rest_of_errors(running)
+
+
+@needs_signals
+def test_a_project_file_that_is_ignored_is_named(tmp_path: Path) -> None:
+    below = tmp_path / "levels" / "first"
+    below.mkdir(parents=True)
+    (tmp_path / "tltl.toml").write_text("")
+    assert said_behind_the_address(folder=below) == (
+        f"{tmp_path / 'tltl.toml'} is ignored, because it is above this folder; "
+        f"to use it, start `tltlc serve` in {tmp_path}\n"
+    )
+    # The nearest one counts here, so that nothing is to be said.
+    (below / "tltl.toml").write_text("")
+    for folder in (below, tmp_path):
+        assert said_behind_the_address(folder=folder) == ""
 
 
 BROWSER = """

@@ -73,12 +73,27 @@ def _serve(port: int, opening: bool) -> None:
 
     with Server(port) as server, ExitStack() as stack:
         print(f"the playground is at {server.address} until Ctrl-C", file=sys.stderr, flush=True)
+        _report_ignored_project()
         if opening:
             _open(server.address, stack)
         try:
             server.serve_forever()
         except KeyboardInterrupt:
             raise exits.StopQuietlyError(exits.interrupted()) from None
+
+
+def _report_ignored_project() -> None:
+    """Say that a project file above the current folder does not count: texts read nothing outside of that folder."""
+    from tltlc.project import project_file
+
+    try:
+        here = Path.cwd()
+    except FileNotFoundError:
+        return  # the current folder has been deleted
+    file = project_file(here)
+    if file is not None and file.parent != here:
+        way_out = f"to use it, start `tltlc serve` in {file.parent}"
+        print(f"{file} is ignored, because it is above this folder; {way_out}", file=sys.stderr, flush=True)
 
 
 def _open(address: str, stack: ExitStack) -> None:
