@@ -26,13 +26,23 @@ except BaseException:
 """
 
 
+def _started(folder: Path, script: str) -> subprocess.Popen[str]:
+    script = f"from tltlc.cli.interrupts import signals_end\n{script}"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
+    return subprocess.Popen([sys.executable, "-c", script], env=environment, stdout=-1, stderr=-1, text=True)
+
+
+def _run(folder: Path, script: str) -> subprocess.CompletedProcess[str]:
+    """What becomes of a process that nobody interrupts but itself."""
+    with _started(folder, script) as running:
+        out, err = running.communicate(timeout=HANG_S)
+    return subprocess.CompletedProcess(running.args, running.returncode, out, err)
+
+
 def _ended(folder: Path, script: str, told: str) -> tuple[int, str, str]:
     """What becomes of a process that is interrupted as soon as it prints ``told``: status, output, messages."""
     (folder / "slow.py").write_text(_SLOW, encoding="utf-8")
-    script = f"from tltlc.cli.interrupts import signals_end\n{script}"
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}
-    command = [sys.executable, "-c", script]
-    with subprocess.Popen(command, env=environment, stdout=-1, stderr=-1, text=True) as running:
+    with _started(folder, script) as running:
         assert running.stdout is not None
         assert running.stdout.readline() == told
         running.send_signal(signal.SIGINT)
@@ -84,3 +94,42 @@ def test_a_fault_after_an_interrupt_is_no_bug(tmp_path: Path) -> None:
         "main.main()"
     )
     assert _ended(tmp_path, script, "works\n") == (130, "", "")
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_behind_the_command_gives_its_own_status(name: str, tmp_path: Path) -> None:
+    script = (
+        "import signal, sys\nfrom tltlc.cli import interrupts, main\n"
+        "stop = interrupts._stop_listening\n"
+        "def stop_late():\n"
+        "    interrupts._stop_listening = stop\n"
+        # By then SIGINT is ignored; it comes a moment earlier.
+        "    signal.signal(signal.SIGINT, interrupts.interrupt)\n"
+        f"    signal.raise_signal(signal.{name})\n"
+        "interrupts._stop_listening = stop_late\n"
+        "sys.argv = ['tltlc', '--version']\n"
+        "main.main()"
+    )
+    done = _run(tmp_path, script)
+    assert (done.returncode, done.stderr) == (128 + getattr(signal, name), "")
+
+
+HANDLERS = """
+import signal
+for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+    print(getattr(signal.getsignal(getattr(signal, name)), "__name__", "default"), flush=True)
+"""
+
+
+def test_a_program_that_is_started_has_the_defaults(tmp_path: Path) -> None:
+    start = f"with signals_end():\n    import subprocess, sys\n    subprocess.run([sys.executable, '-c', {HANDLERS!r}])"
+    # That of SIGINT is Python's own.
+    assert _run(tmp_path, start).stdout.split() == ["default_int_handler", "default", "default"]
+
+
+def test_a_forked_copy_is_interrupted_and_has_the_other_defaults(tmp_path: Path) -> None:
+    fork = (
+        "import os\nwith signals_end():\n    child = os.fork()\n    if not child:\n"
+        f"        exec({HANDLERS!r})\n        os._exit(0)\n    os.waitpid(child, 0)"
+    )
+    assert _run(tmp_path, fork).stdout.split() == ["interrupt", "default", "default"]

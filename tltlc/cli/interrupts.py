@@ -33,9 +33,11 @@ _came: Final[dict[int, float]] = {}
 def signals_end() -> Iterator[None]:
     """Within, the process is one command: SIGINT, SIGTERM and SIGHUP end it with 128 and the signal's number.
 
-    They raise KeyboardInterrupt, so that temporary files are removed on the way out.  A signal that is ignored, as
-    SIGINT in the background of a shell or SIGHUP under ``nohup``, stays ignored.  Child processes begin with the
-    defaults.  After the command, SIGINT is ignored: its own end has begun.
+    They raise KeyboardInterrupt, so that what was done is kept and temporary files are removed on the way out.  A
+    signal that is ignored, as SIGINT in the background of a shell or SIGHUP under ``nohup``, stays ignored.  A program
+    that is started has the defaults for those that are not ignored.  A forked copy of this process has the defaults for
+    SIGTERM and SIGHUP, but SIGINT still raises KeyboardInterrupt there.  After the command, SIGINT is ignored: its own
+    end has begun.
     """
     try:
         _listen()

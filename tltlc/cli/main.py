@@ -45,4 +45,12 @@ def _run_process() -> "NoReturn":
             cli.main()
     except KeyboardInterrupt:
         # It came before the first handler was there, or behind the last one.
-        raise SystemExit(130) from None
+        raise SystemExit(_interrupted()) from None
+
+
+def _interrupted() -> int:
+    """The exit status for the signal that came; before the command line was loaded, only Ctrl-C raises anything."""
+    import sys
+
+    exits = sys.modules.get("tltlc.cli.exits")
+    return exits.interrupted() if exits else 130

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_file
@@ -48,7 +47,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     already is not played again where level, policy, spec, seed, versions and code are as they were.  Without SUITE, the
     levels that come with tltlc are played, and `shipped.baseline.json` is written.
     """
-    with Report() as report, learning_for("`tltlc baseline`"), requests_heard(), on_without_readers():
+    with Report() as report, learning_for("`tltlc baseline`"), on_without_readers():
         from tltl_runtime.commands.regression_display import RegressionDisplay
         from tltl_runtime.regression.baseline import written_to
         from tltl_runtime.regression.baseline_run import kept_at, write_recorded

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.film import FILMS, Film, write_film
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.notation import notation_option
@@ -63,7 +62,7 @@ def command(
     from tltl_runtime.stealth.supply.feasible import reach_warnings
     from tltl_runtime.training.demonstrations import expert_episodes
 
-    with Report() as report, requests_heard():
+    with Report() as report:
         file, variant = level_place(level)
         env = RecordEpisode(make_env(file, variant or "v0", spec), "careless expert" if careless else "expert")
         played = succeeded = 0

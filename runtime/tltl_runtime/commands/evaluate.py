@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_folder, seed_option
@@ -96,7 +95,7 @@ def command(
         raise click.UsageError("name a POLICY or a --level, or both")
     if recorded and not folder:
         raise click.UsageError("--record needs the folder for the recordings: --out DIR")
-    with Report() as report, learning_for("`tltlc evaluate`"), requests_heard():
+    with Report() as report, learning_for("`tltlc evaluate`"):
         from tltl_runtime.commands.level_argument import check_no_toml
 
         check_no_toml(spec)

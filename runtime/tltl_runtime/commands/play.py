@@ -8,7 +8,6 @@ from pathlib import Path
 import click
 
 from tltl_runtime.commands.at_keyboard import keyboard_options, play_at_keyboard
-from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.recording_files import RecordingFiles
 from tltl_runtime.stealth.env import make_env
@@ -56,8 +55,7 @@ def command(level: str, spec: str | None, seed: int | None, out: Path | None, vi
     The spec judges while you play: the screen shows what it still asks for.  Each episode is recorded to a file,
     those that you stop, too.  `tltlc replay FILE` shows a recording.
     """
-    with requests_heard():
-        _play(*level_place(level), spec, seed, out, view, crouch)
+    _play(*level_place(level), spec, seed, out, view, crouch)
 
 
 def _play(

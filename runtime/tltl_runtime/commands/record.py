@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import click
 
 from tltl_runtime.commands.at_keyboard import keyboard_options, play_at_keyboard
-from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.plain import plain
@@ -79,7 +78,7 @@ def command(
 
     The exit status is 0 where there are N demonstrations, and 1 where the player stopped before.
     """
-    with Report() as report, requests_heard(), on_without_readers():
+    with Report() as report, on_without_readers():
         from tltl_runtime.stealth.env import make_env
         from tltl_runtime.stealth.recording import RecordEpisode
         from tltl_runtime.training.demonstrations import Demonstrations

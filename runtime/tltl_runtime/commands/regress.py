@@ -10,7 +10,6 @@ from typing import Any, Final
 import click
 
 from tltl_runtime.commands.changed_option import ChangedCommand
-from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import Function, output_folder
 from tltl_runtime.commands.unread import on_without_readers
@@ -101,7 +100,7 @@ def command(
         raise click.UsageError("--minutes are those of --retrain: give it, too")
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` is taken as a word of --changed: put the suite before it")
-    with Report() as report, learning_for("`tltlc regress`"), requests_heard(), on_without_readers():
+    with Report() as report, learning_for("`tltlc regress`"), on_without_readers():
         from tltl_runtime.commands.regression_run import Wanted, run
 
         wanted = Wanted(

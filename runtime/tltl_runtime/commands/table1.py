@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.unread import on_without_readers
@@ -73,7 +72,7 @@ def command(folder: Path, shipped: bool, minutes: float | None, workers: Any) ->
     again, the command goes on.  What has changed since, be it a level, a spec, a setting or the code that plays, is
     trained or played anew.
     """
-    with Report() as report, learning_for("`tltlc table1`"), requests_heard(), on_without_readers():
+    with Report() as report, learning_for("`tltlc table1`"), on_without_readers():
         from tltl_runtime.held_folder import held
         from tltlc.writing import write_files
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
-from tltl_runtime.commands.ending import requests_heard
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import output_folder
 from tltl_runtime.commands.senses import senses_options
@@ -137,7 +136,7 @@ def command(
     """
     if resume is not None and folder is not None:
         raise click.UsageError("--resume goes on in its own folder: leave --out out", click.get_current_context())
-    with Report() as report, learning_for("`tltlc train`"), requests_heard():
+    with Report() as report, learning_for("`tltlc train`"):
         from tltl_runtime.commands.level_argument import check_no_toml
 
         check_no_toml(spec, settings="--config")

@@ -138,4 +138,6 @@ if __name__ == "__main__":
     from tltlc.cli.main import main
 
     tell_what_happens(Path(sys.argv[1]))
-    main(sys.argv[2:])
+    # As a process of its own, which handles signals.
+    sys.argv = ["tltlc", *sys.argv[2:]]
+    main()
