@@ -1,4 +1,8 @@
-"""A client of the protocol that says what it is told to, and waits for nothing longer than it is told to."""
+"""A client of the protocol that says what it is told to, and waits for what it is told to.
+
+Its server never gives up an analysis, and that of :data:`tests.lsp.texts.ENDLESS` never ends. So a test that waits for
+such an analysis hangs, and all others depend on no time.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +17,17 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from tests.waiting import HANG_S, children, cpu_seconds, until
+from tests.waiting import HANG_S, until
 
 ROOT = Path(__file__).parents[2]
-PROGRAM = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from tltlc.cli.main import main; main(['lsp'])"
+PROGRAM = f"""
+import sys
+sys.path.insert(0, {str(ROOT)!r})
+from tltlc.lsp import answers, worker
+worker.LONGEST_S = {10 * HANG_S}
+from tltlc.cli.main import main
+main(['lsp'])
+"""
 
 
 class Refused(Exception):
@@ -25,7 +36,13 @@ class Refused(Exception):
 
 class Client:
     def __init__(self, folder: Path | None = None, encodings: tuple[str, ...] = (), **capabilities: Any) -> None:
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        path = [str(Path(__file__).with_name("endless")), *sys.path]
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path)}
+        # Beside the folder, in which nothing else is to lie.
+        self._begun = folder.with_name(f"{folder.name}.begun") if folder else None
+        if self._begun:
+            self._begun.touch()
+            environment["BEGUN"] = str(self._begun)
         self.process = subprocess.Popen(
             [sys.executable, "-c", PROGRAM],
             stdin=subprocess.PIPE,
@@ -89,25 +106,22 @@ class Client:
         return [each["diagnostics"] for each in told if each["uri"] == uri]
 
     def is_quiet(self, seconds: float) -> bool:
-        """Whether nothing more comes for a while."""
+        """Whether nothing more comes for a while: for measurements, since no test may depend on time."""
         try:
             self.said.append(self.messages.get(timeout=seconds))
         except queue.Empty:
             return True
         return False
 
-    def until_it_analyses(self, cpu_s: float = 0.0) -> None:
-        """Wait until the analysing process has used this much CPU time, in seconds; Linux only."""
-        if sys.platform != "linux":
-            assert self.is_quiet(2.0)
-            return
+    def until_it_analyses(self, number: int = 1) -> None:
+        """Wait until the server has begun this many analyses that never end."""
 
-        def analyses() -> bool:
+        def has_begun() -> bool:
+            assert self._begun, "a client without a folder has no such analyses"
             assert self.process.poll() is None, self.errors
-            found = [child for child in children(self.process.pid) if b"spawn_main" in _command(child)]
-            return any(cpu_seconds(child) >= cpu_s for child in found)
+            return self._begun.read_text(encoding="utf-8").count("\n") >= number
 
-        until(analyses, "an analysis")
+        until(has_begun, "an analysis")
 
     def message(self, method: str) -> Any:
         """What was said by a method, already or soon."""
@@ -145,10 +159,10 @@ class Client:
         assert self.process.stdout
         os.dup2(os.open(os.devnull, os.O_RDONLY), self.process.stdout.fileno())
 
-    def leaves_nobody_behind(self, seconds: float) -> bool:
-        """Whether the processes that the server has started have ended, too: they share its standard error."""
-        self._listening.join(seconds)
-        return not self._listening.is_alive()
+    def until_nobody_is_left(self) -> None:
+        """Wait until the processes that the server has started have ended, too: they share its standard error."""
+        self._listening.join(HANG_S)
+        assert not self._listening.is_alive()
 
     # --- underneath ---------------------------------------------------------------------------
 
@@ -200,10 +214,3 @@ def place(text: str, offset: int, encoding: str = "utf-16") -> dict[str, int]:
     width = {"utf-8": 1, "utf-16": 2, "utf-32": 4}[encoding]
     units = len(line.encode({"utf-8": "utf-8", "utf-16": "utf-16-le", "utf-32": "utf-32-le"}[encoding])) // width
     return {"line": before.count("\n"), "character": units}
-
-
-def _command(pid: int) -> bytes:
-    try:
-        return Path(f"/proc/{pid}/cmdline").read_bytes()
-    except OSError:
-        return b""

@@ -1,4 +1,4 @@
-"""Any text, at any moment: nothing that an editor may ask ends in an exception."""
+"""Any text, at any moment: the server answers all that an editor may ask, by the text that the editor has."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tltlc.lsp.document import Document
 from tltlc.lsp.edits import applied
 from tltlc.lsp.paths import uri_of
 from tltlc.lsp.positions import offset, position, range_of
-from tltlc.lsp.remarks import remark
+from tltlc.lsp.remarks import label_in, remark
 from tltlc.lsp.workspace import Workspace
 from tltlc.source import Span
 
@@ -36,11 +36,17 @@ def test_random_edits(path: Path) -> None:
     generator = random.Random(path.stem)
     whole = path.read_text(encoding="utf-8")
     for _ in range(8):
-        text = whole
-        for _ in range(generator.randint(1, 5)):
+        document, _, workspace = opened(whole, path.parent)
+        uri, text = uri_of(document.source.name), whole
+        for version in range(2, 2 + generator.randint(1, 5)):
             text = edited(text, generator)
-            document, _, workspace = opened(text, path.parent)
-            ask_everything(document, workspace, generator)
+            workspace.put(uri, version, text)
+            changed = workspace.document(uri)
+            assert changed is not None
+            assert (changed.source.text, workspace.version(uri)) == (text, version)
+            ask_everything(changed, workspace, generator)
+        anew, _, _ = opened(text, path.parent)
+        assert (changed.said, changed.names, changed.module) == (anew.said, anew.names, anew.module)
 
 
 def edited(text: str, generator: random.Random) -> str:
@@ -55,11 +61,11 @@ def edited(text: str, generator: random.Random) -> str:
 def ask_everything(document: Document, workspace: Workspace, generator: random.Random) -> None:
     source = document.source
     encoding = generator.choice(("utf-8", "utf-16", "utf-32"))
-    for each in document.said:
-        remark(each, document, encoding, uri_of)
-    symbols.symbols(document, encoding)
-    symbols.found(document, "a", encoding, "file:///x")
-    imports.links(document, encoding, uri_of)
+    check_remarks(document, encoding)
+    check_symbols(document, encoding)
+    links = imports.links(document, encoding, uri_of)
+    targets = [source.slice(span) for span, _ in imports.targets(document)]
+    assert [written(document, link.range, encoding) for link in links] == targets
     check_folds(document)
     check_tokens(document, encoding)
     lenses.lenses(document, "file:///x", NOTHING, encoding)
@@ -87,6 +93,34 @@ def ask_everything(document: Document, workspace: Workspace, generator: random.R
         at = generator.randint(0, len(source.text))
         actions.actions(document, Span(at, at), (), encoding, uri_of, types.WorkspaceEdit)
     range_of(source, Span(0, len(source.text) + 5), encoding)
+
+
+def written(document: Document, where: types.Range, encoding: str) -> str:
+    """The text that an editor sees at a range."""
+    start, end = (offset(document.source, each, encoding) for each in (where.start, where.end))
+    assert start <= end
+    return document.source.text[start:end]
+
+
+def check_remarks(document: Document, encoding: str) -> None:
+    """They stand where the compiler's diagnostics do, in the editor's columns."""
+    for each in document.said:
+        shown, label = remark(each, document, encoding, uri_of), label_in(each, document)
+        assert shown.message.startswith(each.title)
+        if label is not None:
+            source, span = document.source, label.span
+            assert written(document, shown.range, encoding) == written(document, range_of(source, span), "utf-16")
+
+
+def check_symbols(document: Document, encoding: str) -> None:
+    """The name of a declaration stands inside of it, and a search finds it."""
+    shown = symbols.symbols(document, encoding)
+    for each in shown:
+        own = written(document, each.selection_range, encoding)
+        assert own in written(document, each.range, encoding)
+        assert own == each.name or each.kind in (types.SymbolKind.Module, types.SymbolKind.Event)
+    found = {each.name for each in symbols.found(document, "", encoding, "file:///x")}
+    assert found == {each.name for each in shown if each.kind != types.SymbolKind.Module}
 
 
 def check_rename(document: Document, changed: list[tuple[Document, list[Edit]]]) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.lsp.client import Client
-from tests.lsp.texts import SLOW
+from tests.lsp.texts import ENDLESS
 from tests.waiting import HANG_S
 from tltlc.limits import MESSAGE
 from tltlc.lsp.paths import name_of
@@ -255,7 +255,7 @@ def test_a_length_that_is_repeated(other: int, client: Client) -> None:
 
 
 def test_a_document_is_closed_while_a_request_is_under_way(client: Client, tmp_path: Path) -> None:
-    uri = client.open(tmp_path / "slow.tltl", SLOW)
+    uri = client.open(tmp_path / "slow.tltl", ENDLESS)
     running = client.start("workspace/executeCommand", {"command": "tltlc.runTests", "arguments": [uri, "slow"]})
     client.tell("textDocument/didClose", {"textDocument": {"uri": uri}})
     assert code_of(client, running) is None

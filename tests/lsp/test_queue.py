@@ -12,7 +12,7 @@ from lsprotocol import types
 
 from tests.lsp.client import Client
 from tests.lsp.test_server import codes
-from tests.lsp.texts import SLOW
+from tests.lsp.texts import ENDLESS
 from tltlc.lsp import queue
 from tltlc.lsp.analysis import Analysis
 from tltlc.lsp.server import create
@@ -161,8 +161,8 @@ async def test_nothing_gives_way_to_what_is_closed(desk: Desk) -> None:
 
 
 def test_a_small_file_does_not_wait_for_a_large_one(client: Client, tmp_path: Path) -> None:
-    """They are opened together; the large one would take a minute."""
-    slow = client.open(tmp_path / "slow.tltl", SLOW)
+    """They are opened together; the analysis of the large one never ends."""
+    slow = client.open(tmp_path / "slow.tltl", ENDLESS)
     small = client.open(tmp_path / "small.tltl", "signal a: bool\nspec s = G (a or not a)\n")
     assert codes(client.diagnostics(small, bool)) == ["TLT0411"]
     client.ask("textDocument/hover", {"textDocument": {"uri": slow}, "position": {"line": 0, "character": 0}})
@@ -171,7 +171,7 @@ def test_a_small_file_does_not_wait_for_a_large_one(client: Client, tmp_path: Pa
 
 
 def test_tests_are_run_on_demand_while_a_large_file_is_analysed(client: Client, tmp_path: Path) -> None:
-    client.open(tmp_path / "slow.tltl", SLOW)
+    client.open(tmp_path / "slow.tltl", ENDLESS)
     small = client.open(
         tmp_path / "small.tltl", 'signal a: bool\nspec s = F a\ntest "t" for s { step a  expect satisfied }\n'
     )

@@ -9,7 +9,7 @@ import pytest
 
 from tests.lsp.client import Client, Refused, place
 from tests.lsp.test_fuzz import edited
-from tests.lsp.texts import EXAMPLES
+from tests.lsp.texts import ENDLESS, EXAMPLES
 
 SPEC = """\
 import stealth
@@ -181,9 +181,8 @@ def test_what_is_refused_is_said_in_plain_words(client: Client, tmp_path: Path) 
     assert [each["newText"] for each in changed] == ["flee", "flee"]
 
 
-def test_an_automaton_that_takes_long_is_given_up(client: Client, tmp_path: Path) -> None:
-    slow = "signal a: bool\nsignal b: bool\nspec s = G (a implies eventually within 2500 steps b)\n"
-    uri = client.open(tmp_path / "slow.tltl", slow)
+def test_an_automaton_that_takes_long_is_given_up_once_the_text_changes(client: Client, tmp_path: Path) -> None:
+    uri = client.open(tmp_path / "slow.tltl", ENDLESS)
     assert client.diagnostics(uri) == []
     client.until_it_analyses()
     client.change(uri, "signal a: bool\nspec s = G (a or not a)\n", 2)
@@ -219,6 +218,17 @@ def test_a_hand_on_the_keyboard(client: Client, tmp_path: Path) -> None:
     client.change(uri, whole.replace("reach", "raech", 1), version + 1)
     # The diagnostics of texts in between may come first.
     assert client.diagnostics(uri, lambda diagnostics: any("raech" in each["message"] for each in diagnostics))
+    final = f"{whole}spec idle = G (alive or not alive)\n"
+    client.change(uri, final, version + 2)
+    anew = Client(tmp_path)
+    assert anew.open(tmp_path / "typed.tltl", final) == uri
+    expected = anew.diagnostics(uri, bool)
+    assert codes(expected) == ["TLT0411"]
+    assert client.diagnostics(uri, lambda found: found == expected)
+    for method in ("semanticTokens/full", "documentSymbol", "foldingRange", "codeLens"):
+        asked = {"textDocument": {"uri": uri}}
+        assert client.ask(f"textDocument/{method}", asked) == anew.ask(f"textDocument/{method}", asked)
+    assert anew.close() == 0
 
 
 def test_a_big_file_is_answered(client: Client, tmp_path: Path) -> None:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tests.lsp.endless.sitecustomize import NEVER_ENDS
 from tltlc.lsp.document import Document
 from tltlc.lsp.workspace import Workspace
 
 MARK = "¦"
 """Where the cursor is in a text."""
 
-SLOW = "".join(f"signal a{i}: bool\nsignal b{i}: bool\n" for i in range(6))
-SLOW += "spec slow = " + " and ".join(f"G (a{i} implies eventually within 5 steps b{i})" for i in range(6)) + "\n"
-"""Its automaton takes more than a minute."""
+ENDLESS = f"signal a: bool\nspec slow = F a\n{NEVER_ENDS}"
+"""In the servers of :mod:`tests.lsp.client` its analysis never ends."""
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.tltl"))
 
