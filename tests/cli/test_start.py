@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import ROOT
+from tests.waiting import HANG_S
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a process that can be continued twice")
 
@@ -67,7 +68,7 @@ def test_an_interrupt_at_the_start_shows_no_traceback_of_ours(how: tuple[str, st
         env=environment,
         cwd=tmp_path,
         capture_output=True,
-        timeout=600,
+        timeout=HANG_S,
         check=True,
         text=True,
     )

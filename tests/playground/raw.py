@@ -5,14 +5,12 @@ from __future__ import annotations
 import re
 import socket
 
+from tests.waiting import HANG_S
 from tltlc.playground.server import Server
-
-TIMEOUT_S = 60.0
-"""Far more than anything takes here."""
 
 
 def connected(server: Server) -> socket.socket:
-    return socket.create_connection(("127.0.0.1", server.server_address[1]), timeout=TIMEOUT_S)
+    return socket.create_connection(("127.0.0.1", server.server_address[1]), timeout=HANG_S)
 
 
 def read_to_end(connection: socket.socket) -> bytes:

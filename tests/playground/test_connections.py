@@ -15,8 +15,9 @@ from typing import Any
 
 import pytest
 
-from tests.playground.raw import TIMEOUT_S, connected, read_to_end, statuses
-from tests.playground.test_server import JSON, SLOW, ask, eventually, request, serving
+from tests.playground.raw import connected, read_to_end, statuses
+from tests.playground.test_server import JSON, PATIENT, SLOW, ask, eventually, request, serving
+from tests.waiting import HANG_S, until
 from tltlc.limits import PLAYGROUND
 from tltlc.playground import children
 from tltlc.playground.server import Server
@@ -24,7 +25,7 @@ from tltlc.playground.start import start
 from tltlc.record import replace
 
 MANY = 300
-FEW = replace(PLAYGROUND, most=4)
+FEW = replace(PATIENT, most=4)
 NEVER_S = 1e6
 
 
@@ -74,7 +75,7 @@ def is_answered(server: Server) -> bool:
 @pytest.mark.parametrize("data", [b"", b"GET / HT", b"POST /api HTTP/1.1\r\nHost: localhost\r\nA"], ids=repr)
 @pytest.mark.usefixtures("room")
 def test_hundreds_of_connections_that_say_little_stop_nobody(data: bytes, turns: list[int]) -> None:
-    with serving(limit_s=120.0, connections=replace(PLAYGROUND, idle_s=NEVER_S, request_s=NEVER_S)) as server:
+    with serving(connections=replace(PATIENT, idle_s=NEVER_S, request_s=NEVER_S)) as server:
         with held(server, MANY) as made:
             for each in made[-PLAYGROUND.most // 2 :]:
                 each.sendall(data)
@@ -108,7 +109,7 @@ def index(headers: bytes) -> bytes:
 
 
 def test_an_idle_connection_is_closed_after_a_while() -> None:
-    with serving(connections=replace(PLAYGROUND, idle_s=0.05)) as server, connected(server) as connection:
+    with serving(connections=replace(PATIENT, idle_s=0.05)) as server, connected(server) as connection:
         assert read_to_end(connection) == b""
         assert eventually(lambda: len(server.open) == 0)
 
@@ -119,38 +120,39 @@ def test_an_idle_connection_is_closed_after_a_while() -> None:
     ids=repr,
 )
 def test_a_request_that_does_not_end_in_time_is_refused(begun: bytes) -> None:
-    with serving(connections=replace(PLAYGROUND, request_s=0.05)) as server, connected(server) as connection:
+    with serving(connections=replace(PATIENT, request_s=0.05)) as server, connected(server) as connection:
         connection.sendall(begun)
         assert statuses(read_to_end(connection)) == [408]
 
 
 def test_a_body_that_comes_slowly_has_no_more_time_than_the_whole_request() -> None:
-    with serving(connections=replace(PLAYGROUND, request_s=0.5)) as server, connected(server) as connection:
+    with serving(connections=replace(PATIENT, request_s=0.5)) as server, connected(server) as connection:
         head = request(server, " " * 1_000_000).partition(b"\r\n\r\n")[0]
         connection.sendall(head + b"\r\n\r\n")
         connection.settimeout(0.02)
-        answer = b""
-        # A byte now and then is no reason to wait for longer.
-        for _ in range(int(TIMEOUT_S / 0.02)):
+
+        def answer() -> bytes:
             try:
-                answer = connection.recv(1 << 16)
-                break
+                return connection.recv(1 << 16)
             except TimeoutError:
+                # A byte now and then is no reason to wait for longer.
                 connection.sendall(b" ")
-        assert statuses(answer) == [408]
+                return b""
+
+        assert statuses(until(answer, "the answer")) == [408]
 
 
 def test_who_does_not_read_its_answer_is_left() -> None:
-    with serving(connections=replace(PLAYGROUND, write_s=0.05)) as server:
+    with serving(connections=replace(PATIENT, write_s=0.05)) as server:
         server.page.files["main.js"] = b"a" * (64 << 20)
         with connected(server) as connection:
+            assert eventually(lambda: len(server.open) == 1)
             connection.sendall(b"GET /main.js HTTP/1.1\r\nHost: localhost\r\n\r\n")
-            assert connection.recv(1)
             assert eventually(lambda: len(server.open) == 0)
 
 
 def test_more_bytes_than_the_next_request_can_have_end_the_connection() -> None:
-    with serving(limit_s=120.0) as server, connected(server) as connection:
+    with serving() as server, connected(server) as connection:
         connection.sendall(request(server, json.dumps({"text": SLOW})))
         with pytest.raises(OSError, match=r"(?i)reset|pipe|abort"):
             for _ in range(100):
@@ -160,7 +162,7 @@ def test_more_bytes_than_the_next_request_can_have_end_the_connection() -> None:
 
 def test_while_every_connection_waits_for_its_answer_a_new_one_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(children, "MOST_AT_ONCE", FEW.most)
-    with serving(limit_s=600.0, connections=FEW) as server:
+    with serving(connections=FEW) as server:
         with held(server, FEW.most, request(server, json.dumps({"text": SLOW}))):
             assert eventually(lambda: len(server.children._running) == FEW.most)
             with connected(server) as another:
@@ -188,7 +190,7 @@ class Full:
 
 def test_without_descriptors_it_looks_again_in_a_while_and_not_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tltlc.playground.server._AGAIN_S", NEVER_S)
-    with serving(limit_s=120.0) as server, held(server, 3) as made:
+    with serving() as server, held(server, 3) as made:
         assert eventually(lambda: len(server.open) == 3)
         full = Full(server._listener)
         server._loop.call_soon_threadsafe(setattr, server, "_listener", full)
@@ -203,7 +205,7 @@ def test_without_descriptors_it_looks_again_in_a_while_and_not_at_once(monkeypat
             assert statuses(read_to_end(waiting)) == [200]
 
 
-LOW = """
+LOW = f"""
 import resource, selectors, sys, threading
 resource.setrlimit(resource.RLIMIT_NOFILE, (64, 64))
 from tltlc.playground.server import Server
@@ -211,7 +213,7 @@ from tltlc.playground.server import Server
 turns = []
 select = selectors.DefaultSelector.select
 selectors.DefaultSelector.select = lambda *given: turns.append(0) or select(*given)
-with Server(0, 120.0) as server:
+with Server(0, {HANG_S}) as server:
     threading.Thread(target=server.serve_forever).start()
     print(server.server_address[1], server.token, flush=True)
     sys.stdin.readline()

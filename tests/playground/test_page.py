@@ -13,7 +13,6 @@ import pytest
 
 from tests.playground.test_server import SLOW, serving
 from tests.runtime.regression.page import chromium
-from tests.waiting import HANG_S
 from tltlc.playground.opening import leading_to
 from tltlc.playground.site import PYODIDE, site_files
 from tltlc.playground.start import examples
@@ -43,7 +42,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    with serving(HANG_S) as server:
+    with serving() as server:
         yield server.address
 
 
@@ -354,7 +353,7 @@ def test_a_text_that_no_link_can_hold(page: Page) -> None:
 
 
 def test_a_server_that_is_gone_is_said_to_be(browser: Browser) -> None:
-    with serving(HANG_S) as server:
+    with serving() as server:
         made = browser.new_context()
         made.set_default_timeout(chromium.HANG_MS)
         page = made.new_page()
@@ -436,7 +435,7 @@ def test_a_link_with_a_wrong_token_takes_nothing_away(browser: Browser, address:
 
 
 def test_a_tab_uses_the_token_that_another_tab_was_given(browser: Browser) -> None:
-    with serving(HANG_S) as server:
+    with serving() as server:
         made = browser.new_context()
         made.set_default_timeout(chromium.HANG_MS)
         page, other = made.new_page(), made.new_page()

@@ -23,7 +23,7 @@ GET = b"GET / HTTP/1.1\r\n" + HOST
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[Server]:
-    with serving(HANG_S) as running:
+    with serving() as running:
         yield running
         assert json.loads(ask(running, "POST", "/api", "{}", JSON)[2]) == start()
 
@@ -166,7 +166,7 @@ def test_a_body_that_is_shorter_than_it_says(server: Server) -> None:
 @pytest.mark.parametrize("version", [b"1.1", b"1.0"])
 def test_a_client_that_sends_no_more_gets_its_answer(version: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     is_ended = Event()
-    with serving(HANG_S) as server, connected(server) as connection:
+    with serving() as server, connected(server) as connection:
         answer = server.children.answer
         ended = Connection.eof_received
 

@@ -22,6 +22,7 @@ from tltlc.limits import ANSWER, MESSAGE, PLAYGROUND, PLAYGROUND_CHILD, Connecti
 from tltlc.playground import children, view
 from tltlc.playground.server import Server
 from tltlc.playground.start import start
+from tltlc.record import replace
 
 JSON = {"Content-Type": "application/json"}
 PLACES = [f"place_{number}" for number in range(9)]
@@ -34,8 +35,13 @@ SLOW = "".join(
 """Two hundred specs of 512 states: each is within every budget, and all of them take minutes."""
 
 
+PATIENT = replace(PLAYGROUND, idle_s=HANG_S, request_s=HANG_S, write_s=HANG_S, linger_s=HANG_S)
+"""Closes no connection because a machine is slow."""
+
+
 @contextmanager
-def serving(limit_s: float = children.LIMIT_S, connections: Connections = PLAYGROUND) -> Iterator[Server]:
+def serving(limit_s: float = HANG_S, connections: Connections = PATIENT) -> Iterator[Server]:
+    """A running server, which by default gives nothing up because a machine is slow."""
     with Server(0, limit_s, connections) as server:
         thread = Thread(target=server.serve_forever)
         thread.start()
@@ -48,7 +54,7 @@ def serving(limit_s: float = children.LIMIT_S, connections: Connections = PLAYGR
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[Server]:
-    with serving(HANG_S) as running:
+    with serving() as running:
         yield running
 
 
@@ -187,13 +193,13 @@ def test_who_does_not_wait_for_an_answer_is_no_problem(server: Server, capfd: py
 def test_a_large_text_arrives_whole_at_a_child_that_is_slow_to_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(children, "_LOOK_S", 0.001)
     text = f"// {'far more than a pipe holds ' * 10_000}\nsignal a: bool\nspec x = F a"
-    with serving(HANG_S) as server:
+    with serving() as server:
         status, _, answer = ask(server, "POST", "/api", json.dumps({"text": text}), JSON)
     assert (status, json.loads(answer)["diagnostics"]) == (200, [])
 
 
 def test_a_text_that_nobody_waits_for_any_more_is_given_up() -> None:
-    with serving(HANG_S) as server:
+    with serving() as server:
         # More than are answered at once: those that wait for their turn give it up as well.
         waiting = [
             socket.create_connection(("127.0.0.1", server.server_address[1])) for _ in range(children.MOST_AT_ONCE + 2)
@@ -209,7 +215,7 @@ def test_a_text_that_nobody_waits_for_any_more_is_given_up() -> None:
 
 def test_what_is_at_work_ends_with_the_server() -> None:
     with (
-        serving(HANG_S) as server,
+        serving() as server,
         socket.create_connection(("127.0.0.1", server.server_address[1])) as connection,
     ):
         connection.sendall(slow_request(server))
@@ -328,7 +334,7 @@ def test_a_child_has_no_more_memory_than_it_may(monkeypatch: pytest.MonkeyPatch)
         "child.main()",
         monkeypatch,
     )
-    with serving(limit_s=120.0) as server:
+    with serving() as server:
         (said,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
         assert (said["code"], said["title"]) == ("TLT0775", "this takes more memory than the playground has")
 
@@ -364,7 +370,7 @@ def test_a_child_that_fails_is_reported_as_what_it_is(code: str, title: str, mon
 
 
 def test_a_child_that_died_while_it_waited_is_replaced() -> None:
-    with serving(HANG_S) as server:
+    with serving() as server:
         ready = server.children._ready
         assert ready is not None
         ready.kill()
@@ -411,13 +417,13 @@ def test_a_lower_limit_that_is_there_already_stays() -> None:
 )
 def test_an_answer_that_is_too_large_is_given_up(code: str, monkeypatch: pytest.MonkeyPatch) -> None:
     replaced_by(code, monkeypatch)
-    with serving(limit_s=120.0) as server:
+    with serving() as server:
         (said,) = json.loads(ask(server, "POST", "/api", '{"text": ""}', JSON)[2])["diagnostics"]
         assert (said["code"], said["title"]) == ("TLT0775", "the answer is larger than 32 MiB, and was given up")
 
 
 def test_where_no_process_can_be_started_the_next_request_tries_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    with serving(limit_s=120.0) as server:
+    with serving() as server:
         with monkeypatch.context() as failing:
             failing.setattr(children, "_started", fails)
             # One process is there already.
