@@ -201,6 +201,10 @@ _NUMBERS: Final = (
     ("-0." + "0" * 400 + "1e400", -0.1),
     ("1" + "0" * 400 + "e-400", 1.0),
     ("0.5" + "0" * 2000 + "1", 0.5),
+    # Readers that cut off exponents or digits, some after 5,200, must not notice it here.
+    ("-0." + "0" * 20_000 + "25e20000", -0.25),
+    ("0025" + "0" * 20_000 + ".0E-20002", 0.25),
+    ("25" * 10_000 + "e-20000", 0.25252525252525254),
     *(("true", 1.0), ("FALSE", 0.0), ("tRuE", 1.0), ('" \t-0.25 "', -0.25)),
 )
 _TRUTHS: Final = (
@@ -318,6 +322,12 @@ MORE_VALUES: Final[Mapping[str, Odd]] = {
     "a very long number": _cell(b"0." + b"0123456789" * 10_000, 0.012345678901234568),
     "a very long whole number": Odd(_HEAD + b"0.5,1\n" + b"9" * 100_000 + b",1\n", (*_ONE, (inf, 1.0))),
     "a very long exponent": _cell(b"5e-" + b"0" * 100_000 + b"1", 0.5),
+    "a million zeros and an exponent that takes them back": _cell(b"-0." + b"0" * 1_040_000 + b"25e1040000", -0.25),
+    "a million digits and an exponent that takes them back": _cell(b"25" + b"0" * 1_040_000 + b"e-1040002", 0.25),
+    "a million zeros and a larger exponent": Odd(
+        _HEAD + b"0.5,1\n0." + b"0" * 1_040_000 + b"25e99999999999999999999,1\n", (*_ONE, (inf, 1.0))
+    ),
+    "a million digits and a smaller exponent": _cell(b"-" + b"9" * 1_040_000 + b"e-99999999999999999999", -0.0),
 }
 """Left out of the corpus, which starts a program for each trace."""
 
