@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from unicodedata import normalize
 
 import pytest
 
-from tltlc.archive import inside, unpack
+from tltlc.archive import Archive, inside, unpack
 from tltlc.diagnostics.diagnostic import TltlError
 
+ARCHIVE = Archive("the archive", damaged="make it again", elsewhere="unpack it elsewhere")
 OUTSIDE = ["../x", "a/../../x", "/x", "//x", "a//x", "..", ".", "", "a/..", "a/.", "./x", "a/", "x\0", "/"]
 
 
@@ -17,7 +19,7 @@ def test_a_path_that_leads_out_is_refused(name: str, tmp_path: Path) -> None:
     folder = tmp_path / "folder"
     folder.mkdir()
     with pytest.raises(TltlError, match="TLT0009"):
-        unpack(folder, [(name, b"bad")], "the archive")
+        unpack(folder, [(name, b"bad")], ARCHIVE)
     assert [path.name for path in tmp_path.iterdir()] == ["folder"]
     assert not list(folder.iterdir())
 
@@ -27,22 +29,57 @@ def test_a_path_through_a_link_is_refused(tmp_path: Path) -> None:
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path)
     with pytest.raises(TltlError, match="TLT0009"):
-        inside(folder, "link/x", "the archive")
+        inside(folder, "link/x", ARCHIVE)
 
 
 @pytest.mark.parametrize("names", [("a", "a"), ("a", "a/b"), ("a/b", "a")])
 def test_two_entries_for_one_path_are_refused(names: tuple[str, str], tmp_path: Path) -> None:
     with pytest.raises(TltlError, match="TLT0009"):
-        unpack(tmp_path, [(name, b"") for name in names], "the archive")
+        unpack(tmp_path, [(name, b"") for name in names], ARCHIVE)
+
+
+@pytest.mark.parametrize(
+    "names", [("A.tltl", "a.tltl"), ("Folder", "folder/x"), ("x/Folder/y", "x/folder"), ("\u00e9", "e\u0301")]
+)
+def test_names_that_are_one_on_some_file_systems_do_not_blame_the_archive(
+    names: tuple[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tltlc.archive.inside", lambda folder, name, _: folder / normalize("NFC", name).lower())
+    with pytest.raises(TltlError) as caught:
+        unpack(tmp_path, [("other", b""), *((name, b"") for name in names)], ARCHIVE)
+    (found,) = caught.value.diagnostics
+    title = f"the archive holds `{names[0]}` and `{names[1]}`, which the file system here takes for one path"
+    assert (found.code, found.title, found.help) == ("TLT0009", title, ARCHIVE.elsewhere)
+
+
+WINDOWS = ["con", "nul.tltl", "a/Aux/b", "COM1.tar.gz", "lpt9", "com\u00b2", "nul .txt", "a:b", "a\\b", "x.", "x "]
+
+
+@pytest.mark.parametrize("name", WINDOWS)
+def test_what_is_no_file_on_windows_is_refused_there(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert inside(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
+    monkeypatch.setattr("tltlc.archive._IS_WINDOWS", True)
+    with pytest.raises(TltlError) as caught:
+        inside(tmp_path, name, ARCHIVE)
+    (found,) = caught.value.diagnostics
+    assert (found.code, found.help) == ("TLT0009", ARCHIVE.elsewhere)
+
+
+@pytest.mark.parametrize("name", ["console", "a.con", "com", "com10", "nu", "a/lpt.txt", ".x"])
+def test_plain_names_are_files_on_windows(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltlc.archive._IS_WINDOWS", True)
+    assert inside(tmp_path, name, ARCHIVE) == tmp_path.joinpath(*name.split("/"))
 
 
 def test_a_name_that_the_system_refuses_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(TltlError, match="TLT0005"):
-        unpack(tmp_path, [("x" * 300, b"")], "the archive")
+        unpack(tmp_path, [("x" * 300, b"")], ARCHIVE)
 
 
 def test_files_lie_at_their_paths(tmp_path: Path) -> None:
-    unpack(tmp_path, [("a/b/c.tltl", b"1"), ("d", b"2"), ("...", b"3"), ("a/..b", b"4")], "the archive")
+    unpack(tmp_path, [("a/b/c.tltl", b"1"), ("d", b"2"), ("...", b"3"), ("a/..b", b"4")], ARCHIVE)
     assert {str(path.relative_to(tmp_path)): path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == {
         "a/b/c.tltl": b"1",
         "d": b"2",

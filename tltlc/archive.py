@@ -3,45 +3,97 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Final
+from unicodedata import normalize
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
+from tltlc.record import record
+
+_IS_WINDOWS: Final = os.name == "nt"
+_DEVICES: Final = {
+    *("con", "prn", "aux", "nul", "conin$", "conout$"),
+    *(f"{port}{digit}" for port in ("com", "lpt") for digit in "0123456789¹²³"),
+}
+"""Names that mean devices on Windows, in small letters; an ending such as `.txt` changes nothing."""
 
 
-def unpack(folder: Path, files: Iterable[tuple[str, bytes]], source: str) -> None:
+@record
+class Archive:
+    """What messages say about an archive.
+
+    ``name`` is what they call it. ``damaged`` is their help where somebody damaged it or made it by hand, ``elsewhere``
+    their help where it is sound, but this system cannot hold its files.
+    """
+
+    name: str
+    damaged: str
+    elsewhere: str
+
+
+def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -> None:
     """Write files into a folder that exists, each at its path below it, with ``/`` between the parts.
 
-    ``source`` is what messages call the archive.
-
     Raises:
-        TltlError: TLT0009, a path leads out of the folder, or two paths cannot both be there; TLT0005, the system
-            refuses to write.
+        TltlError: TLT0009, a path leads out of the folder or is no file's path on this system, or two paths cannot
+            both be there; TLT0005, the system refuses to write.
     """
+    written: list[str] = []
     for name, content in files:
-        path = inside(folder, name, source)
+        path = inside(folder, name, archive)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             # Two entries of one name, or a file and a folder of one name, are no archive of ours.
             with path.open("xb") as file:
                 file.write(content)
         except (FileExistsError, NotADirectoryError, IsADirectoryError):
-            title = f"{source} holds two entries for `{name}`"
-            raise TltlError([Diagnostic("TLT0009", title, help="make it again from files that are there")]) from None
+            raise _two_entries(name, written, archive) from None
         except (OSError, ValueError) as error:
-            title = f"cannot write `{name}` of {source}: {reason(error)}"
+            title = f"cannot write `{name}` of {archive.name}: {reason(error)}"
             raise TltlError([Diagnostic("TLT0005", title, help="check the space and the permissions")]) from None
+        written.append(name)
 
 
-def inside(folder: Path, name: str, source: str) -> Path:
-    """The place of an archive's path below a folder; raises TltlError, TLT0009, where it leads out of it."""
+def inside(folder: Path, name: str, archive: Archive) -> Path:
+    """The place of an archive's path below a folder; raises TltlError, TLT0009, where there is no such place."""
     parts = name.split("/")
+    if _IS_WINDOWS and any(map(_is_foreign, parts)):
+        raise _refused(f"{archive.name} holds the path `{name}`, which cannot be a file on Windows", archive.elsewhere)
     is_plain = not any(part in ("", ".", "..") or "\0" in part for part in parts)
-    # Windows has more ways to write a path, and names that mean devices.
-    is_foreign = os.name == "nt" and any(character in name for character in '\\:*?"<>|')
-    path = folder.joinpath(*parts) if is_plain and not is_foreign else folder
+    path = folder.joinpath(*parts) if is_plain else folder
     if path == folder or not Path(os.path.realpath(path.parent)).is_relative_to(os.path.realpath(folder)):
-        title = f"{source} holds the path `{name}`, which leads out of its folder"
-        raise TltlError([Diagnostic("TLT0009", title, help="do not use it: no tool makes such a path by mistake")])
+        raise _refused(f"{archive.name} holds the path `{name}`, which leads out of its folder", archive.damaged)
     return path
+
+
+def _is_foreign(part: str) -> bool:
+    """Whether Windows takes a part of a path for something else than the name of a file or folder."""
+    # Windows leaves out blanks and points at the end of a name.
+    has_odd_end = part not in (".", "..") and part.endswith((".", " "))
+    has_sign = any(character in '\\:*?"<>|' or character < " " for character in part)
+    return has_odd_end or has_sign or part.partition(".")[0].rstrip(" ").lower() in _DEVICES
+
+
+def _two_entries(name: str, written: Sequence[str], archive: Archive) -> TltlError:
+    """TLT0009: a path cannot be there beside those that have been written."""
+    other = next((other for other in written if _clash(_folded(name), _folded(other))), name)
+    if _clash(name, other):
+        return _refused(f"{archive.name} holds two entries for `{name}`", archive.damaged)
+    title = f"{archive.name} holds `{other}` and `{name}`, which the file system here takes for one path"
+    return _refused(title, archive.elsewhere)
+
+
+def _clash(name: str, other: str) -> bool:
+    """Whether two paths are the same, or one is a folder of the other."""
+    return f"{name}/".startswith(f"{other}/") or f"{other}/".startswith(f"{name}/")
+
+
+def _folded(name: str) -> str:
+    """The same text for all names that some file system takes for one."""
+    return normalize("NFC", normalize("NFD", name).casefold())
+
+
+def _refused(title: str, help_: str) -> TltlError:
+    return TltlError([Diagnostic("TLT0009", title, help=help_)])

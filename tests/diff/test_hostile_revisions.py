@@ -68,7 +68,7 @@ def test_an_entry_above_the_folder_is_refused(inside: Path, tltlc: Run, levels: 
     path = "../" * levels + "mine.tltl"
     assert done.err == (
         f"error[TLT0009]: the revision `bad` holds the path `{path}`, which leads out of its folder\n"
-        "  help: do not use it: no tool makes such a path by mistake\n"
+        "  help: use another revision: `git fsck` names the damaged tree, which `git add` does not make\n"
     )
     assert files(inside) == before
 
@@ -88,6 +88,24 @@ def test_an_entry_that_is_a_file_and_a_folder_is_refused(inside: Path, tltlc: Ru
     done = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert done.status == 3
     assert "two entries for `a.tltl/b.tltl`" in done.err
+
+
+def test_names_that_differ_in_capitals_have_a_help_that_is_right(
+    inside: Path,
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A file system that ignores case, as macOS and Windows have it: the revision is a sound one."""
+    blob = stored("blob", b"")
+    name = revision("capitals", tree((PLAIN, b"Leave.tltl", blob), (PLAIN, b"leave.tltl", blob)))
+    monkeypatch.setattr("tltlc.archive.inside", lambda folder, path, archive: folder / path.lower())
+    done = tltlc("breaking", "specs/leave.tltl", "--against", name)
+    assert done.status == 3
+    assert done.err == (
+        "error[TLT0009]: the revision `capitals` holds `Leave.tltl` and `leave.tltl`, which the file system here takes "
+        "for one path\n"
+        "  help: run this on Linux, or name a revision in which the file has another name\n"
+    )
 
 
 def test_a_tree_of_billions_of_paths_is_refused(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
-from tltlc.archive import unpack
+from tltlc.archive import Archive, unpack
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.limits import REVISION, REVISION_PATHS
 from tltlc.record import record
@@ -54,11 +54,19 @@ def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[
 
     Raises:
         TltlError: TLT0751, git does not give the files; TLT0764, they are more than :data:`tltlc.limits.REVISION`
-            allows; TLT0009, a path leads out of the folder; TLT0005, the system refuses to write.
+            allows; TLT0009, a path cannot be a file below the folder; TLT0005, the system refuses to write.
     """
     files = _wanted(_files(repository, commit, revision), is_wanted, revision)
     _check_sizes(repository, files, revision)
-    unpack(folder, _contents(repository, files, revision), f"the revision `{revision}`")
+    unpack(folder, _contents(repository, files, revision), _archive(revision))
+
+
+def _archive(revision: str) -> Archive:
+    return Archive(
+        f"the revision `{revision}`",
+        damaged="use another revision: `git fsck` names the damaged tree, which `git add` does not make",
+        elsewhere="run this on Linux, or name a revision in which the file has another name",
+    )
 
 
 def _wanted(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: str) -> list[_File]:

@@ -13,7 +13,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.levels.made_for import LEVELS
 from tltl_runtime.stealth.levels.place import overlays_of
-from tltlc.archive import unpack
+from tltlc.archive import Archive, unpack
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.files import is_file, read_source
 
@@ -21,6 +21,7 @@ Texts = tuple[tuple[str, str], ...]
 """Names of files, as the files of a :class:`~tltl_runtime.stealth.level.Level` have them, and what is in them."""
 
 _NAME: Final = re.compile(r"(?:(?:assets|overlays)/)?[^/\\:\0]+\.toml")
+_BASELINE: Final = Archive("the baseline", damaged="record it anew", elsewhere="record it anew on this system")
 _SPEC: Final = re.compile(r"^spec\s*=.*$", re.MULTILINE)
 
 
@@ -59,7 +60,7 @@ def designed(reference: Reference) -> Level | None:
     files = [(file, text.encode("utf-8", "surrogatepass")) for file, text in texts.items()]
     with TemporaryDirectory() as folder:
         try:
-            unpack(Path(folder), files, "the baseline")
+            unpack(Path(folder), files, _BASELINE)
             return load_level(str(Path(folder, name)), played.variant)
         except TltlError:
             return None
