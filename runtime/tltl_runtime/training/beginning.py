@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tltl_runtime.policies.policy import NoNumbersError, Policy
 from tltl_runtime.stealth.env import make_env
-from tltl_runtime.training.checkpoint import Checkpoint, level_changed, read_checkpoint
+from tltl_runtime.training.checkpoint import Checkpoint, damaged, level_changed, read_checkpoint
 from tltl_runtime.training.demonstrated import Demonstrated, read_demonstrations, record_expert
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import Peers, cores
@@ -159,9 +159,12 @@ def _restarts(run: Run, own: Peers, checkpoint: Checkpoint | None) -> Restarts:
     generator = np.random.default_rng(stream(run, own, Purpose.STARTS, iteration))
     restarts = Restarts(run.settings.exploration.parts, generator)
     if checkpoint:
-        # Of more processes than there were, the new ones know the ways of older ones.
-        known = checkpoint.processes[own.rank % len(checkpoint.processes)]
-        restarts.load({name: each.numpy() for name, each in known.items()})
+        # If there are more processes than before, the new ones start with the trajectories of older ones.
+        place = own.rank % len(checkpoint.processes)
+        try:
+            restarts.load({name: each.numpy() for name, each in checkpoint.processes[place].items()})
+        except (TypeError, ValueError) as error:
+            raise damaged(run.folder / CHECKPOINT, f"`processes` {place + 1}: {error}") from None
     return restarts
 
 

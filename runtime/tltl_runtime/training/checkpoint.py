@@ -104,16 +104,16 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
         return None
     data = read_bytes(path, str(path), CHECKPOINT.size)
     if len(data) > CHECKPOINT.size:
-        raise _refused(path, f"it is larger than {CHECKPOINT.size >> 20} MiB")
+        raise damaged(path, f"it is larger than {CHECKPOINT.size >> 20} MiB")
     content = _content(data, path)
     if type(content.get("version")) is not int or content["version"] != VERSION:
         raise _other_version(path, content.get("version"))
     try:
         checkpoint = _made(content)
     except KeyError as error:
-        raise _refused(path, f"it lacks a part: {error}") from None
+        raise damaged(path, f"it lacks a part: {error}") from None
     except (RecordJsonError, RecursionError) as error:
-        raise _refused(path, str(error) or "it is nested too deeply") from None
+        raise damaged(path, str(error) or "it is nested too deeply") from None
     if run is not None:
         _check_run(path, checkpoint.run, run)
     return checkpoint
@@ -133,9 +133,9 @@ def _content(data: bytes, path: Path) -> Mapping[str, Any]:
     try:
         content = read_torch(data)
     except TorchArchiveError as error:
-        raise _refused(path, str(error)) from None
+        raise damaged(path, str(error)) from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise _refused(path, "it is no checkpoint of a training")
+        raise damaged(path, "it is no checkpoint of a training")
     return content
 
 
@@ -147,8 +147,8 @@ def _made(content: Mapping[str, Any]) -> Checkpoint:
     """The checkpoint of what torch has read; raises KeyError and RecordJsonError for what is not as it must be."""
     plain = from_json(_Plain, {name: _lists(content[name]) for name in _PLAIN}, "it")
     processes, algorithm = content["processes"], _object(content["algorithm"], "algorithm")
-    if not isinstance(processes, (tuple, list)):
-        raise RecordJsonError("`processes` is no list")
+    if not isinstance(processes, (tuple, list)) or not processes:
+        raise RecordJsonError("`processes` is no list, or is empty")
     _tensors(algorithm["actor_state_dict"], "algorithm.actor_state_dict")
     return Checkpoint(
         **{name: getattr(plain, name) for name in _PLAIN},
@@ -218,7 +218,13 @@ def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) 
     if other == ["demonstrations"]:
         raise _demonstrations_changed(path.parent)
     if other:
-        raise _refused(path, f"it is of another training: another {' and another '.join(map(_called, other))}")
+        raise damaged(path, f"it is of another training: another {' and another '.join(map(_called, other))}")
+
+
+def damaged(path: Path, why: str) -> TltlError:
+    """TLT0864: a checkpoint is damaged, or does not fit what is trained; ``why`` says how."""
+    help_ = "put back a copy of it, or move it away: the training then begins anew"
+    return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {why}", help=help_)])
 
 
 def level_changed(folder: Path) -> TltlError:
@@ -248,8 +254,3 @@ def _other_version(path: Path, version: object) -> TltlError:
     title += f" (its own is {version!r:.20}, and only {VERSION} can be read)"
     help_ = f"go on with that version, or train anew; `tltlc evaluate {folder}` plays what was learned"
     return TltlError([Diagnostic("TLT0864", title, help=help_)])
-
-
-def _refused(path: Path, why: str) -> TltlError:
-    help_ = "put back a copy of it, or move it away: the training then begins anew"
-    return TltlError([Diagnostic("TLT0864", f"`{path}` cannot be resumed from: {why}", help=help_)])

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tltl_runtime.stealth.snapshot import BRANCHES
 from tltl_runtime.training.search import Failure, Way
 from tltl_runtime.training.starts import Actions, Start
 
@@ -141,10 +142,16 @@ class Restarts:
         }
 
     def load(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Take up what :meth:`state` gave."""
+        """Take up what :meth:`state` gave; raises ValueError where the arrays are none that it gives."""
+        for name in ("way", "failure"):
+            _check_played(name, state)
         self.ways, self.rates = {}, {}
         for way in _lists("way", state):
             self.add(Way(*way))
+        _check_array("rates", state, np.float64, (len(self.ways), self._parts) if self.ways else (0,))
+        _check_array("passed", state, np.float64, (1,))
+        _check_array("lengths", state, np.float64, (2,))
+        _check_figures(state)
         self.rates = dict(zip(self.rates, state["rates"].copy(), strict=True))
         self.failures.clear()
         self.failures.extend(Failure(*each) for each in _lists("failure", state))
@@ -177,6 +184,39 @@ def _lists(name: str, arrays: Mapping[str, NDArray[Any]]) -> Iterator[tuple[int,
     actions = np.split(arrays[f"{name}_actions"], np.cumsum(lengths)[:-1]) if lengths else []
     for seed, own, end in zip(seeds, actions, ends, strict=True):
         yield seed, own.tolist(), end
+
+
+def _check_array(
+    name: str, arrays: Mapping[str, NDArray[Any]], dtype: type[np.generic], shape: tuple[int, ...]
+) -> None:
+    found = arrays.get(name)
+    if found is None or found.dtype != dtype or found.shape != shape:
+        kind = "" if found is None else f", not {found.dtype} of the shape {list(found.shape)}"
+        raise ValueError(f"`{name}` must be {np.dtype(dtype)} of the shape {list(shape)}{kind}")
+
+
+def _check_played(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Raise ValueError for arrays that :func:`_arrays` does not make."""
+    count = arrays[f"{name}_seeds"].size if f"{name}_seeds" in arrays else 0
+    for what in ("seeds", "ends", "lengths"):
+        _check_array(f"{name}_{what}", arrays, np.int64, (count,))
+    lengths = arrays[f"{name}_lengths"]
+    actions = sum(lengths.tolist())
+    _check_array(f"{name}_actions", arrays, np.int8, (actions, len(BRANCHES)) if actions else (0,))
+    if (lengths < 0).any() or (arrays[f"{name}_seeds"] < 0).any():
+        raise ValueError(f"`{name}_lengths` or `{name}_seeds` holds a number below 0")
+    chosen = arrays[f"{name}_actions"].reshape(-1, len(BRANCHES))
+    if (chosen < 0).any() or (chosen >= np.array(BRANCHES)).any():
+        raise ValueError(f"`{name}_actions` holds what is no action")
+
+
+def _check_figures(arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Raise ValueError for success rates outside [0, 1], and for lengths that are no positive numbers."""
+    rates = np.append(arrays["rates"].ravel(), arrays["passed"])
+    if not ((rates >= 0) & (rates <= 1)).all():
+        raise ValueError("`rates` or `passed` holds a number outside 0 to 1")
+    if not ((arrays["lengths"] > 0) & np.isfinite(arrays["lengths"])).all():
+        raise ValueError("`lengths` holds what is no positive number")
 
 
 def _weights(rates: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -11,19 +11,21 @@ from rsl_rl.algorithms import PPO
 
 from tltl_runtime.policies.file import check_size
 from tltl_runtime.policies.threads import threads
+from tltl_runtime.record_json import RecordJsonError
 from tltl_runtime.training.available import class_of, device_of
 from tltl_runtime.training.beginning import begun, demonstrated, environments, initial_policy, prepared
-from tltl_runtime.training.checkpoint import Best, Checkpoint, copied
+from tltl_runtime.training.checkpoint import Best, Checkpoint, copied, damaged
 from tltl_runtime.training.confirmation import confirm
 from tltl_runtime.training.demonstrations import Tried
 from tltl_runtime.training.distributed import Peers, joined
+from tltl_runtime.training.fit import take_up
 from tltl_runtime.training.folder import held
 from tltl_runtime.training.gail import Gail
 from tltl_runtime.training.gathered import gathered, own_state, set_generators
 from tltl_runtime.training.keeping import Keeping
 from tltl_runtime.training.policy import card_of, policy_of
 from tltl_runtime.training.report import Confirmation, Report
-from tltl_runtime.training.run import Run, identity
+from tltl_runtime.training.run import CHECKPOINT, Run, identity
 from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.search import Searched, together
 from tltl_runtime.training.searching import Searching, searched_again
@@ -109,7 +111,10 @@ class _Training:
         self._card = card_of(run, runner.env)
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
         if begun is not None:
-            runner.take_up(begun.algorithm)
+            try:
+                take_up(begun, runner)
+            except RecordJsonError as error:
+                raise damaged(run.folder / CHECKPOINT, str(error)) from None
             runner.current_learning_iteration = begun.iteration
             self._windows.load(begun.window, begun.unbroken)
             if own.rank < len(begun.processes):

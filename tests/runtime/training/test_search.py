@@ -340,7 +340,7 @@ def test_what_is_kept_of_restarts_is_all_of_them(count: int) -> None:
         restarts.ended(Start(3, (), (2, 2)), [], None)
     restarts.ended(Start(3), [[0] * 5] * 200, None)
     for seed in range(count):
-        restarts.ended(Start(seed), [[1, 0, 2, 0, seed]] * (3 + seed), None, 1)
+        restarts.ended(Start(seed), [[seed, 0, 1, 0, 1]] * (3 + seed), None, 1)
     again = restarts_of([], 4)
     again.load(restarts.state())
     assert again.failures == restarts.failures

@@ -83,6 +83,15 @@ def _partial(run: Run) -> Run:
     return run
 
 
+def _wider(run: Run) -> Run:
+    """As of a network with another layer."""
+    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
+    weights = content["algorithm"]["actor_state_dict"]
+    weights |= {name: torch.zeros(3, 5) for name in list(weights)[:1]}
+    torch.save(content, run.folder / CHECKPOINT)
+    return run
+
+
 @pytest.mark.parametrize(
     ("name", "change"),
     [
@@ -93,6 +102,7 @@ def _partial(run: Run) -> Run:
         ("TLT0864_settings", _other_settings),
         ("TLT0864_newer", _newer),
         ("TLT0864_partial", _partial),
+        ("TLT0864_shape", _wider),
     ],
 )
 def test_a_checkpoint_that_does_not_fit_is_refused(copy: Run, name: str, change: Callable[[Run], Run]) -> None:

@@ -1,0 +1,179 @@
+"""Checkpoints of the right types whose tensors do not fit the training that goes on from them."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from tests.runtime.training.runs import run_in
+from tltl_runtime.training.checkpoint import read_checkpoint
+from tltl_runtime.training.report import Report
+from tltl_runtime.training.restarts import Restarts
+from tltl_runtime.training.run import CHECKPOINT, Run
+from tltl_runtime.training.search import Failure, Way
+from tltl_runtime.training.train import train
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
+
+Content = dict[str, Any]
+
+
+def changed(run: Run, change: Callable[[Content], object]) -> None:
+    content = torch.load(run.folder / CHECKPOINT, weights_only=True)
+    change(content)
+    torch.save(content, run.folder / CHECKPOINT)
+
+
+def refusal(run: Run) -> str:
+    """What a training says that goes on from a checkpoint; the checkpoint itself can be read."""
+    assert read_checkpoint(run.folder / CHECKPOINT)
+    before = (run.folder / CHECKPOINT).read_bytes()
+    with pytest.raises(TltlError) as caught:
+        next(train(run, resume=True))
+    (found,) = caught.value.diagnostics
+    assert found.code == "TLT0864"
+    assert (run.folder / CHECKPOINT).read_bytes() == before
+    return found.title.partition(" cannot be resumed from: ")[2]
+
+
+@pytest.fixture(name="copy")
+def _copy(tmp_path: Path, whole: tuple[Run, list[Report]]) -> Run:
+    shutil.copytree(whole[0].folder, tmp_path / "run")
+    return replace(whole[0], folder=tmp_path / "run")
+
+
+def _first(weights: dict[str, Any], change: Callable[[Any], object]) -> None:
+    name = next(iter(weights))
+    weights[name] = change(weights[name])
+
+
+def _cut(content: Content) -> dict[str, Any]:
+    """The actor's weights, the first of them without its last row."""
+    weights: dict[str, Any] = dict(content["algorithm"]["actor_state_dict"])
+    _first(weights, lambda each: each[:-1])
+    return weights
+
+
+def _state(content: Content) -> dict[Any, Any]:
+    state: dict[Any, Any] = content["algorithm"]["optimizer_state_dict"]["state"][0]
+    return state
+
+
+def _groups(content: Content) -> dict[str, Any]:
+    group: dict[str, Any] = content["algorithm"]["optimizer_state_dict"]["param_groups"][0]
+    return group
+
+
+CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
+    "critic of another shape": (
+        lambda it: _first(it["algorithm"]["critic_state_dict"], lambda each: each[:-1]),
+        "and the network needs",
+    ),
+    "critic of whole numbers": (
+        lambda it: _first(it["algorithm"]["critic_state_dict"], lambda each: each.long()),
+        "is no tensor of float32",
+    ),
+    "critic without a layer": (
+        lambda it: it["algorithm"]["critic_state_dict"].popitem(),
+        "`algorithm.critic_state_dict` is of another network",
+    ),
+    "critic that is a number": (
+        lambda it: it["algorithm"].update(critic_state_dict=1),
+        "`algorithm.critic_state_dict` is of another network",
+    ),
+    "no critic": (lambda it: it["algorithm"].pop("critic_state_dict"), "it lacks a part: 'critic_state_dict'"),
+    "best actor of another shape": (
+        lambda it: it.update(best={"score": (0.5, 1.0, -2.0), "steps": 64, "actor": _cut(it)}),
+        "and the network needs",
+    ),
+    "averages of another shape": (
+        lambda it: _state(it).update(exp_avg=torch.zeros(2)),
+        "`algorithm.exp_avg` has the shape [2]",
+    ),
+    "averages that are missing": (lambda it: _state(it).pop("exp_avg_sq"), "an optimizer in it has other averages"),
+    "averages that are no tensor": (lambda it: _state(it).update(exp_avg="text"), "its `algorithm` is damaged"),
+    "optimizer of fewer weights": (lambda it: _groups(it)["params"].pop(), "its `algorithm` is damaged"),
+    "optimizer whose rate is a text": (
+        lambda it: _groups(it).update(lr="fast"),
+        "an optimizer in it has other options",
+    ),
+    "optimizer whose betas are one": (
+        lambda it: _groups(it).update(betas=(0.9,)),
+        "an optimizer in it has other options",
+    ),
+    "generator that is too short": (
+        lambda it: it["processes"][0].update(cpu=torch.zeros(3, dtype=torch.uint8)),
+        "a state of random numbers in `processes` is none",
+    ),
+    "generator of other numbers": (
+        lambda it: it["processes"][0].update(cpu=it["processes"][0]["cpu"].float()),
+        "a state of random numbers in `processes` is none",
+    ),
+    "no generator": (lambda it: it["processes"][0].pop("cpu"), "a state of random numbers in `processes` is none"),
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_what_does_not_fit_is_refused(copy: Run, name: str) -> None:
+    change, why = CHANGES[name]
+    changed(copy, change)
+    assert why in refusal(copy)
+
+
+def test_a_whole_checkpoint_fits(copy: Run) -> None:
+    assert next(train(copy, resume=True)).stop == "steps"
+
+
+def test_a_checkpoint_of_no_process_is_refused(copy: Run) -> None:
+    changed(copy, lambda it: it.update(processes=()))
+    with pytest.raises(TltlError, match="TLT0864"):
+        read_checkpoint(copy.folder / CHECKPOINT)
+
+
+def test_starts_of_another_shape_are_refused(tmp_path: Path) -> None:
+    run = run_in(tmp_path / "run", exploration__ways=1, exploration__steps=64, stop__steps=64)
+    list(train(run))
+    changed(run, lambda it: it["processes"][0].update(rates=torch.zeros(2, 3)))
+    assert refusal(run).startswith("`processes` 1: `rates` must be float64 of the shape [")
+
+
+def played() -> dict[str, Any]:
+    """The arrays of a trajectory and a failure."""
+    restarts = Restarts(4, np.random.default_rng(0))
+    restarts.add(Way(1, [[0] * 5, [1] * 5], 2))
+    restarts.failures.append(Failure(3, [[0] * 5], 1))
+    return restarts.state()
+
+
+STARTS: dict[str, Callable[[dict[str, Any]], object]] = {
+    "no seeds": lambda it: it.pop("way_seeds"),
+    "no rates": lambda it: it.pop("rates"),
+    "more lengths than seeds": lambda it: it.update(way_lengths=np.array([1, 1])),
+    "fewer actions than lengths": lambda it: it.update(way_actions=it["way_actions"][:1]),
+    "actions of one branch": lambda it: it.update(failure_actions=np.zeros(1, np.int8)),
+    "actions that nobody can choose": lambda it: it.update(way_actions=it["way_actions"] + np.int8(100)),
+    "a length below 0": lambda it: it.update(way_lengths=np.array([-2])),
+    "lengths that are fractions": lambda it: it.update(way_lengths=np.array([2.0])),
+    "a seed below 0": lambda it: it.update(way_seeds=np.array([-1])),
+    "rates of two ends": lambda it: it.update(rates=np.zeros((2, 4))),
+    "rates of other parts": lambda it: it.update(rates=np.zeros((1, 3))),
+    "a rate above 1": lambda it: it.update(rates=np.full((1, 4), 2.0)),
+    "a rate that is no number": lambda it: it.update(passed=np.array([np.nan])),
+    "two rates from the start": lambda it: it.update(passed=np.zeros(2)),
+    "a mean length of 0": lambda it: it.update(lengths=np.zeros(2)),
+}
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_damaged_starts_are_refused(name: str) -> None:
+    whole = played()
+    Restarts(4, np.random.default_rng(0)).load(whole)
+    STARTS[name](whole)
+    with pytest.raises(ValueError, match="`"):
+        Restarts(4, np.random.default_rng(0)).load(whole)
