@@ -87,8 +87,9 @@ def test_the_limit_of_edges_is_exact(semantics: Literal["finite", "infinite"], m
     )
 
 
-def built(spec: Spec) -> Fspa:
-    return build_infinite(spec) if spec.semantics == "infinite" else build(spec)
+def built(spec: Spec, budget: int = 1_000) -> Fspa:
+    make = build_infinite if spec.semantics == "infinite" else build
+    return make(spec, state_budget=budget)
 
 
 def test_products_on_the_way_to_guards_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -113,6 +114,27 @@ def run(fspa: Fspa, trace: Iterable[frozenset[str]]) -> int:
 
 def powerset(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
     return chain.from_iterable(combinations(names, size) for size in range(len(names) + 1))
+
+
+@pytest.mark.parametrize("semantics", ["finite", "infinite"])
+def test_the_help_on_many_exclusive_atoms_is_right(semantics: Literal["finite", "infinite"]) -> None:
+    """142 atoms of one group have 10,011 pairs, each of which counts as a prime implicant; two groups have half."""
+    goal = eventually(or_(*map(atom, names(142))))
+    found = refusal(replace(spec_from_formula(goal, exclusive=[names(142)]), semantics=semantics))
+    assert (found.code, found.help) == (
+        "TLT0502",
+        "declare fewer atoms `exclusive`, or several smaller groups: now 10011 pairs exclude each other",
+    )
+    halves = [names(142)[:71], names(142)[71:]]
+    assert built(replace(spec_from_formula(goal, exclusive=halves), semantics=semantics))
+
+
+def test_a_large_guard_without_exclusive_atoms_is_no_fault_of_theirs() -> None:
+    parity = atom("a0")
+    for name in names(16)[1:]:
+        parity = iff(atom(name), parity)
+    found = refusal(spec_from_formula(eventually(parity), exclusive=[names(2)]))
+    assert (found.code, found.help) == ("TLT0502", "split the spec, or name the condition as a predicate")
 
 
 def test_the_states_of_all_parts_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,6 +188,6 @@ def test_a_product_over_exclusive_atoms_makes_few_nodes(monkeypatch: pytest.Monk
 
 def refusal(spec: Spec, budget: int = 1_000) -> Diagnostic:
     with pytest.raises(TltlError) as raised:
-        build(spec, state_budget=budget)
+        built(spec, budget)
     (found,) = raised.value.diagnostics
     return found

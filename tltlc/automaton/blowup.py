@@ -98,6 +98,10 @@ def blamed(
 
 def _fewer_guards(spec: Spec, reason: TooManyPrimes) -> str:
     """What makes guards smaller, or fewer."""
+    pairs = sum(len(group) * (len(group) - 1) // 2 for group in spec.exclusive)
+    if reason.whose == "a guard" and 2 * pairs > reason.limit:
+        # The guard is computed over these pairs, too.
+        return f"declare fewer atoms `exclusive`, or several smaller groups: now {pairs} pairs exclude each other"
     if reason.whose == "a guard":
         return "split the spec, or name the condition as a predicate"
     order = "give the goals an order, or split the spec"
