@@ -115,6 +115,8 @@ WORK: Final[Mapping[str, int]] = {
     "guard literals": 1_500_000,
     "states of parts": 150_000,
     "states of blamed parts": 40_000,
+    "estimate of states": 20_000_000,
+    "steps in the given order of atoms": 100_000,
     "edges": 1_000_000,
     "partial products": 20_000_000,
     "label nodes": 6_000_000,

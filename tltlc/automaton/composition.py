@@ -10,6 +10,7 @@ from __future__ import annotations
 from heapq import heapify, heappop, heappush
 
 from tltlc.automaton.diagrams import ACCEPT, FALSE, IMPOSSIBLE, LEAF, TRUE, Diagrams, OutOfSteps
+from tltlc.automaton.estimate import Estimate
 from tltlc.automaton.machine import Machine, OutOfStates, machine
 from tltlc.automaton.successors import Successors
 from tltlc.limits import WORK
@@ -36,6 +37,7 @@ class _Composition:
         self._state_budget = state_budget
         self._allowed = allowed
         self._left = max(WORK["states of parts"], 3 * state_budget)
+        self._estimate = Estimate(successors.diagrams, WORK["estimate of states"])
 
     def minimal(self, formula: Formula) -> Machine:
         whole = self._successors.obligation(formula)
@@ -58,6 +60,8 @@ class _Composition:
         diagrams = self._successors.diagrams
         join = diagrams.both if formula.op == "and" else diagrams.either
         machines = [self.minimal(part) for part in formula.args]
+        if self._estimate.exceeds(machines, formula.op == "and", self._state_budget):
+            raise OutOfStates
         # The running number breaks ties, so that the order is the same everywhere.
         heap = [(len(made.transitions), number, made) for number, made in enumerate(machines)]
         heapify(heap)
