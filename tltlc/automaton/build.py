@@ -7,6 +7,7 @@ labels -> :class:`~tltlc.automaton.fspa.Fspa`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 from tltlc.automaton.blowup import blow_up, recursion_room
 from tltlc.automaton.composition import minimal_machine as compose
@@ -15,6 +16,7 @@ from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.automaton.labels import LONGEST_SIMPLIFIED, Labels, LabelsTooLong
 from tltlc.automaton.machine import Machine, OutOfStates
+from tltlc.automaton.order import better_order, reordered, restored
 from tltlc.automaton.successors import Successors
 from tltlc.expression import Signal as SignalValue
 from tltlc.limits import WORK
@@ -62,9 +64,26 @@ def minimal_machine(
 
 
 def _build(spec: Spec, state_budget: int) -> Fspa:
+    """The automaton, by way of another order of the atoms where theirs makes large diagrams."""
+    order = better_order(spec.formula, [atom.name for atom in spec.atoms])
+    if order is None:
+        return _built(spec, state_budget)
+    try:
+        return _built(spec, state_budget, WORK["steps in the given order of atoms"])
+    except OutOfSteps:
+        return restored(_built(reordered(spec, order), state_budget), spec, order)
+
+
+def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
+    """The automaton; raises :class:`OutOfSteps` where machine or guards take more than so many steps, if any."""
     names = [atom.name for atom in spec.atoms]
-    successors, minimal, allowed = minimal_machine(spec.formula, names, state_budget, spec.exclusive)
-    diagrams = successors.diagrams
+    diagrams = Diagrams()
+
+    def bounded_steps() -> AbstractContextManager[None]:
+        return diagrams.at_most(steps) if steps is not None else nullcontext()
+
+    with bounded_steps():
+        successors, minimal, allowed = minimal_machine(spec.formula, names, state_budget, spec.exclusive, diagrams)
     targets = _targets(minimal, diagrams)
     distance = distances(targets, accepting=lambda leaf: diagrams.high[leaf] == 1)
     order = breadth_first(next(iter(targets)), targets, distance)
@@ -81,6 +100,8 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
         )
         for number, leaf in enumerate(order)
     )
+    with bounded_steps():
+        edges = _edges(order, minimal, Guards(diagrams, names, allowed), diagrams)
     finite = [d for d in distance.values() if d is not None]
     return Fspa(
         name=spec.name,
@@ -97,7 +118,7 @@ def _build(spec: Spec, state_budget: int) -> Fspa:
         atoms=spec.atoms,
         exclusive=spec.exclusive,
         states=states,
-        edges=_edges(order, minimal, Guards(diagrams, names, allowed), diagrams),
+        edges=edges,
         spec_size=max(finite, default=0),
     )
 

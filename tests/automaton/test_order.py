@@ -1,0 +1,75 @@
+"""Another order of the atoms makes large diagrams small, and changes nothing else."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.automaton.test_composition import _isomorphic
+from tests.logic.strategies import formulas
+from tests.reference_formulas import read_formula
+from tltlc.automaton import build as build_module
+from tltlc.automaton.build import build, spec_from_formula
+from tltlc.automaton.diagrams import Diagrams
+from tltlc.automaton.order import better_order, reordered, restored
+from tltlc.limits import WORK
+from tltlc.logic.formula import Formula, and_, atom, eventually, iff, or_
+from tltlc.resolve.spec import Spec
+
+ATOMS = ("a", "b", "c", "d")
+
+
+def pairs(count: int) -> Spec:
+    """As many pairs that must be equal; in the order of the atoms all first ones come first."""
+    first = [atom(f"a{number}") for number in range(count)]
+    second = [atom(f"b{number}") for number in range(count)]
+    equal = and_(*map(iff, first, second))
+    return spec_from_formula(or_(eventually(and_(*first)), eventually(equal)))
+
+
+def test_atoms_that_belong_together_lie_side_by_side() -> None:
+    spec = pairs(9)
+    order = better_order(spec.formula, [atom.name for atom in spec.atoms])
+    assert order is not None
+    assert [spec.atoms[index].name for index in order] == [f"{each}{number}" for number in range(9) for each in "ab"]
+
+
+@pytest.mark.parametrize("text", ["F a", "a <-> b", "F(a & b) & F(c & d)", "G(a -> F b) & G(c -> F d)", "true"])
+def test_a_good_order_is_kept(text: str) -> None:
+    formula = read_formula(text)
+    assert better_order(formula, [*formula.atoms()]) is None
+
+
+@given(formulas(atoms=ATOMS, max_leaves=8), st.permutations(range(4)), st.sampled_from([(), (ATOMS[:2],)]))
+@settings(max_examples=100, deadline=None)
+def test_the_automaton_is_the_same(formula: Formula, order: list[int], groups: tuple[tuple[str, ...], ...]) -> None:
+    spec = spec_from_formula(or_(formula, and_(*map(atom, ATOMS))), exclusive=groups)
+    order = [index for index in order if index < len(spec.atoms)]
+    found, wanted = restored(build(reordered(spec, order)), spec, order), build(spec)
+    assert (found.atoms, found.exclusive) == (wanted.atoms, wanted.exclusive)
+    assert _isomorphic(found, wanted)
+
+
+def test_pairs_compile_in_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twelve took fourteen seconds, and thirteen were refused after twenty-three, with a gigabyte in memory."""
+    made: list[Diagrams] = []
+    monkeypatch.setattr(build_module, "Diagrams", lambda: made.append(Diagrams()) or made[-1])
+    fspa = build(pairs(13))
+    assert len(fspa.states) == 2
+    assert [atom.name for atom in fspa.atoms] == [*(f"a{n}" for n in range(13)), *(f"b{n}" for n in range(13))]
+    assert sum(len(each.atom) for each in made) < 400_000
+
+
+def test_what_takes_few_steps_keeps_its_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(build_module, "restored", None)
+    assert build(pairs(6))
+    monkeypatch.setitem(WORK, "steps in the given order of atoms", 10)
+    with pytest.raises(TypeError):
+        build(pairs(6))
+
+
+def test_another_order_gives_the_same_automaton_of_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
+    wanted = build(pairs(6))
+    monkeypatch.setitem(WORK, "steps in the given order of atoms", 10)
+    assert _isomorphic(build(pairs(6)), wanted)
