@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import os
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from tltl_runtime.task import load_task
 from tltl_runtime.training.checkpoint import Checkpoint, read_checkpoint
 from tltl_runtime.training.run import CHECKPOINT, Run, identity
 from tltl_runtime.training.runner import Iteration, Runner
+from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import read_settings
 from tltl_runtime.training.train import train
 from tltlc.record import replace
@@ -116,9 +118,16 @@ def _say(**values: Any) -> None:
 def main(folder: str, *given: str) -> None:
     """Train in a folder with ``NAME=VALUE`` of :func:`run_in`, the values in JSON, or go on there with ``--resume``.
 
-    It prints a line of JSON for each report; in several processes of torchrun each does.
+    It prints a line of JSON for each report; in several processes of torchrun each does. With ``--wait-in-search`` it
+    prints how many steps a search has taken when it first tells, and waits there until somebody kills it.
     """
+
+    def searching(searched: Searched) -> None:
+        if "--wait-in-search" in given:
+            _say(searched=searched.steps)
+            signal.pause()
+
     changes = dict(each.split("=", 1) for each in given if "=" in each)
     run = run_in(Path(folder), **{name: json.loads(value) for name, value in changes.items()})
-    for report in train(run, resume="--resume" in given):
+    for report in train(run, resume="--resume" in given, searching=searching):
         _say(number=report.iteration.number, steps=report.steps, stop=report.stop, finished=report.window.count)

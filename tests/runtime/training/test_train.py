@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -19,6 +20,7 @@ from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.stealth.levels.file import level_path, load_level
 from tltl_runtime.stealth.supply.offer import params
 from tltl_runtime.task import load_task
+from tltl_runtime.training import keeping
 from tltl_runtime.training.checkpoint import Checkpoint, write_checkpoint
 from tltl_runtime.training.metrics import METRICS, read_metrics
 from tltl_runtime.training.record import write_record
@@ -122,6 +124,21 @@ def test_a_training_that_is_left_goes_on_after_its_last_iteration(folder: Path) 
     # It is over: its end is told once more.
     (last,) = train(run, resume=True)
     assert (last.iteration.number, last.steps, last.stop) == (3, 192, "steps")
+
+
+def test_a_checkpoint_follows_the_first_iteration_after_its_time(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = SimpleNamespace(now=100.0)
+    monkeypatch.setattr(keeping, "time", SimpleNamespace(perf_counter=lambda: clock.now))
+    run = run_in(folder / "due", checkpoint_s=1.0, stop__steps=10**6)
+    reports = train(run)
+    written = []
+    for seconds in (0.0, 0.5, 0.4, 0.2, 0.9, 0.2):
+        clock.now += seconds
+        report = next(reports)
+        written.append(checkpoint_of(run).iteration)
+        assert report.checkpointed == (written[-1] == report.iteration.number)
+    reports.close()
+    assert written == [0, 0, 0, 4, 4, 6]
 
 
 def test_a_lower_limit_ends_a_training_with_a_policy(folder: Path) -> None:
