@@ -162,7 +162,7 @@ def _counted(playing: Iterator[Result], count: int) -> Iterator[Result]:
 
 
 def _waiting(left: float) -> None:
-    click.echo(f"waiting for a free core of the Ray cluster, for {left:.0f} s at the most", err=True)
+    click.echo(f"waiting for a worker to start on the Ray cluster, for {left:.0f} s at the most", err=True)
 
 
 def _bar(count: int) -> Any:

@@ -101,7 +101,7 @@ def results(
 
     Raises:
         TltlError: TLT0850, a worker was lost; TLT0730, Ray is asked for and is not installed; TLT0852, there is no
-            cluster, or no core of it becomes free; what the making of an environment raises.
+            cluster, or no worker starts there in time; what the making of an environment raises.
         ValueError: a number of workers below 0.
     """
     if workers != "ray":

@@ -22,7 +22,7 @@ def ray_workers(setup: Setup, most: int, waiting: Callable[[float], None]) -> It
     ``waiting`` is told now and then for how many more seconds the first of them is waited for.
 
     Raises:
-        TltlError: as :func:`cluster`; TLT0852, too, where no core becomes free in time.
+        TltlError: as :func:`cluster`; TLT0852, too, where no worker starts in time.
     """
     with cluster() as ray:
         shared = ray.put(setup)

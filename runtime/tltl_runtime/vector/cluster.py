@@ -16,7 +16,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 _TO_ANSWER_S: Final = 10.0
 """How long a cluster may take to answer."""
 _AFTER_THE_FIRST_S: Final = 30.0
-"""How long other actors may take to have a core once one has."""
+"""How long other actors may take to start once one has."""
 _TOLD_EVERY_S: Final = 10.0
 
 
@@ -63,10 +63,10 @@ def free_cores(ray: Any) -> int:
 def there(
     ray: Any, actors: Sequence[Any], patience: float, waiting: Callable[[float], None] = lambda left: None
 ) -> list[int]:
-    """The places, in order, of those actors that have a core: all of them unless somebody else was quicker.
+    """The places, in order, of those actors that have started: all of them unless others use some of the cores.
 
     The first may take ``patience`` seconds, of which ``waiting`` is told now and then how many are left; the others may
-    take a while more.  Raises TltlError, TLT0852, where none comes.
+    take a while more.  Raises TltlError, TLT0852, where none starts.
     """
     deadline = time.monotonic() + patience
     asked = [actor.__ray_ready__.remote() for actor in actors]
@@ -79,15 +79,19 @@ def there(
             waiting(left)
         found = now
     if not found:
-        raise no_core(ray, patience)
+        raise not_started(ray, patience)
     return [place for place, reference in enumerate(asked) if reference in found]
 
 
-def no_core(ray: Any, waited_s: float) -> TltlError:
-    """TLT0852: no core became free within so many seconds."""
+def not_started(ray: Any, waited_s: float) -> TltlError:
+    """TLT0852: no worker started within so many seconds.
+
+    Ray does not say why: others may use all cores, or the process of a worker may be slow to start on its core.
+    """
     cores = int(ray.cluster_resources().get("CPU", 0))
-    title = f"no core of the Ray cluster, which has {cores}, became free within {waited_s:g} s"
-    help_ = "`ray status` tells what is in use: wait until that is over, or play here with `--workers 0`"
+    size = "1 core" if cores == 1 else f"{cores} cores"
+    title = f"no worker started within {waited_s:g} s on the Ray cluster, which has {size}"
+    help_ = "`ray status` tells whether others use the cores; try again when they are free, or play with `--workers 0`"
     return TltlError([Diagnostic("TLT0852", title, help=help_)])
 
 

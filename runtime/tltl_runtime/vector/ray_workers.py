@@ -25,7 +25,7 @@ class RayWorkers:
     They share no memory: actions go with what is asked, and the answer brings the rows back to ``rows``.  All else is
     as with processes; ``info`` are the further columns of ``rows``.
 
-    Raises TltlError: TLT0730 and TLT0852, there is no Ray, no cluster, or no free core.
+    Raises TltlError: TLT0730 and TLT0852, there is no Ray, no cluster, or no worker starts.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class RayWorkers:
     def start(self, workers: Sequence[int]) -> list[Loss]:
         """Start these, wait until their environments are made, and tell which did not come so far.
 
-        Raises TltlError: TLT0852, the cluster has no free core for one of them.
+        Raises TltlError: TLT0852, a new actor for one of them does not start in time.
         """
         for worker in workers:
             actor = self._actors[worker] = self._idle.pop() if self._idle else self._placed(1)[0]

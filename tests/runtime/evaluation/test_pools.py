@@ -220,7 +220,7 @@ def test_a_cluster_without_a_free_core_is_waited_for_and_then_told(
         pass
     (diagnostic,) = found.value.diagnostics
     assert diagnostic.code == "TLT0852"
-    assert re.fullmatch(r"no core of the Ray cluster, which has \d+, became free within 1 s", diagnostic.title)
+    assert re.fullmatch(r"no worker started within 1 s on the Ray cluster, which has \d+ cores?", diagnostic.title)
     assert diagnostic.help is not None
     assert "--workers 0" in diagnostic.help
 
