@@ -58,7 +58,7 @@ class Checkpoint:
     searched: Searched | None
     algorithm: Mapping[str, Any]
     processes: tuple[Mapping[str, Tensor], ...]
-    window: tuple[tuple[Any, ...], ...]
+    window: tuple[tuple[bool, float, int, int, bool], ...]
     unbroken: int
     best: Best | None
     met: bool
@@ -139,28 +139,24 @@ def _content(data: bytes, path: Path) -> Mapping[str, Any]:
     return content
 
 
-_PLAIN: Final = tuple(name for name in _FIELDS if name not in ("algorithm", "best", "processes"))
-"""The fields without tensors."""
-
-
 def _made(content: Mapping[str, Any]) -> Checkpoint:
     """The checkpoint of what torch has read; raises KeyError and RecordJsonError for what is not as it must be."""
-    plain = from_json(_Plain, {name: _lists(content[name]) for name in _PLAIN}, "it")
     processes, algorithm = content["processes"], _object(content["algorithm"], "algorithm")
     if not isinstance(processes, (tuple, list)) or not processes:
         raise RecordJsonError("`processes` is no list, or is empty")
     _tensors(algorithm["actor_state_dict"], "algorithm.actor_state_dict")
-    return Checkpoint(
-        **{name: getattr(plain, name) for name in _PLAIN},
-        best=None if content["best"] is None else _best(_object(content["best"], "best")),
-        processes=tuple(_tensors(each, "processes") for each in processes),
-        algorithm=algorithm,
-    )
+    tensors = {
+        "algorithm": algorithm,
+        "best": None if content["best"] is None else _best(_object(content["best"], "best")),
+        "processes": tuple(_tensors(each, "processes") for each in processes),
+    }
+    plain = {name: _lists(content[name]) for name in _FIELDS if name not in tensors}
+    return from_json(Checkpoint, plain, "it", **tensors)
 
 
 def _best(content: Mapping[str, Any]) -> Best:
-    kept = from_json(_Kept, {name: _lists(content[name]) for name in ("score", "steps")}, "best")
-    return Best(kept.score, _tensors(content["actor"], "best.actor"), kept.steps)
+    plain = {name: _lists(content[name]) for name in ("score", "steps")}
+    return from_json(Best, plain, "best", actor=_tensors(content["actor"], "best.actor"))
 
 
 def _object(value: object, where: str) -> Mapping[str, Any]:
@@ -181,31 +177,6 @@ def _lists(value: object) -> object:
     if isinstance(value, dict):
         return {name: _lists(each) for name, each in value.items()}
     return [_lists(each) for each in value] if isinstance(value, (tuple, list)) else value
-
-
-@record
-class _Plain:
-    """The fields of a checkpoint without tensors."""
-
-    run: Mapping[str, str]
-    iteration: int
-    losses: Mapping[str, float]
-    steps: int
-    seconds: float
-    replayed: int
-    searched: Searched | None
-    window: tuple[tuple[bool, float, int, int, bool], ...]
-    unbroken: int
-    met: bool
-    standstill: tuple[float, int]
-
-
-@record
-class _Kept:
-    """The fields of :class:`Best` without tensors."""
-
-    score: Score
-    steps: int
 
 
 def _check_run(path: Path, found: Mapping[str, str], wanted: Mapping[str, str]) -> None:

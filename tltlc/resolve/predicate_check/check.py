@@ -28,7 +28,7 @@ from tltlc.resolve.predicate_check.cases import (
 )
 from tltlc.resolve.predicate_check.proof import Task, unproved
 from tltlc.resolve.predicate_check.region import Box, Region, Variable
-from tltlc.resolve.predicate_check.work import OutOfWorkError, apart, limited, spend
+from tltlc.resolve.predicate_check.work import OutOfWorkError, limited, spend
 
 FindingKind = Literal[
     "range_wrong",
@@ -203,7 +203,7 @@ def _proves_exactly(kind: str, predicate: Predicate, tasks: Sequence[Task], whol
         from tltlc.resolve.predicate_check.exact import proves_all
 
         # Apart from all other work, so that the answer depends on the question alone and can be remembered.
-        with apart(_STEPS_OF_A_QUESTION) as work:
+        with limited(_STEPS_OF_A_QUESTION, counts_outside=False) as work:
             try:
                 proved = proves_all(tasks, whole)
             except OutOfWorkError:

@@ -43,9 +43,12 @@ def spend(steps: int = 1) -> None:
 
 
 @contextmanager
-def limited(steps: int) -> Iterator[Work]:
-    """Limit the block to ``steps``, and to what is left outside; its steps count outside, too."""
-    outer = _CURRENT.get()
+def limited(steps: int, *, counts_outside: bool = True) -> Iterator[Work]:
+    """Limit the block to ``steps``.
+
+    If its steps count outside, too, it may take no more than are left there.
+    """
+    outer = _CURRENT.get() if counts_outside else None
     allowed = steps if outer is None else min(steps, max(0, outer.left))
     work = Work(allowed)
     token = _CURRENT.set(work)
@@ -55,14 +58,3 @@ def limited(steps: int) -> Iterator[Work]:
         _CURRENT.reset(token)
         if outer is not None:
             outer.left -= allowed - max(0, work.left)
-
-
-@contextmanager
-def apart(steps: int) -> Iterator[Work]:
-    """Limit the block to ``steps`` of its own; they do not count outside."""
-    work = Work(steps)
-    token = _CURRENT.set(work)
-    try:
-        yield work
-    finally:
-        _CURRENT.reset(token)
