@@ -171,6 +171,7 @@ def test_without_the_standard_library(tmp_path: Path, edition: str) -> None:
     lines += ["    pub(crate) fn pow(x: f64, _: f64) -> f64 { x }", "}", ""]
     (tmp_path / "bare.rs").write_text("\n".join(lines))
     compiled(tmp_path, "--crate-type", "lib", "--cfg", "tltl_no_std", "bare.rs", edition=edition)
+    assert (tmp_path / "libbare.rlib").stat().st_size > 0
 
 
 def test_a_sample_of_which_nothing_is_read(tmp_path: Path) -> None:
@@ -179,6 +180,7 @@ def test_a_sample_of_which_nothing_is_read(tmp_path: Path) -> None:
     written(fspa, tmp_path)
     (tmp_path / "alone.rs").write_text("pub mod blind_monitor;\n")
     compiled(tmp_path, "--crate-type", "lib", "--emit", "metadata", "alone.rs")
+    assert (tmp_path / "libalone.rmeta").stat().st_size > 0
 
 
 @pytest.mark.skipif(not shutil.which("rustdoc"), reason="there is no rustdoc here")
@@ -215,6 +217,9 @@ def test_program_of_any_edition(tmp_path: Path) -> None:
     written(fspa, tmp_path)
     for edition in ("2015", "2018", "2021"):
         compiled(tmp_path, "--cfg", "tltl_main", "--emit", "metadata", f"{fspa.name}_monitor.rs", edition=edition)
+        made = tmp_path / f"lib{fspa.name}_monitor.rmeta"
+        assert made.exists()
+        made.unlink()
 
 
 NUMBERS = r"""
