@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import socket
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from threading import Event
 
@@ -14,6 +16,7 @@ from tests.playground.test_server import JSON, ask, request, serving
 from tests.waiting import HANG_S
 from tltlc.limits import MESSAGE, REQUEST_HEAD, REQUEST_LINE
 from tltlc.playground.connections import Connection
+from tltlc.playground.request_head import read_head
 from tltlc.playground.server import Server
 from tltlc.playground.start import start
 
@@ -117,6 +120,34 @@ HEADERS = [
 def test_headers_that_are_wrong(server: Server, header: bytes, status: int) -> None:
     # What stands behind is not taken for a request.
     assert refused(server, GET + header + b"\r\n" + GET + b"\r\n") == [status]
+
+
+def test_blanks_around_the_value_of_a_header_do_not_count() -> None:
+    found = read_head(GET + b"A:\t b\t c: \xe9 \t\r\nB:\r\nC: \t\r\n\r\n")
+    assert found is not None
+    assert [found[0].headers[name] for name in "abc"] == ["b\t c: é", "", ""]
+
+
+LONG = {
+    "blanks": b"a:" + b" " * 30_000 + b"\0",
+    "blanks_and_tabs": b"a:" + b"\t " * 15_000 + b"\0",
+    "blanks_between_words": b"a:" + b" b" * 15_000 + b"\0",
+    "a_name": b"a" * 30_000 + b"\0:",
+    "colons": b"a" + b":" * 30_000 + b"\0",
+}
+
+
+@pytest.mark.parametrize("header", LONG.values(), ids=LONG)
+def test_a_long_header_that_is_wrong_is_refused_in_linear_time(header: bytes) -> None:
+    """In a process of its own: a regular expression at work cannot be interrupted."""
+    program = (
+        "import sys; from tltlc.playground.request_head import RefusedError, read_head\n"
+        "try: read_head(sys.stdin.buffer.read())\n"
+        "except RefusedError as error: print(error.status.value)"
+    )
+    data = GET + header + b"\r\n\r\n"
+    done = subprocess.run([sys.executable, "-c", program], input=data, capture_output=True, timeout=HANG_S, check=True)
+    assert done.stdout.strip() == b"400"
 
 
 def test_heads_that_never_end(server: Server) -> None:
