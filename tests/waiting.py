@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import platform
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -21,6 +23,15 @@ def until(event: Callable[[], Found], what: str, pause_s: float = 0.02) -> Found
         assert time.monotonic() < deadline, f"waited {HANG_S:g} s in vain for {what}"
         time.sleep(pause_s)
     return found
+
+
+def printed(program: str, data: bytes = b"") -> bytes:
+    """What a Python program prints that gets ``data`` as its input; it ends after ``HANG_S`` seconds at the latest.
+
+    It runs in a process of its own, for what cannot be interrupted, such as a regular expression at work.
+    """
+    words = [sys.executable, "-c", program]
+    return subprocess.run(words, input=data, capture_output=True, timeout=HANG_S, check=True).stdout
 
 
 def is_running(pid: int) -> bool:

@@ -1,14 +1,27 @@
-"""What a keystroke costs: syntax and names of a file of 500 lines, beside a bare parse of it."""
+"""What a keystroke costs: syntax and names of a file of 500 lines, beside a bare parse of it; and long lines."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+import pytest
+from lsprotocol import types
 
 from tests.calls import calls
 from tests.lsp.client import Client
+from tests.lsp.texts import opened
+from tests.waiting import printed
 from tltlc.grammar.parser import parse
+from tltlc.grammar.tree import EntityDecl
+from tltlc.lsp import names, symbols
+from tltlc.lsp.document import Document
 from tltlc.lsp.paths import uri_of
+from tltlc.lsp.positions import UTF_16, offset, range_of
+from tltlc.lsp.references import rename
 from tltlc.lsp.remarks import remark
+from tltlc.lsp.tokens import tokens
 from tltlc.lsp.workspace import Workspace
 from tltlc.source import SourceFile
 
@@ -58,3 +71,87 @@ def test_an_editor_gets_its_answers(client: Client, tmp_path: Path) -> None:
         client.change(uri, TEXT + f"spec wrong{version} = neer\n", version)
         (said,) = client.diagnostics(uri, bool)
         assert "`neer`" in said["message"]
+
+
+LONG_LINE = "signal a: bool let b = □ %sa"
+BROKEN = "signal (\n%s"
+
+
+def _tokens(document: Document, _: Workspace) -> object:
+    return tokens(document, UTF_16)
+
+
+def _ranges(document: Document, _: Workspace) -> object:
+    return [range_of(document.source, each.span, UTF_16) for each in document.names]
+
+
+def _offsets(document: Document, _: Workspace) -> object:
+    return [offset(document.source, types.Position(0, column)) for column in range(0, len(document.names), 10)]
+
+
+def _said(document: Document, _: Workspace) -> object:
+    return document.said
+
+
+def _rename(document: Document, workspace: Workspace) -> object:
+    return rename(document.names[0].symbol, "renamed", workspace)
+
+
+WORK: dict[str, tuple[Callable[[Document, Workspace], object], str, str]] = {
+    "semantic tokens": (_tokens, LONG_LINE, "a & "),
+    "highlights": (_ranges, LONG_LINE, "a & "),
+    "offsets": (_offsets, LONG_LINE, "a & "),
+    "messages on a broken text": (_said, BROKEN, "let x# = missing#\n"),
+    "renaming": (_rename, LONG_LINE, "a & "),
+}
+
+
+@pytest.mark.parametrize(("work", "text", "piece"), WORK.values(), ids=WORK)
+def test_twice_the_text_is_twice_the_work(work: Callable[..., object], text: str, piece: str) -> None:
+    def cost(count: int) -> int:
+        document, _, workspace = opened(text % "".join(piece.replace("#", str(number)) for number in range(count)))
+        assert document.resolution
+        return calls(lambda: work(document, workspace))
+
+    cost(1)  # the tables of the grammar are read
+    assert cost(800) < 3 * cost(400)
+
+
+def test_symbols_read_each_declaration_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    read: list[object] = []
+
+    def noting(declaration: Any, *arguments: Any, **options: Any) -> str:
+        read.append(declaration)
+        return shown(declaration, *arguments, **options)
+
+    shown = symbols.declaration_text
+    monkeypatch.setattr(symbols, "declaration_text", noting)
+    document, _, _ = opened(f"entity {', '.join(f'e{i}' for i in range(50))}")
+    assert len(symbols.symbols(document, UTF_16)) == 50
+    assert [type(each) for each in read] == [EntityDecl]
+
+
+def test_the_label_of_a_state_is_read_without_the_text_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes: list[int] = []
+
+    def noting(source: SourceFile) -> Any:
+        sizes.append(len(source.text))
+        return parse_formula(source)
+
+    parse_formula = names.parse_formula
+    monkeypatch.setattr(names, "parse_formula", noting)
+    label = 'step a\n    expect state "F a"\n'
+    document, _, _ = opened(f'signal a: bool\nspec s = F a\ntest "t" for s {{\n{label * 30}}}')
+    found = [each.span for each in document.names if each.symbol.name == "a"]
+    assert {document.source.slice(each) for each in found} == {"a"}
+    assert len(found) == 2 + 2 * 30
+    assert set(sizes) == {len("F a")}
+
+
+def test_a_long_word_is_completed_in_linear_time() -> None:
+    program = (
+        "from tltlc.lsp.cursor import cursor; from tltlc.source import SourceFile\n"
+        "text = '// ' + 'a' * 1_000_000 + ' '\n"
+        "print(cursor(SourceFile('long.tltl', text), len(text)))"
+    )
+    assert printed(program).strip() == b"None"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import string
 from collections.abc import Sequence
 from typing import Final
 
@@ -14,7 +14,8 @@ from tltlc.grammar.words import CLAUSES, TEST_ITEMS
 from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
-_WORD: Final = re.compile(r"(?:[A-Za-z_][A-Za-z0-9_.]*)\Z")
+_BEGINS_WORD: Final = frozenset(f"{string.ascii_letters}_")
+_IN_WORD: Final = _BEGINS_WORD.union(string.digits, ".")
 _LINES: Final = {"spec": (CLAUSES, "clause"), "test": (TEST_ITEMS, "test_item")}
 _STATEMENTS: Final = ("clause", "test_item")
 
@@ -48,8 +49,7 @@ class Cursor:
 def cursor(source: SourceFile, offset: int) -> Cursor | None:
     """The place at an offset; None within comments and texts in quotes."""
     before = source.text[:offset]
-    match = _WORD.search(before)
-    start = match.start() if match else offset
+    start = _word_start(before)
     lexed = tokenize(before[:start])
     tokens = lexed.tokens[:-1]
     if lexed.comments and "\n" not in before[lexed.comments[-1].span.start :]:
@@ -57,6 +57,16 @@ def cursor(source: SourceFile, offset: int) -> Cursor | None:
     if tokens and tokens[-1].type == BAD and tokens[-1].text.startswith('"'):
         return None
     return _placed(SourceFile(source.name, before[:start]), tokens, Span(start, offset))
+
+
+def _word_start(text: str) -> int:
+    """The offset of the word at the end of a text; the end where no word stands there."""
+    start = end = len(text)
+    while start and text[start - 1] in _IN_WORD:
+        start -= 1
+    while start < end and text[start] not in _BEGINS_WORD:
+        start += 1
+    return start
 
 
 def quoted(source: SourceFile, offset: int) -> tuple[str, Span] | None:

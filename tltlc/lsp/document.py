@@ -17,7 +17,7 @@ from tltlc.lint.run import levelled
 from tltlc.lint.view import View
 from tltlc.lsp.names import Occurrence, occurrences
 from tltlc.lsp.paths import path_of
-from tltlc.lsp.unread import may_follow
+from tltlc.lsp.unread import unread
 from tltlc.record import EMPTY
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import Resolution, resolution
@@ -83,7 +83,8 @@ class Document:
         if self.is_broken:
             # Of what could be read, only what is wrong with names: the rest may be missing.
             errors = [each for each in self.resolution.diagnostics if each.severity == "error"]
-            return (*self._parsed[1], *(each for each in errors if not may_follow(each, self.module, self.tokens)))
+            missing = unread(self.module, self.tokens)
+            return (*self._parsed[1], *(each for each in errors if not missing.may_mend(each)))
         found = self.resolution
         view = View(self.module, found.env, found.modules, (), found.diagnostics)
         left = silenced(view, [Finding(each) for each in found.diagnostics])

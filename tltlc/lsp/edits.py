@@ -16,9 +16,11 @@ def text_edit(source: SourceFile, edit: Edit, encoding: str) -> types.TextEdit:
 
 def applied(text: str, edits: list[Edit]) -> str:
     """A text after edits that do not meet."""
-    for edit in sorted(edits, key=lambda each: each.span.start, reverse=True):
-        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
-    return text
+    pieces, end = [], 0
+    for edit in sorted(edits, key=lambda each: each.span.start):
+        pieces += [text[end : edit.span.start], edit.text]
+        end = edit.span.end
+    return "".join((*pieces, text[end:]))
 
 
 def difference(source: SourceFile, after: str) -> list[Edit]:

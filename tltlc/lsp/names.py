@@ -76,6 +76,9 @@ class _Walk:
         self._starts = {token.start: index for index, token in enumerate(tokens)}
         self._tokens = tokens
         self._visible: Mapping[str, Binding] = scope.names
+        self._unaliased = {each.name: each for each in scope.names.values()}
+        self._label_start: int | None = None
+        """In the label of a state, where its text begins: the spans of its formula count from there."""
         self._specs: dict[str, Symbol] = {}
         for each in scope.module.declarations:
             if isinstance(each, tree.SpecDecl):
@@ -131,12 +134,11 @@ class _Walk:
     def _label(self, item: tree.TestExpect) -> None:
         """The names in the label of a state: a formula where it is no English, in which no aliases stand."""
         text = self._tokens[self._starts[item.span.start] + 2]
-        start = text.start + 1
-        formula, _ = parse_formula(SourceFile(self._scope.source.name, " " * start + text.text[1:-1]))
+        formula, _ = parse_formula(SourceFile(self._scope.source.name, text.text[1:-1]))
         if formula is not None:
-            aliased, self._visible = self._visible, {each.name: each for each in self._visible.values()}
+            aliased, self._visible, self._label_start = self._visible, self._unaliased, text.start + 1
             self._expressions([formula])
-            self._visible = aliased
+            self._visible, self._label_start = aliased, None
 
     def _expressions(self, expressions: Iterable[tree.Expr], local: _Locals = EMPTY) -> None:
         waiting = [(expression, local) for expression in expressions]
@@ -155,7 +157,7 @@ class _Walk:
 
     def _with_variable(self, part: tree.Quantified, around: _Locals) -> _Locals:
         """The local names in the body of a quantifier, whose variable is the token behind its first one."""
-        index = self._starts.get(part.span.start)
+        index = self._starts.get(part.span.start) if self._label_start is None else None
         if index is None or index + 1 >= len(self._tokens):
             return around
         span = self._tokens[index + 1].span
@@ -190,4 +192,6 @@ class _Walk:
             self._note(Span(span.end - len(binding.name), span.end), symbol_of(binding))
 
     def _note(self, span: Span, symbol: Symbol, *, declares: bool = False) -> None:
+        if self._label_start is not None:
+            span = Span(self._label_start + span.start, self._label_start + span.end)
         self.found.append(Occurrence(span, symbol, declares))

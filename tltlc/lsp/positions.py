@@ -1,21 +1,62 @@
-"""Offsets of characters as the positions of the protocol: lines from 0, columns in units of the agreed encoding."""
+"""Offsets of characters as the positions of the protocol: lines from 0, columns in units of the agreed encoding.
+
+A position takes logarithmic time: which signs of a text count more than one unit is found out once.
+"""
 
 from __future__ import annotations
 
+import re
+from bisect import bisect_left
+from functools import lru_cache
+from itertools import accumulate
 from typing import Final
 
 from lsprotocol import types
 
+from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
 UTF_16: Final = "utf-16"
 """The encoding where nothing is agreed upon: signs beyond the BMP (𝒰) count two."""
 
+_WIDE: Final = {"utf-8": re.compile("[^\x00-\x7f]"), UTF_16: re.compile("[^\x00-\uffff]")}
+"""The signs that count more than one unit; in UTF-32 there are none."""
+_TEXTS: Final = 16
+"""How many texts are kept with their wide signs: a request looks at few of them in turn."""
+
+
+@record
+class _Wide:
+    """The offsets of the signs of a text that count more than one unit, in order, and how many units more.
+
+    ``extra[i]`` is the sum for the first ``i`` of them.
+    """
+
+    offsets: tuple[int, ...]
+    extra: tuple[int, ...]
+
+    def units(self, start: int, end: int) -> int:
+        """How many units the characters from ``start`` to ``end`` count."""
+        first, last = bisect_left(self.offsets, start), bisect_left(self.offsets, end)
+        return end - start + self.extra[last] - self.extra[first]
+
+
+@lru_cache(maxsize=_TEXTS)
+def _wide(text: str, encoding: str) -> _Wide:
+    # A text that is asked about again is the same object: then neither its hash nor its comparison takes long.
+    if encoding not in _WIDE or text.isascii():
+        return _Wide((), (0,))
+    found = [(each.start(), _units(each[0], encoding) - 1) for each in _WIDE[encoding].finditer(text)]
+    return _Wide(tuple(at for at, _ in found), tuple(accumulate((more for _, more in found), initial=0)))
+
 
 def position(source: SourceFile, offset: int, encoding: str = UTF_16) -> types.Position:
-    """The position of a character."""
-    line, column = source.position(min(max(0, offset), len(source.text)))
-    return types.Position(line - 1, _units(source.line(line)[: column - 1], encoding))
+    """The position of a character; within a line end, that of its beginning."""
+    at = min(max(0, offset), len(source.text))
+    if at and source.text[at - 1 : at + 1] == "\r\n":
+        at -= 1
+    line, column = source.position(at)
+    return types.Position(line - 1, _wide(source.text, encoding).units(at - column + 1, at))
 
 
 def range_of(source: SourceFile, span: Span, encoding: str = UTF_16) -> types.Range:
@@ -33,16 +74,9 @@ def offset(source: SourceFile, at: types.Position, encoding: str = UTF_16) -> in
     last, _ = source.position(len(source.text))
     if at.line >= last:
         return len(source.text)
-    text = source.line(at.line + 1)
-    start = _start(source, at.line)
-    if text.isascii():
-        return start + min(at.character, len(text))
-    units = 0
-    for column, sign in enumerate(text):
-        if units >= at.character:
-            return start + column
-        units += _units(sign, encoding)
-    return start + len(text)
+    start, wide = _start(source, at.line), _wide(source.text, encoding)
+    places = range(start, start + len(source.line(at.line + 1)))
+    return start + bisect_left(places, at.character, key=lambda place: wide.units(start, place))
 
 
 def _start(source: SourceFile, line: int) -> int:
@@ -57,9 +91,6 @@ def _start(source: SourceFile, line: int) -> int:
     return low
 
 
-def _units(text: str, encoding: str) -> int:
-    if encoding == "utf-32" or text.isascii():
-        return len(text)
-    if encoding == "utf-8":
-        return len(text.encode(errors="surrogatepass"))
-    return len(text) + sum(sign > "\uffff" for sign in text)
+def _units(sign: str, encoding: str) -> int:
+    """How many units a wide sign counts."""
+    return len(sign.encode(errors="surrogatepass")) if encoding == "utf-8" else 2

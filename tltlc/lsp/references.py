@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
+from collections.abc import Callable
+from itertools import accumulate
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -152,23 +155,22 @@ def _check_free(symbol: Symbol, name: str, changed: list[tuple[Document, list[Ed
 def _shape(document: Document, edits: list[Edit], *, shift: bool = False) -> list[tuple[int, str, int]]:
     """Where the names of a text lead to, in terms of the text before an edit: the same before and after a rename."""
     own = document.source.name
+    before = _before(edits if shift else [])
     found = []
     for each in document.names:
-        symbol, moved = each.symbol, edits if shift else []
+        symbol = each.symbol
         # Another file may be edited as well: what counts there is the kind alone.
-        target = _before(symbol.span.start, moved) if symbol.source.name == own else 0
-        found.append((_before(each.span.start, moved), f"{symbol.kind} {symbol.source.name}", target))
+        target = before(symbol.span.start) if symbol.source.name == own else 0
+        found.append((before(each.span.start), f"{symbol.kind} {symbol.source.name}", target))
     return found
 
 
-def _before(offset: int, edits: list[Edit]) -> int:
-    """Where the character at an offset stood before the edits."""
-    moved = 0
-    for edit in sorted(edits, key=lambda each: each.span.start):
-        if edit.span.start + moved >= offset:
-            break
-        moved += len(edit.text) - (edit.span.end - edit.span.start)
-    return offset - moved
+def _before(edits: list[Edit]) -> Callable[[int], int]:
+    """A function from the offset of a character after the edits to the one before them."""
+    ordered = sorted(edits, key=lambda each: each.span.start)
+    moved = [0, *accumulate(len(each.text) - (each.span.end - each.span.start) for each in ordered)]
+    starts = [each.span.start + by for each, by in zip(ordered, moved, strict=False)]
+    return lambda offset: offset - moved[bisect_left(starts, offset)]
 
 
 def _errors(document: Document) -> int:

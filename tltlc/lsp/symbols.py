@@ -28,9 +28,9 @@ def symbols(document: Document, encoding: str) -> list[types.DocumentSymbol]:
     source = document.source
     found = []
     for declaration in document.module.declarations:
+        below = [_clause(each, document, encoding) for each in _clauses(declaration)]
+        head = declaration_text(declaration, source, head=True)
         for name, kind, span, own in _named(declaration):
-            below = [_clause(each, document, encoding) for each in _clauses(declaration)]
-            head = declaration_text(declaration, source, head=True)
             found.append(
                 types.DocumentSymbol(
                     name,

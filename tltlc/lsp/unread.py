@@ -8,6 +8,8 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.tree import Import, Module, TestDecl
+from tltlc.record import record
+from tltlc.source import SourceFile, Span
 
 _NO_SUCH_ATOM: Final = "TLT0209"
 _WRONG_TEST: Final = "TLT0217"
@@ -16,24 +18,49 @@ _NO_SUCH_NAME: Final = ("TLT0201", "TLT0208")
 _HEADS: Final = ("signal", "entity", "param", "predicate", "let", "spec")
 
 
-def may_follow(diagnostic: Diagnostic, module: Module, tokens: Sequence[Token]) -> bool:
-    """Whether what a message misses may stand in what could not be read of a text, which is broken somewhere."""
+@record
+class Unread:
+    """What may stand in the parts of a broken text that could not be read.
+
+    ``declared`` are names that those parts may declare; ``imports`` and ``clock`` say whether there may be an import or
+    a clock in them; ``tests`` are the spans that stand for a whole test in messages.
+    """
+
+    declared: frozenset[str]
+    imports: bool
+    clock: bool
+    tests: frozenset[Span]
+    source: SourceFile
+
+    def may_mend(self, diagnostic: Diagnostic) -> bool:
+        """Whether what a message misses may stand in a part that could not be read."""
+        if diagnostic.code == _NO_SUCH_ATOM:
+            # It may be one of a clause that is being written.
+            return True
+        if diagnostic.code == _NO_CLOCK:
+            return self.clock
+        label = diagnostic.labels[0] if diagnostic.labels else None
+        if label is None:
+            return False
+        if diagnostic.code == _WRONG_TEST:
+            # A message about the whole test says that it expects nothing: that may be what is being written.
+            return label.span in self.tests
+        if diagnostic.code not in _NO_SUCH_NAME:
+            return False
+        return self.imports or (label.source == self.source and label.source.slice(label.span) in self.declared)
+
+
+def unread(module: Module, tokens: Sequence[Token]) -> Unread:
+    """What may stand in the unread parts of a text that is broken somewhere, by its declarations and its tokens."""
     words = [token.text for token in tokens]
-    if diagnostic.code == _NO_SUCH_ATOM:
-        # It may be one of a clause that is being written.
-        return True
-    if diagnostic.code == _NO_CLOCK:
-        return "clock" in words
-    if diagnostic.code == _WRONG_TEST:
-        # Said of a test as a whole, it expects nothing: that may be what is being written.
-        where = diagnostic.labels[0].span
-        return any(isinstance(each, TestDecl) and each.spec.span == where for each in module.declarations)
-    if diagnostic.code not in _NO_SUCH_NAME:
-        return False
-    if words.count("import") > sum(isinstance(each, Import) for each in module.declarations):
-        return True
-    label = diagnostic.labels[0]
-    return label.source == module.source and label.source.slice(label.span) in set(_declared(tokens))
+    read = sum(isinstance(each, Import) for each in module.declarations)
+    return Unread(
+        frozenset(_declared(tokens)),
+        words.count("import") > read,
+        "clock" in words,
+        frozenset(each.spec.span for each in module.declarations if isinstance(each, TestDecl)),
+        module.source,
+    )
 
 
 def _declared(tokens: Sequence[Token]) -> Iterator[str]:
