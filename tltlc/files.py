@@ -133,6 +133,17 @@ def is_file(path: str | os.PathLike[str]) -> bool:
     return os.path.isfile(path) or _unsaved_text(path) is not None  # noqa: PTH113
 
 
+def may_be_file(path: str | os.PathLike[str]) -> bool:
+    """Whether a command that walks a folder may read this entry: not if it is a pipe, device, socket or folder.
+
+    Links are followed. A link that leads nowhere passes, so that whoever reads it reports it.
+    """
+    try:
+        return stat.S_ISREG(os.stat(path).st_mode)  # noqa: PTH116
+    except (OSError, ValueError):
+        return True
+
+
 def is_dir(path: str | os.PathLike[str]) -> bool:
     """Whether a folder is there, as :func:`exists` has it."""
     if not may_read(path):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from tests import pipes
 from tests.cli.conftest import HIDE, Outcome
 from tltlc.pipeline import load
 
@@ -120,3 +122,44 @@ def test_an_artefact_is_no_library(tltlc: Command, inside: Path) -> None:
 def test_an_automaton_of_another_tool_is_no_source_text(command: str, tltlc: Command, inside: Path) -> None:
     Path("hide.hoa").write_text("HOA: v1\n")
     assert "error[TLT0652]: `hide.hoa` is an automaton in the Hanoi format" in tltlc(command, "hide.hoa").err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no named pipes in folders")
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("check", "."),
+        ("lint", "."),
+        ("fmt", "--check", "."),
+        ("test", "."),
+        ("compile", ".", "-o", "out"),
+        ("explain", "."),
+        ("list", "predicates", "--library", "."),
+        ("lint", "hide.tltl"),
+        ("explain", "seek"),
+    ],
+)
+def test_pipes_and_devices_in_a_folder_are_not_read(
+    arguments: tuple[str, ...], tltlc: Command, inside: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tltlc(*arguments)
+    expected = tltlc(*arguments)
+    pipes.put_beside(inside / "pipe.tltl")
+    pipes.put_beside(inside / "pipe.fspa.json")
+    pipes.forbid(monkeypatch)
+    assert tltlc(*arguments) == expected
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no named pipes in folders")
+def test_a_folder_of_pipes_alone_has_no_source(tltlc: Command, inside: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("hide.tltl").unlink()
+    pipes.put_beside(inside / "pipe.tltl")
+    pipes.forbid(monkeypatch)
+    done = tltlc("check", ".")
+    assert (done.status, "there is no .tltl file in `.`" in done.err) == (2, True)
+
+
+def test_a_link_that_leads_nowhere_is_reported(tltlc: Command, inside: Path) -> None:
+    Path("gone.tltl").symlink_to("nowhere")
+    done = tltlc("check", ".")
+    assert (done.status, "it is a link: what it leads to is gone" in done.err) == (3, True)

@@ -7,9 +7,11 @@ from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests import pipes
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.lsp.workspace import Workspace
 from tltlc.record import replace
@@ -82,3 +84,12 @@ def test_every_history_ends_the_same(main: int, steps: list[tuple[str, str, int]
         for uri, text in texts.items():
             anew.put(uri, None, text)
         assert shown == {uri: said_of(anew, uri) for uri in texts}
+
+
+def test_pipes_in_the_folders_of_the_workspace_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "main.tltl").write_text("signal seen: bool\n")
+    pipes.put_beside(tmp_path / "pipe.tltl")
+    pipes.forbid(monkeypatch)
+    workspace = Workspace()
+    workspace.folders = [str(tmp_path)]
+    assert [Path(each.source.name).name for each in workspace.all()] == ["main.tltl"]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import may_be_file
 
 if TYPE_CHECKING:
     from tltlc.cli.report import Report
@@ -43,12 +44,16 @@ def sources(argument: str) -> list[str]:
 
 
 def below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
-    """The files of these endings in a folder and below it, relative to it, hidden ones left out, in order."""
+    """The files with these endings in a folder and below it, relative to it, in order.
+
+    Hidden files are left out, and so are pipes and devices: reading one could take for ever.
+    """
     found: list[Path] = []
     for place, folders, files in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".")]
         inside = Path(place).relative_to(folder)
-        found += [inside / name for name in files if name.endswith(endings) and not name.startswith(".")]
+        named = [name for name in files if name.endswith(endings) and not name.startswith(".")]
+        found += [inside / name for name in named if may_be_file(os.path.join(place, name))]  # noqa: PTH118
     return sorted(found)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import exists, is_file, read_source
+from tltlc.files import exists, is_file, may_be_file, read_source
 from tltlc.record import replace
 from tltlc.spec_file import is_plain_name
 
@@ -51,7 +51,8 @@ def _declaring(name: str) -> Iterator[Path]:
 
 
 def _files() -> Iterator[Path]:
-    """Source files, those of the current folder first, hidden ones left out."""
+    """Source files, those of the current folder first; hidden ones, pipes and devices are left out."""
     for place, folders, files in islice(os.walk("."), _MOST_FOLDERS):
         folders[:] = sorted(each for each in folders if not each.startswith("."))
-        yield from (Path(place, each) for each in sorted(files) if each.endswith(".tltl") and not each.startswith("."))
+        named = (Path(place, each) for each in sorted(files) if each.endswith(".tltl") and not each.startswith("."))
+        yield from filter(may_be_file, named)

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import noted, read_source, unsaved
+from tltlc.files import may_be_file, noted, read_source, unsaved
 from tltlc.lsp.document import Document
 from tltlc.lsp.paths import is_below, name_of, path_of, uri_of
 from tltlc.project import Project, project_for
@@ -119,7 +119,8 @@ class Workspace:
         for folder in self.folders:
             for place, folders, files in os.walk(folder):
                 folders[:] = sorted(each for each in folders if not each.startswith(".") and each != "node_modules")
-                names.update(dict.fromkeys(os.path.join(place, file) for file in sorted(files) if _is_source(file)))  # noqa: PTH118
+                paths = [os.path.join(place, file) for file in sorted(files) if _is_source(file)]  # noqa: PTH118
+                names.update(dict.fromkeys(filter(may_be_file, paths)))
         return [*names]
 
     def _shows(self, path: str) -> bool:

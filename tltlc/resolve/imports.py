@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.files import is_file, may_read, outside, read_source
+from tltlc.files import is_file, may_be_file, may_read, outside, read_source
 from tltlc.grammar.tree import Import, Module
 from tltlc.record import record, replace
 from tltlc.resolve.options import ResolveOptions
@@ -186,7 +186,7 @@ def _files(folder: Path) -> list[Path]:
     if not may_read(folder):
         return []
     try:
-        return sorted(folder.glob("*.tltl"))
+        return sorted(filter(may_be_file, folder.glob("*.tltl")))
     except OSError:
         return []
 

@@ -24,6 +24,7 @@ from tltl_runtime.stealth.pictures.trajectories import draw_trajectories
 from tltl_runtime.stealth.recording import writable_folder
 from tltlc.cli.paths import is_stdout
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.files import may_be_file
 from tltlc.writing import write_file, write_files
 
 _REPORT: Final = "evaluation.json"
@@ -165,7 +166,7 @@ class EvaluationFiles:
         choices = "|".join(CHOICES.values())
         recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")
         older = [folder / _REPORT, *(folder / f"ways-{choice}.png" for choice in CHOICES.values())]
-        for path in sorted(folder.iterdir()):
+        for path in sorted(filter(may_be_file, folder.iterdir())):
             if (found := recording.fullmatch(path.name)) and self._is_of_another(path):
                 older += [path, folder / f"{found[1]}.png"]
         there = [path for path in older if path.is_file()]

@@ -18,6 +18,9 @@ from tltl_runtime.commands.writable import is_output
 from tltlc.cli.numbers import FiniteRange
 from tltlc.cli.paths import OutputPath
 from tltlc.cli.report import Report
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.files import is_file, read_source
+from tltlc.limits import TOML
 
 _MINUTES: Final = 10.0
 """Of a training with --retrain, where nothing else is said."""
@@ -120,9 +123,11 @@ def command(
 
 def _is_suite(word: str) -> bool:
     """Whether a word is the file of a suite."""
+    if not word.endswith(".toml") or not is_file(word):
+        return False
     try:
-        return word.endswith(".toml") and "\n[[case]]" in "\n" + Path(word).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
+        return "\n[[case]]" in "\n" + read_source(word, max_bytes=TOML.size).text
+    except TltlError:
         return False
 
 

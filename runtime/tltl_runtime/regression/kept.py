@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from tltl_runtime.record_json import from_json, to_json
 from tltl_runtime.sources import sources_hash
+from tltlc.files import may_be_file
 from tltlc.json_text import load
 from tltlc.limits import REPORT
 
@@ -30,6 +31,8 @@ def read_kept(kind: type[T], path: Path, inputs: str) -> T | None:
     """The content of such a file, as :func:`~tltl_runtime.record_json.from_json` reads it; None where it depends on
     something else, cannot be read or is not there, and so has to be made again.
     """
+    if not may_be_file(path):
+        return None
     try:
         document = load(path, REPORT)
         return from_json(kind, document["content"], "content") if document["identity"] == inputs else None

@@ -13,7 +13,8 @@ from tltl_runtime.policies.shipped import shipped_policies
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.task import read_spec
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.files import exists, is_dir
+from tltlc.files import exists, is_dir, may_be_file, read_bytes
+from tltlc.limits import TOML
 from tltlc.record import replace
 
 _NO_SUCH_SPEC: Final = {"TLT0720", "TLT0721"}
@@ -57,10 +58,20 @@ def level_like(name: str, folder: Path) -> str | None:
     beside: list[str] = []
     # The system may allow no such name.
     with suppress(OSError, ValueError):
-        files = sorted(path for path in (folder / name).parent.glob("*.toml") if b"[bounds]" in path.read_bytes())
+        files = sorted(filter(_is_level, (folder / name).parent.glob("*.toml")))
         beside = [(Path(name).parent / path.name).as_posix() for path in files]
     close = get_close_matches(name, (*beside, *level_names()), n=1)
     return f"did you mean `{close[0]}`?" if close else None
+
+
+def _is_level(path: Path) -> bool:
+    """Whether a file seems to be a level; pipes and devices are not read."""
+    if not may_be_file(path):
+        return False
+    try:
+        return b"[bounds]" in read_bytes(path, str(path), TOML.size)
+    except TltlError:
+        return False
 
 
 def policy_for_its_spec(level: str) -> str | None:

@@ -18,6 +18,7 @@ from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.recording import RecordEpisode
 from tltl_runtime.task import Task
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import may_be_file
 from tltlc.record import record
 from tltlc.writing import write_files
 
@@ -101,8 +102,8 @@ class Demonstrations:
 
 
 def recordings(folder: Path) -> list[Path]:
-    """The recordings in a folder, by name; none where there is no such folder."""
-    return sorted(folder.glob(f"*{SUFFIX}"))
+    """The recordings in a folder, by name; none where there is no such folder. Pipes and devices are left out."""
+    return sorted(filter(may_be_file, folder.glob(f"*{SUFFIX}")))
 
 
 def unreadable(error: TltlError) -> str:

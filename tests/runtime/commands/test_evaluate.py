@@ -17,6 +17,7 @@ import pytest
 from PIL import Image
 
 import tltl_runtime
+from tests import pipes
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.waiting import HANG_S
@@ -100,7 +101,12 @@ def test_a_policy_that_is_replaced_meanwhile(
     assert json.loads(found.out)["policy"]["sha256"] == hashlib.sha256(policy.read_bytes()).hexdigest()
 
 
-def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> None:  # noqa: F811
+def test_recordings_and_pictures(
+    tltlc: Run,  # noqa: F811
+    policy: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     folder, report = tmp_path / "new" / "runs", tmp_path / "new" / "report.json"
     command = ("evaluate", policy, "--episodes", "2", "--seed", "5", "--out", folder, "--json", report)
     found = tltlc(*command)
@@ -133,6 +139,10 @@ def test_recordings_and_pictures(tltlc: Run, policy: Path, tmp_path: Path) -> No
     again = tltlc(*command, "--record", "none")
     assert "removed" not in again.err
     assert sorted(path.name for path in folder.iterdir()) == sorted([*kept, *names])
+    pipe = "cover_and_hide-v0-5-9-sampled.episode.npz"
+    pipes.put_beside(folder / pipe)
+    pipes.forbid(monkeypatch)
+    kept += [pipe, f"a_{pipe}"]
     mine, other = untrained(), tmp_path / "other.safetensors"
     write_policy(other, Policy(replace(mine.card, training={"seed": 9}), mine.weights()))
     again = tltlc("evaluate", other, *command[2:], "--record", "none")

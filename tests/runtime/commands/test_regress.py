@@ -14,6 +14,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+from tests import pipes
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.runtime.regression.game import SUITE, edit, write_game
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
@@ -448,3 +449,14 @@ def test_findings_of_the_shipped_suite_are_said_to_be_meant(
     assert tltlc("regress", "game.toml", *ONE).out.splitlines()[-2:] == ["3 cases: 2 pass, 1 fail", meant]
     assert meant in tltlc("regress", "game.toml", "--json", "-", *ONE).err
     assert meant not in tltlc("regress", "game.toml", *ONE, "--changed", "easy").out, "all pass"
+
+
+def test_a_pipe_behind_changed_is_not_read(
+    tltlc: Run,  # noqa: F811
+    game: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    pipes.put_beside(Path("pipe.toml"))
+    pipes.forbid(monkeypatch)
+    monkeypatch.setattr("tltl_runtime.commands.regression_run.run", lambda _: 0)
+    assert tltlc("regress", "--changed", "pipe.toml").status == 0

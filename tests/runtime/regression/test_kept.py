@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import pipes
 from tltl_runtime.regression.kept import inputs_hash, kept_text, read_kept
 from tltl_runtime.regression.table_cells import Went
 
@@ -18,6 +19,12 @@ def test_what_was_kept_is_read_again_as_long_as_nothing_has_changed(tmp_path: Pa
     path.write_text(kept_text(inputs, EPISODES), encoding="utf-8")
     assert read_kept(KIND, path, inputs) == EPISODES
     assert read_kept(KIND, path, inputs_hash(["level", 4])) is None
+
+
+def test_a_pipe_keeps_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pipes.put_beside(tmp_path / "kept.json")
+    pipes.forbid(monkeypatch)
+    assert read_kept(KIND, tmp_path / "kept.json", inputs_hash([1])) is None
 
 
 def test_the_code_counts_too(monkeypatch: pytest.MonkeyPatch) -> None:

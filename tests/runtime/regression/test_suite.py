@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import pipes
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.shipped import shipped_policy
 from tltl_runtime.regression.suite import MOST_EPISODES, SHIPPED, Case, Thresholds, read_suite
@@ -203,6 +204,13 @@ def test_a_level_that_there_is_not_may_be_another_one(tmp_path: Path, level: str
         (tmp_path / name).write_text(ROOM, encoding="utf-8")
     found = refused(tmp_path, f'level = "{level}"\npolicy = "navigation"')
     assert found == [("TLT0800", f"there is no level `{level}`", f"did you mean `{meant}`?")]
+
+
+def test_no_pipe_is_read_to_suggest_a_level(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pipes.put_beside(tmp_path / "hall.toml")
+    pipes.forbid(monkeypatch)
+    found = refused(tmp_path, 'level = "hal.toml"\npolicy = "navigation"')
+    assert found == [("TLT0800", "there is no level `hal.toml`", "paths are relative to the suite")]
 
 
 def test_a_copy_of_a_shipped_level_is_told_of_its_policy(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import pipes
 from tests.runtime.training.imitating import SOON, kept, played
 from tests.runtime.training.test_settings import compare
 from tltl_runtime.stealth.env import make_env
@@ -44,6 +45,7 @@ def test_what_meets_the_spec_is_kept_and_nothing_else(env: RecordEpisode, tmp_pa
     good, stopped = made.add(played(3)), made.add(played(4, steps=5))
     assert good.path == tmp_path / "new" / "cover_and_hide-v0-3.episode.npz"
     assert (stopped.path, good.kept, stopped.kept, made.count) == (None, 1, 1, 1)
+    pipes.put_beside(tmp_path / "new" / "pipe.episode.npz")
     assert recordings(tmp_path / "new") == [good.path]
     assert read_episode(good.path).seed == 3
 

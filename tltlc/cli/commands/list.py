@@ -62,7 +62,7 @@ def show(rows: list[Row]) -> None:
 def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterator[Row]:
     """The predicates that each library declares, as they stand in its text; files that are broken are reported."""
     from tltlc.cli.settings import check_libraries
-    from tltlc.files import read_source
+    from tltlc.files import may_be_file, read_source
     from tltlc.grammar.parser import parse
     from tltlc.grammar.tree import PredicateDecl
     from tltlc.project import project_for
@@ -70,7 +70,7 @@ def _predicates(libraries: tuple[Path, ...], add: Callable[..., None]) -> Iterat
 
     check_libraries(libraries)
     for folder in (*libraries, *project_for("-").libraries, standard_library()):
-        for path in sorted(folder.glob("*.tltl")):
+        for path in sorted(filter(may_be_file, folder.glob("*.tltl"))):
             try:
                 source = read_source(path)
             except TltlError as error:
