@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import lru_cache
 from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -185,11 +186,20 @@ _KINDS: Final = {
 
 
 def _place(source: SourceFile, key: str) -> tuple[Label, ...]:
-    """Where the key stands, as far as a search for it at the start of a line can tell."""
+    """Where the key stands first at the start of a line, as far as that can be told."""
+    span = _first_words(source.text).get(key)
+    return (Label(source, span),) if span else ()
+
+
+@lru_cache(maxsize=1)
+def _first_words(text: str) -> Mapping[str, Span]:
+    """The first place of each word, or text in quotes, with which a line begins, perhaps behind a bracket."""
     import re
 
-    found = re.search(rf"^\s*\[?\s*[\"']?({re.escape(key)})\b", source.text, re.MULTILINE)
-    return (Label(source, Span(*found.span(1))),) if found else ()
+    found: dict[str, Span] = {}
+    for match in re.finditer(r"""^[ \t]*\[?[ \t]*(?:"([^"\n]*)"|'([^'\n]*)'|([\w-]+))""", text, re.MULTILINE):
+        found.setdefault(match[match.lastindex or 0], Span(*match.span(match.lastindex or 0)))
+    return found
 
 
 def _from_here(library: Path) -> Path:

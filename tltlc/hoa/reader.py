@@ -16,7 +16,8 @@ from tltlc.hoa.problems import broken, other_kind
 from tltlc.hoa.tree import Alias, Edge, Header, Hoa, Name, Sets, State, Targets, Term
 from tltlc.source import SourceFile, Span
 
-_OUTSIDE: Final = re.compile(r'"(?:\\.|[^\\"])*"|/\*', re.DOTALL)
+_OUTSIDE: Final = re.compile(r'"(?:\\.|[^\\"])*(?:"|\\?\Z)|/\*', re.DOTALL)
+"""A text in quotes, which may lack its end, or the beginning of a comment."""
 _IN_A_COMMENT: Final = re.compile(r"/\*|\*/")
 _ESCAPE: Final = re.compile(r"\\(?:u([0-9a-fA-F]{4})|U(000[0-9a-fA-F]{5}|0010[0-9a-fA-F]{4})|(.))", re.DOTALL)
 _LARGEST: Final = 2**31 - 1

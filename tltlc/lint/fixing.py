@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect, insort
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.grammar.allowed import spoken_of
@@ -34,7 +34,7 @@ def fix(
     source: SourceFile,
     options: CompileOptions | None = None,
     levels: Mapping[str, str] = EMPTY,
-    elsewhere: frozenset[str] = frozenset(),
+    elsewhere: Container[str] = frozenset(),
 ) -> Fixed:
     """A file with every fix applied, until nothing changes.
 

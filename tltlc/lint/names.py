@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from tltlc.grammar.tree import Call, Declaration, Expr, Module, Name, Quantified, SpecDecl
 from tltlc.grammar.walk import expressions, parts
+from tltlc.record import record
 
 _FORMULAS = ("reach", "keep", "avoid", "require")
+
+
+@record
+class Mentioned:
+    """The names that a file mentions itself, and those that others use of it."""
+
+    here: frozenset[str]
+    elsewhere: Container[str]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.here or name in self.elsewhere
 
 
 def mentions(module: Module) -> frozenset[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 
 from tltlc.diagnostics.diagnostic import Diagnostic, stop_at_errors
 from tltlc.grammar.allowed import unsilenced
@@ -20,7 +20,7 @@ from tltlc.source import SourceFile
 
 
 def lint(
-    source: SourceFile, options: CompileOptions | None = None, elsewhere: frozenset[str] = frozenset()
+    source: SourceFile, options: CompileOptions | None = None, elsewhere: Container[str] = frozenset()
 ) -> tuple[Finding, ...]:
     """What is to be said of a file that compiles, in the order of its text; the compiler's own warnings are among it.
 

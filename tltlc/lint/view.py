@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from tltlc.automaton.contradiction import Decision, unsatisfiable
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar.tree import Binary, Call, Clause, Expr, Group, Module, Name, Quantified, SpecDecl
 from tltlc.grammar.walk import children
+from tltlc.lint.names import Mentioned, mentions
 from tltlc.logic.formula import Formula
 from tltlc.logic.phrases import is_state
 from tltlc.record import record
@@ -133,13 +134,18 @@ class View:
     modules: tuple[Loaded, ...]
     specs: tuple[SpecView, ...]
     said: tuple[Diagnostic, ...]
-    elsewhere: frozenset[str] = frozenset()
+    elsewhere: Container[str] = frozenset()
     program: Program = Program((), ())
 
     @property
     def source(self) -> SourceFile:
         """The text of the file."""
         return self.module.source
+
+    @property
+    def used(self) -> Mentioned:
+        """The names that the file itself uses, or others use of it."""
+        return Mentioned(mentions(self.module), self.elsewhere)
 
     def label(self, span: Span, message: str = "") -> Label:
         """A place in the file."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from pathlib import Path
 from typing import Final
 
@@ -82,7 +82,7 @@ def _seems_unused(view: View) -> bool:
     return any(True for rule in rules() if rule.code in _OF_USE for _ in rule.check(view))
 
 
-def _elsewhere(request: Request) -> frozenset[str]:
+def _elsewhere(request: Request) -> Container[str]:
     """The names that other files use of the text, as they stand in the editor."""
     name = request.source.name
     if name.startswith("<"):

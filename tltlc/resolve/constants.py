@@ -85,12 +85,12 @@ def _counted(steps: float, value: Number, env: Env) -> int:
     return ceil(steps)
 
 
-_OVERRIDE = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([A-Za-z%/]*)\s*\Z")
+_OVERRIDE = re.compile(r"([-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*([A-Za-z%/]*)")
 
 
 def override(text: str) -> tuple[float, Dimension | None] | None:
     """The value of ``--param NAME=25 m`` in SI units, dimension None without a unit; None where it is none."""
-    found = _OVERRIDE.match(text)
+    found = _OVERRIDE.fullmatch(text.strip())
     if found is None:
         return None
     value, unit = float(found[1]), found[2]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from typing import TYPE_CHECKING
 
 import click
@@ -59,7 +59,7 @@ def command(paths: tuple[str, ...], fixing: bool, settings: Settings, format: st
 
 
 def _of_file(
-    path: str, elsewhere: frozenset[str], fixing: bool, settings: Settings, report: Report
+    path: str, elsewhere: Container[str], fixing: bool, settings: Settings, report: Report
 ) -> tuple[Diagnostic, ...]:
     """What is left to be said of a file, mended before where that is asked for; others may use the names elsewhere."""
     from pathlib import Path

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections.abc import Container
 from typing import TYPE_CHECKING
 
 import click
@@ -89,7 +90,7 @@ def _look(arguments: tuple[str, ...], settings: Settings) -> None:
 
 
 def _file(
-    path: str, elsewhere: frozenset[str], settings: Settings
+    path: str, elsewhere: Container[str], settings: Settings
 ) -> tuple[tuple[Finding, ...], tuple[TestResult, ...]]:
     """What there is to be said of a file, which is compiled once, and what became of its tests."""
     from tltlc.cli.inputs import check_text

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from typing import Final, Union
 
 from tltlc.grammar.tree import EntityDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
-from tltlc.lint.names import mentions
 from tltlc.lint.removal import item, without
 from tltlc.lint.rule import Edit, Remark, Rule
 from tltlc.lint.view import View
@@ -20,7 +19,7 @@ def check(view: View) -> Iterator[Remark]:
     """A remark for each signal, param, entity, predicate and let that nothing here, or where it is imported, names."""
     if not view.specs:
         return
-    used = mentions(view.module) | view.elsewhere
+    used = view.used
     for declaration in view.module.declarations:
         if isinstance(declaration, EntityDecl):
             yield from _entities(declaration, used, view)
@@ -31,7 +30,7 @@ def check(view: View) -> Iterator[Remark]:
             yield _remark(_KINDS[type(declaration)], declaration.name, declaration.name_span, (gone,), view)
 
 
-def _entities(declaration: EntityDecl, used: frozenset[str], view: View) -> Iterator[Remark]:
+def _entities(declaration: EntityDecl, used: Container[str], view: View) -> Iterator[Remark]:
     spans = [name.span for name in declaration.names]
     unused = [index for index, name in enumerate(declaration.names) if name.name not in used]
     for index in unused:

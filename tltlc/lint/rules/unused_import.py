@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import
-from tltlc.lint.names import mentions
 from tltlc.lint.removal import item, without
 from tltlc.lint.rule import Edit, Remark, Rule
 from tltlc.lint.view import View
@@ -16,11 +15,11 @@ def check(view: View) -> Iterator[Remark]:
     """A remark for each import that brings no name that the file mentions, and for each name chosen in vain."""
     if not view.specs:
         return
-    used = mentions(view.module) | view.elsewhere
+    used = view.used
     for declaration, loaded in view.modules[-1].imports:
         if _counts_unnamed(loaded):
             continue
-        if not used.intersection(_brought(declaration, view)):
+        if not any(name in used for name in _brought(declaration, view)):
             gone = without(view.source, declaration.span, view.module.comments)
             title = f"nothing of `{declaration.target}` is used"
             remark = view.label(declaration.target_span)
@@ -29,7 +28,7 @@ def check(view: View) -> Iterator[Remark]:
             yield from _names(declaration, used, view)
 
 
-def _names(declaration: Import, used: frozenset[str], view: View) -> Iterator[Remark]:
+def _names(declaration: Import, used: Container[str], view: View) -> Iterator[Remark]:
     names = declaration.names or ()
     for index, name in enumerate(names):
         if f"{_prefix(declaration)}{name.name}" not in used:
