@@ -8,10 +8,10 @@ of a signal or param enters it: the caller says which Python name stands for eac
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final, cast
 
-from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
+from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When, nodes
 from tltlc.expression_eval import MULTIPLIED_EXPONENTS
 
 INDENT: Final = "    "
@@ -25,23 +25,37 @@ _CASES, _OR, _AND, _NOT, _COMPARISON, _SUM, _PRODUCT, _SIGN, _UNIT = range(9)
 
 def compile_expressions(
     expressions: Sequence[Expression], signals: Sequence[str], params: Mapping[str, float]
-) -> tuple[Callable[..., float], ...]:
-    """One function per expression; each takes the values of ``signals`` (floats) in order, as arguments by position.
+) -> tuple[Callable[[Sequence[float]], float], ...]:
+    """One function per expression; each takes a sample, the values of ``signals`` (floats) in order.
 
-    ``params`` are fixed here.  Values and errors as for :func:`tltlc.expression_eval.evaluate`.
+    ``params`` are fixed here.  Values and errors as for :func:`tltlc.expression_eval.evaluate`.  The source names in
+    each function only the signals that it reads, so that it grows with the expressions and not with their product.
     """
-    names = {name: f"s{index}" for index, name in enumerate(signals)}
+    places = {name: index for index, name in enumerate(signals)}
     constants = {name: f"p{index}" for index, name in enumerate(params)}
     space: dict[str, object] = {name: getattr(math, name) for name in ("pow", "sqrt", "exp", "tanh")}
     space.update(zip(constants.values(), map(float, params.values()), strict=True))
-    writer = Writer(names, constants, "_")
     lines: list[str] = []
     for index, expression in enumerate(expressions):
-        lines += [f"def atom{index}({', '.join(names.values())}):"]
-        lines += writer.assignment("value", expression, INDENT)
-        lines += [f"{INDENT}return value"]
-    exec(compile("\n".join([*writer.parts, *lines, ""]), "<expressions>", "exec"), space)
-    return tuple(cast("Callable[..., float]", space[f"atom{index}"]) for index in range(len(expressions)))
+        lines += _function(index, expression, places, constants)
+    exec(compile("\n".join([*lines, ""]), "<expressions>", "exec"), space)
+    functions = [space[f"atom{index}"] for index in range(len(expressions))]
+    return tuple(cast("Callable[[Sequence[float]], float]", function) for function in functions)
+
+
+def _function(
+    index: int, expression: Expression, places: Mapping[str, int], constants: Mapping[str, str]
+) -> Iterator[str]:
+    """The lines of the function ``atomINDEX`` and of those that it calls."""
+    read = {node.name: f"s{places[node.name]}" for node in nodes(expression) if isinstance(node, Signal)}
+    fixed = {node.name: constants[node.name] for node in nodes(expression) if isinstance(node, Param)}
+    writer = Writer(read, fixed, f"_{index}_")
+    body = writer.assignment("value", expression, INDENT)
+    yield from writer.parts
+    yield f"def atom{index}(sample):"
+    yield from (f"{INDENT}{variable} = sample[{places[name]}]" for name, variable in read.items())
+    yield from body
+    yield f"{INDENT}return value"
 
 
 class Writer:

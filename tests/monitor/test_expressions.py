@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from tests.fixtures import near
 from tests.monitor.strategies import PARAMS, SIGNALS, expressions, numbers
+from tltlc import expression_python
 from tltlc.expression import Condition, Const, Expression, Op, Param, Signal, When
 from tltlc.expression_eval import evaluate
 from tltlc.expression_json import from_json, to_json
@@ -34,7 +35,7 @@ def test_python_source_computes_the_same_bits(
     constants = dict(zip(PARAMS, params, strict=True))
     (compiled,) = compile_expressions([expression], SIGNALS, constants)
     expected = result(lambda: evaluate(expression, dict(zip(SIGNALS, signals, strict=True)), constants))
-    assert result(lambda: compiled(*signals)) == expected
+    assert result(lambda: compiled(signals)) == expected
 
 
 @given(expressions())
@@ -79,14 +80,14 @@ x = Signal("x")
 )
 def test_values(expression: Expression, expected: float) -> None:
     assert evaluate(expression, {"x": 2.0}, {}) == expected
-    assert compile_expressions([expression], ["x"], {})[0](2.0) == expected
+    assert compile_expressions([expression], ["x"], {})[0]((2.0,)) == expected
 
 
 def test_a_case_that_is_not_taken_is_not_computed() -> None:
     guarded = When(((Condition(">", (x, Const(0.0))), Op("/", (Const(1.0), x))),), Const(-1.0))
     for expression in (guarded, Op("+", (guarded, Const(0.0)))):
         assert evaluate(expression, {"x": 0.0}, {}) == -1.0
-        assert compile_expressions([expression], ["x"], {})[0](0.0) == -1.0
+        assert compile_expressions([expression], ["x"], {})[0]((0.0,)) == -1.0
 
 
 @pytest.mark.parametrize(
@@ -103,7 +104,7 @@ def test_failures(expression: Expression, error: type[Exception]) -> None:
     with pytest.raises(error):
         evaluate(expression, {"x": 1.0}, {})
     with pytest.raises(error):
-        compile_expressions([expression], ["x"], {})[0](1.0)
+        compile_expressions([expression], ["x"], {})[0]((1.0,))
 
 
 @pytest.mark.parametrize("op", ["+", "-", "*", "/", "^", "min", "neg", "when", "condition", "power"])
@@ -124,4 +125,19 @@ def test_deep_expressions(op: str) -> None:
             else:
                 expression = Op(op, pair)  # type: ignore[arg-type]
         (compiled,) = compile_expressions([expression], ["x"], {"p": 0.75})
-        assert result(lambda: compiled(0.5)) == result(lambda: evaluate(expression, {"x": 0.5}, {"p": 0.75}))  # noqa: B023
+        assert result(lambda: compiled((0.5,))) == result(lambda: evaluate(expression, {"x": 0.5}, {"p": 0.75}))  # noqa: B023
+
+
+def test_the_source_of_many_atoms_grows_with_them_and_not_with_their_square(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each function names only the signals that it reads: 5,000 atoms took 19 GB when each named all of them."""
+    texts: list[str] = []
+
+    def compiled(text: str, *rest: str) -> object:
+        texts.append(text)
+        return compile(text, *rest)
+
+    monkeypatch.setattr(expression_python, "compile", compiled, raising=False)
+    names = [f"x{number}" for number in range(500)]
+    functions = compile_expressions([Op("neg", (Signal(name),)) for name in names], names, {})
+    assert [function(range(500)) for function in functions] == [-number for number in range(500)]
+    assert len(texts[0]) < 500 * 100

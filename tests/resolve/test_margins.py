@@ -37,7 +37,7 @@ def around(number: float, low: float, high: float) -> list[float]:
 def holds(expression: Expression, x: float, y: float = 0.0) -> bool:
     """The truth by both evaluators, which agree; the value is in [-1, 1]."""
     found = evaluate(expression, {"x": x, "y": y}, {})
-    assert compile_expressions([expression], ("x", "y"), {})[0](x, y) == found
+    assert compile_expressions([expression], ("x", "y"), {})[0]((x, y)) == found
     assert -1.0 <= found <= 1.0
     return found > 0.0
 

@@ -30,7 +30,7 @@ class Samples:
         self._names = tuple(signal.name for signal in fspa.signals)
         self._noticed: set[tuple[str, str]] = set()
         values = param_values(fspa.params, params or {})
-        self._atoms: tuple[Callable[..., float], ...] = compile_expressions(
+        self._atoms: tuple[Callable[[Sequence[float]], float], ...] = compile_expressions(
             [atom.expression for atom in fspa.atoms], self._names, values
         )
 
@@ -65,7 +65,7 @@ class Samples:
 
     def _value(self, index: int, sample: Sequence[float], step: int) -> float:
         try:
-            return self._atoms[index](*sample)
+            return self._atoms[index](sample)
         except ZeroDivisionError:
             what = "divides by zero"
         except OverflowError:

@@ -46,16 +46,18 @@ def read_trace(stream: Stream, name: str, signals: Sequence[Signal]) -> Iterator
 
 def _columns(header: Sequence[str], at: Lines, signals: Sequence[Signal]) -> list[tuple[Signal, int]]:
     """The signals and the positions of their columns."""
-    missing = [signal.name for signal in signals if signal.name not in header]
+    places: dict[str, int] = {}
+    twice = {name for place, name in enumerate(header) if places.setdefault(name, place) != place}
+    missing = [signal.name for signal in signals if signal.name not in places]
     if missing:
         title = f"the trace has no column for {listed(missing)}"
         found = f"its columns are {listed(header[:10])}" + (", …" if len(header) > 10 else "")
         way_out = _other_form(at.text) or _suggestion(missing[0], header) or found
         raise TltlError([Diagnostic("TLT0621", title, (at.label(""),), way_out)])
     for signal in signals:
-        if header.count(signal.name) > 1:
+        if signal.name in twice:
             raise at.error(f"two columns are called `{signal.name}`", help="keep one of them")
-    return [(signal, header.index(signal.name)) for signal in signals]
+    return [(signal, places[signal.name]) for signal in signals]
 
 
 def _other_form(line: str) -> str | None:

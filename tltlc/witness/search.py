@@ -38,7 +38,7 @@ class Group:
         self._params = {param.name: param.value for param in fspa.params}
         self._expressions = [fspa.atoms[atom].expression for atom in self.atoms]
         self._functions = compile_expressions(self._expressions, self._names, self._params)
-        self._goals: dict[tuple[int, bool], list[tuple[Callable[..., float], bool]]] = {}
+        self._goals: dict[tuple[int, bool], list[tuple[Callable[[Sequence[float]], float], bool]]] = {}
         self._exclusive = [[self._place[atom] for atom in group if atom in self._place] for group in fspa.exclusive]
         self._candidates: list[tuple[Point, tuple[float, ...]]] | None = None
         self._known: dict[Implicant, Point | None] = {}
@@ -74,7 +74,7 @@ class Group:
         """The values of the atoms, None where one has none."""
         given = [point[name] for name in self._names]
         try:
-            values = tuple([function(*given) for function in self._functions])
+            values = tuple([function(given) for function in self._functions])
         except _UNDEFINED:
             return None
         return values if all(map(isfinite, values)) else None
@@ -126,7 +126,7 @@ class Group:
 
     def _sign(self, point: Point, index: int) -> bool | None:
         try:
-            value = self._functions[index](*[point[name] for name in self._names])
+            value = self._functions[index]([point[name] for name in self._names])
         except _UNDEFINED:
             return None
         return value > 0.0
@@ -150,16 +150,16 @@ class Group:
                         best, lack, steps[name] = point, here, step * 2
         return None
 
-    def _lack(self, point: Point, goals: Sequence[tuple[Callable[..., float], bool]]) -> float:
+    def _lack(self, point: Point, goals: Sequence[tuple[Callable[[Sequence[float]], float], bool]]) -> float:
         """By how much, in all, a point misses what is to be positive or not to be."""
         given = [point[name] for name in self._names]
         try:
             # Beyond the border, where an atom has the value 0 and does not hold.
-            return sum(max(0.0, _CLEAR + (-goal(*given) if holds else goal(*given))) for goal, holds in goals)
+            return sum(max(0.0, _CLEAR + (-goal(given) if holds else goal(given))) for goal, holds in goals)
         except _UNDEFINED:
             return inf
 
-    def _slopes(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[..., float], bool]]:
+    def _slopes(self, literal: tuple[int, bool]) -> Sequence[tuple[Callable[[Sequence[float]], float], bool]]:
         """What is to be positive, or not, for a literal to be true, without the plateaus that `clamp` makes."""
         if literal not in self._goals:
             atom, holds = literal
