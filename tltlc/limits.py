@@ -122,6 +122,11 @@ WORK: Final[Mapping[str, int]] = {
     "label nodes": 6_000_000,
     "arrow nodes": 200_000,
     "fixes tried": 200,
+    "mined columns": 5_000,
+    "mined instances": 2_000,
+    "mined pairs": 60_000,
+    "mined sequences": 800_000,
+    "mined candidates": 50_000,
 }
 """How many steps a checker may take, by what it counts."""
 

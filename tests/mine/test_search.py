@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from itertools import islice
+from itertools import chain, islice
 from random import Random
 
 import pytest
@@ -39,7 +39,7 @@ def test_the_masks_say_what_the_automata_say(given_: Evidence) -> None:
     forwards, backwards = Bits(given_), Bits(given_, backwards=True)
     atoms = list(forwards.holds)
     found = [
-        *clauses(forwards, backwards, atoms, 1),
+        *chain.from_iterable(clauses(forwards, backwards, atoms, 1)),
         *(each for portion in islice(sequences(forwards, atoms, 1, 4), 6) for each in portion[:10]),
     ]
     text = words().library.text + "".join(f"spec s{i} {{ {each.text} }}\n" for i, each in enumerate(found))
@@ -53,7 +53,8 @@ def test_every_template_is_tried() -> None:
     for number in (1, 4, 8):
         given_ = evidence(planted(number), 10, 10, seed=3)
         forwards, backwards = Bits(given_), Bits(given_, backwards=True)
-        kinds |= {each.kind for each in clauses(forwards, backwards, list(forwards.holds), 10)}
+        found = clauses(forwards, backwards, list(forwards.holds), 10)
+        kinds |= {each.kind for each in chain.from_iterable(found)}
     assert kinds == set(KINDS)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 from tltlc.mine.bits import Bits, Verdicts, count
+from tltlc.mine.candidates import ALIKE, length
 from tltlc.mine.clause import Clause, Conjunction, accepted_by, atoms_of
 from tltlc.mine.measure import figures
 from tltlc.mine.templates import BOUNDED
@@ -15,12 +16,13 @@ BEAM: Final = 60
 MOST_CLAUSES: Final = 4
 POOL: Final = 60
 """Clauses of each template of which they are made."""
-ALIKE: Final = 3
-"""Of candidates of one length that accept the same traces, as many are kept."""
 
 
 def conjunctions(clauses: Sequence[Clause], bits: Bits, least: int, most_atoms: int) -> Iterator[list[Conjunction]]:
-    """Conjunctions of two clauses and more, in portions; ``least`` and ``most_atoms`` as for sequences."""
+    """Conjunctions of two clauses and more, in portions, of which many are empty; each takes a short time.
+
+    ``least`` and ``most_atoms`` are as for sequences.
+    """
     pool = _pool(clauses)
     beam: list[tuple[Conjunction, Verdicts]] = [((each,), each.accepts) for each in pool]
     for _ in range(1, MOST_CLAUSES):
@@ -37,6 +39,7 @@ def conjunctions(clauses: Sequence[Clause], bits: Bits, least: int, most_atoms: 
                 longer = tuple(sorted((*conjunction, each), key=lambda clause: (clause.rank, clause.text)))
                 if longer not in found and _all_needed(longer, both, bits):
                     found[longer] = both
+            yield []
         beam = best(found.items(), bits)
         yield [conjunction for conjunction, _ in beam]
 
@@ -57,9 +60,8 @@ def best(candidates: Iterable[tuple[Conjunction, Verdicts]], bits: Bits) -> list
 
     def worth(item: tuple[Conjunction, Verdicts]) -> tuple[float, int, list[int], list[tuple[int, str]]]:
         conjunction, accepts = item
-        size = atoms_of(conjunction)
-        ranks, texts = [each.rank for each in conjunction], [(each.atoms, each.text) for each in conjunction]
-        return (-figures(bits, accepts).score(size), len(conjunction), ranks, texts)
+        size, clauses, ranks, texts = length(conjunction)
+        return (-figures(bits, accepts).score(size), clauses, ranks, texts)
 
     shortest: dict[Verdicts, int] = {}
     alike: dict[Verdicts, int] = {}

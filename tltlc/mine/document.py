@@ -13,7 +13,7 @@ from tltlc.mine.search import Search
 
 
 def document(proposals: Sequence[Proposal], evidence: Evidence, search: Search, *, whole: bool) -> dict[str, Any]:
-    """The proposals with their figures; ``whole``: the search came to its end."""
+    """The proposals with their figures; ``whole``: the search came to its end, and no limit left anything out."""
     return {
         "traces": len(evidence.traces),
         "counterexamples": len(evidence.counterexamples),

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import ceil
 
-from tltlc.mine.bits import Bits, Verdicts, count
+from tltlc.limits import WORK
+from tltlc.mine.bits import Bits, count
+from tltlc.mine.candidates import Candidates
 from tltlc.mine.clause import Clause, Conjunction, accepted_by, atoms_of
 from tltlc.mine.conjunctions import best, conjunctions
+from tltlc.mine.events import MOST_EVENTS, best_events
 from tltlc.mine.evidence import Evidence
 from tltlc.mine.measure import figures
 from tltlc.mine.sequences import sequences
 from tltlc.mine.templates import clauses
+from tltlc.rabin.work import Work
 from tltlc.record import record
 
 
@@ -37,26 +41,27 @@ class Search:
         # Rounding must not ask for one trace more than the share says.
         self._least = max(1, ceil(round(options.min_support * len(evidence.traces), 9)))
         self._most_atoms = options.max_length
-        self._found: dict[Conjunction, Verdicts] = {}
+        self._found = Candidates(self.bits)
+        self._evidence = evidence
+        self._work = Work(WORK["mined sequences"])
+        self._unrelated = 0
         self.tried = 0
 
     def run(self) -> Iterator[str]:
         """Search on; what is being done, many times a second, so that whoever asks may leave off."""
-        events = self._events()
-        for number, each in enumerate(clauses(self.bits, self._backwards, events, self._least)):
-            if each.atoms <= self._most_atoms:
-                self._add(each)
-            if number % 200 == 0:
+        events = self._chosen_events()
+        for number, portion in enumerate(clauses(self.bits, self._backwards, events, self._least)):
+            self._add_all(each for each in portion if each.atoms <= self._most_atoms)
+            if number % 20 == 0:
                 yield "templates"
-        for portion in sequences(self.bits, events, self._least, self._most_atoms, again=self._again):
-            for each in portion:
-                self._add(each)
+        for portion in sequences(self.bits, events, self._least, self._most_atoms, again=self._again, work=self._work):
+            self._add_all(portion)
             yield "sequences"
         singles = [conjunction[0] for conjunction, _ in best(self._found.items(), self.bits)]
         for wholes in conjunctions(singles, self.bits, self._least, self._most_atoms):
             self.tried += len(wholes)
             for conjunction in wholes:
-                self._found[conjunction] = accepted_by(conjunction, self.bits)
+                self._found.add(conjunction, accepted_by(conjunction, self.bits))
             yield "conjunctions"
 
     def ranked(self) -> list[Conjunction]:
@@ -73,6 +78,24 @@ class Search:
                 found.append((*place, conjunction))
         return [conjunction for _, _, conjunction in found]
 
+    def left_out(self) -> list[str]:
+        """What the limits on work left out, a sentence each."""
+        said = []
+        if self._unrelated:
+            said.append(f"only {MOST_EVENTS} atoms are related to each other, and {self._unrelated:,} others are not")
+        if self._work.left < 0:
+            said.append(f"only sequences of {WORK['mined sequences']:,} steps together are tried, others are not")
+        if self._found.is_cut:
+            said.append(f"only the {WORK['mined candidates']:,} candidates with the best scores are kept")
+        return said
+
+    def _chosen_events(self) -> list[str]:
+        """The events that are related to each other."""
+        events = self._events()
+        chosen = best_events(self._evidence, events)
+        self._unrelated = len(events) - len(chosen)
+        return chosen
+
     def _events(self) -> list[str]:
         """The atoms that do not hold throughout as many traces as have to satisfy a proposal."""
         bits = self.bits
@@ -82,7 +105,11 @@ class Search:
             if count(bits.none(bits.complement(samples)) & bits.traces) < self._least
         ]
 
+    def _add_all(self, several: Iterable[Clause]) -> None:
+        for each in several:
+            self._add(each)
+
     def _add(self, each: Clause) -> None:
         self.tried += 1
         if count(each.accepts & self.bits.traces) >= self._least and self.bits.counterexamples & ~each.accepts:
-            self._found[(each,)] = each.accepts
+            self._found.add((each,), each.accepts)

@@ -12,14 +12,16 @@ one, which would be met by waiting for a sample.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import Final
 
+from tltlc.limits import WORK
 from tltlc.mine.bits import Bits, Samples, Verdicts, count
 from tltlc.mine.clause import Clause
 from tltlc.mine.measure import figures
 from tltlc.mine.templates import clause
+from tltlc.rabin.work import OutOfWork, Work
 from tltlc.witness.blocks import bracketed
 
 BEAM: Final = 60
@@ -46,18 +48,23 @@ Found = tuple[Steps, Verdicts]
 
 
 def sequences(
-    bits: Bits, atoms: Collection[str], least: int, most_atoms: int, *, again: bool = True
+    bits: Bits, atoms: Collection[str], least: int, most_atoms: int, *, again: bool = True, work: Work | None = None
 ) -> Iterator[list[Clause]]:
     """The sequences of these atoms that at least ``least`` traces satisfy, in portions as they are found.
 
     They name at most ``most_atoms`` atoms, `and` and `or` counting as one each.  ``again``: a step may come again.
+    ``work`` counts the steps of sequences that are tried; the search ends where none is left.
     """
-    search = _Sequences(bits, _material(bits, atoms), least, most_atoms, again=again)
+    material = yield from _material(bits, atoms)
+    search = _Sequences(bits, material, least, most_atoms, again=again, work=work or Work(WORK["mined sequences"]))
     beam: list[Steps] = [()]
     while beam:
         found: dict[Steps, Verdicts] = {}
         for sequence in beam:
-            portion = dict(search.extended(sequence, found))
+            try:
+                portion = dict(search.extended(sequence, found))
+            except OutOfWork:
+                return
             found |= portion
             yield [_clause(each, accepts, bits) for each, accepts in portion.items()]
         beam = _beam(found, bits)
@@ -66,9 +73,11 @@ def sequences(
 class _Sequences:
     """What sequences are made of."""
 
-    def __init__(self, bits: Bits, material: Sequence[Step], least: int, most_atoms: int, *, again: bool) -> None:
+    def __init__(
+        self, bits: Bits, material: Sequence[Step], least: int, most_atoms: int, *, again: bool, work: Work
+    ) -> None:
         self._bits, self._material, self._least, self._most_atoms = bits, material, least, most_atoms
-        self._again = again
+        self._again, self._work = again, work
         # Sequences are compared by their steps, so there is one of each.
         self._choices: dict[tuple[Step, Step], Step] = {}
 
@@ -86,6 +95,7 @@ class _Sequences:
                 longer = (*before, step, *after)
                 accepts = known.get(longer)
                 if accepts is None:
+                    self._work.spend(len(longer))
                     accepts = _met((step, *after), left, bits)
                     if count(accepts & bits.traces) >= self._least:
                         yield longer, accepts
@@ -122,19 +132,25 @@ class _Sequences:
         return found
 
 
-def _material(bits: Bits, atoms: Collection[str]) -> list[Step]:
-    """Those of the atoms that hold in some of the traces, then pairs of them, those of the most traces."""
+def _material(bits: Bits, atoms: Collection[str]) -> Generator[list[Clause], None, list[Step]]:
+    """Those of the atoms that hold in some of the traces, then pairs of them, those of the most traces.
+
+    It yields nothing, many times, so that whoever searches may stop.
+    """
     single = [Step(bracketed(name), 1, bits.holds[name]) for name in atoms]
     single = [step for step in single if bits.some(step.samples) & bits.traces]
     known = {step.samples for step in single}
-    pairs = []
-    for one, other in combinations(single, 2):
-        both = one.samples & other.samples
-        met = count(bits.some(both) & bits.traces)
-        if met and both not in known:
-            known.add(both)
-            pairs.append((-met, f"({one.text} and {other.text})", both))
-    return [*single, *(Step(text, 3, both) for _, text, both in sorted(pairs)[:MOST_PAIRS])]
+    pairs: list[tuple[int, str, Samples]] = []
+    for number, one in enumerate(single):
+        for other in single[number + 1 :]:
+            both = one.samples & other.samples
+            met = count(bits.some(both) & bits.traces)
+            if met and both not in known:
+                known.add(both)
+                pairs.append((-met, f"({one.text} and {other.text})", both))
+        pairs = sorted(pairs)[:MOST_PAIRS]
+        yield []
+    return [*single, *(Step(text, 3, both) for _, text, both in pairs)]
 
 
 def _met(rest: Steps, left: Samples, bits: Bits) -> Verdicts:

@@ -22,16 +22,16 @@ _LEAST_ASKED: Final = 3
 """Traces in which a response has to be called for before its delay says anything."""
 
 
-def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[Clause]:
-    """Every instance over the atoms, but for those that are vacuous in all traces.
+def clauses(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[Clause]]:
+    """Every instance over the atoms, in small portions, except those that are vacuous in all traces.
 
-    Two atoms are related only if both are ``events``: what holds throughout is kept, and no cause of anything.  Bounds
-    are the least ones that ``least`` of the traces keep to.
+    Two atoms are related only if both are ``events``: what holds throughout is kept, and no cause of anything.  The
+    work grows with the square of ``events``, so the caller limits them.  Bounds are the least ones that ``least`` of
+    the traces keep to.
     """
-    for each in _candidates(forwards, backwards, events, least):
+    for portion in _candidates(forwards, backwards, events, least):
         # True only because nothing ever asks: says nothing of how the game is played.
-        if each.asked & each.accepts & forwards.traces:
-            yield each
+        yield [each for each in portion if each.asked & each.accepts & forwards.traces]
 
 
 def clause(kind: str, text: str, atoms: int, accepts: int, asked: int) -> Clause:
@@ -39,17 +39,18 @@ def clause(kind: str, text: str, atoms: int, accepts: int, asked: int) -> Clause
     return Clause(kind, KINDS.index(kind), text, atoms, accepts, asked)
 
 
-def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[Clause]:
+def _candidates(forwards: Bits, backwards: Bits, events: Collection[str], least: int) -> Iterator[list[Clause]]:
+    """The instances, in portions of one atom or one pair."""
     occurs = {name: forwards.some(samples) for name, samples in forwards.holds.items()}
     for name, samples in forwards.holds.items():
         every = forwards.everything
-        yield clause("keep", f"keep {name}", 1, forwards.none(forwards.complement(samples)), every)
-        yield clause("avoid", f"avoid {name}", 1, every & ~occurs[name], every)
+        kept = clause("keep", f"keep {name}", 1, forwards.none(forwards.complement(samples)), every)
+        yield [kept, clause("avoid", f"avoid {name}", 1, every & ~occurs[name], every)]
     for first in events:
         for second in events:
             if first != second:
-                yield from _pair(first, second, forwards, backwards, occurs)
-                yield from _bounded(first, second, forwards, least)
+                related = _pair(first, second, forwards, backwards, occurs)
+                yield [*related, *_bounded(first, second, forwards, least)]
 
 
 def _pair(first: str, second: str, forwards: Bits, backwards: Bits, occurs: dict[str, int]) -> Iterator[Clause]:

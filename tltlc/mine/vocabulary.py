@@ -17,6 +17,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.expression import Signal, nodes
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module, Parameter, SpecDecl, TestDecl
+from tltlc.limits import WORK
 from tltlc.logic.formula import TRUE
 from tltlc.mine.uneven import some
 from tltlc.monitor.samples import listed
@@ -31,8 +32,8 @@ from tltlc.source import SourceFile
 
 _CALL: Final = re.compile(r"([A-Za-z_][\w.]*)\s*\(([^()]*)\)\Z", re.ASCII)
 _WORD: Final = re.compile(r"[A-Za-z_][\w.]*\Z", re.ASCII)
-_MOST_INSTANCES: Final = 2_000
-"""Of one predicate, over the entities."""
+_MOST: Final = WORK["mined columns"]
+_MOST_INSTANCES: Final = WORK["mined instances"]
 
 
 @record
@@ -41,7 +42,8 @@ class Words:
 
     ``library`` declares everything; ``entities`` are those that it did not.  ``reader`` is an automaton that accepts
     everything and has all atoms: their expressions, signals and params.  ``left_out`` are columns that are no atoms, of
-    which those in ``misnamed`` are true or false, and called as no atom can be.
+    which those in ``misnamed`` are true or false, and called as no atom can be.  ``unread`` counts what could be an
+    atom, but is beyond the limits on work.
     """
 
     library: SourceFile
@@ -49,6 +51,7 @@ class Words:
     reader: Fspa
     left_out: tuple[str, ...] = ()
     misnamed: frozenset[str] = frozenset()
+    unread: int = 0
 
 
 def of_library(library: SourceFile, columns: Collection[str], options: ResolveOptions) -> Words:
@@ -73,11 +76,14 @@ def of_library(library: SourceFile, columns: Collection[str], options: ResolveOp
         plain, declarations=tuple(each for each in plain.declarations if not isinstance(each, (SpecDecl, TestDecl)))
     )
     every = dict.fromkeys((*own, *missing))
-    texts = list(dict.fromkeys((*_instances(names.values(), every), *used)))
+    instances, unread = _instances(names.values(), every)
+    texts = list(dict.fromkeys((*used, *instances)))
+    # The order in which atoms are found does not matter to the search.
+    texts, unread = texts[:_MOST], unread + len(texts[_MOST:])
     found = _readable(plain, texts, columns, options)
     if found is None:
         raise _unreadable(library, _resolved(plain, texts, options), columns)
-    return Words(whole, missing, _reader(found))
+    return Words(whole, missing, _reader(found), unread=unread)
 
 
 def _unreadable(library: SourceFile, words: Vocabulary | None, columns: Collection[str]) -> TltlError:
@@ -94,8 +100,9 @@ def of_columns(columns: Mapping[str, bool]) -> Words:
     Raises:
         TltlError: TLT0760, there is none.
     """
-    names = [name for name, is_truth in columns.items() if is_truth]
-    simple = [name for name in names if _WORD.match(name) and _declares(f"signal {name}: bool\n")]
+    truths = [name for name, is_truth in columns.items() if is_truth]
+    names, unread = truths[:_MOST], frozenset(truths[_MOST:])
+    simple = {name: None for name in names if _WORD.match(name) and _declares(f"signal {name}: bool\n")}
     calls = _calls(names, simple)
     entities = list(dict.fromkeys(each for arguments in calls.values() for each in arguments))
     signals = {name.partition("(")[0].strip(): len(arguments) for name, arguments in calls.items()}
@@ -108,8 +115,8 @@ def of_columns(columns: Mapping[str, bool]) -> Words:
         raise _no_columns(names)
     reader = _reader(found)
     read = {atom.name for atom in reader.atoms}
-    left_out = tuple(name for name in columns if name not in read)
-    return Words(library, (), reader, left_out, frozenset(left_out).intersection(names))
+    left_out = tuple(name for name in columns if name not in read and name not in unread)
+    return Words(library, (), reader, left_out, frozenset(left_out).intersection(names), len(unread))
 
 
 def _no_columns(truths: Sequence[str]) -> TltlError:
@@ -133,7 +140,9 @@ def _calls(names: Iterable[str], taken: Collection[str]) -> dict[str, tuple[str,
         if call is None:
             continue
         signal, arguments = call
-        if signal in {*taken, *entities, *arguments} or {*taken, *lengths}.intersection(arguments):
+        if signal in taken or signal in entities or signal in arguments:
+            continue
+        if any(each in taken or each in lengths for each in arguments):
             continue
         declared = "".join(f"entity {each}\n" for each in dict.fromkeys(arguments)) + _signal(signal, len(arguments))
         if lengths.get(signal, len(arguments)) == len(arguments) and _declares(declared):
@@ -178,8 +187,22 @@ def _with_entities(library: SourceFile, names: Sequence[str]) -> SourceFile:
 # --- instances ------------------------------------------------------------------------------------
 
 
-def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> Iterator[str]:
-    """The predicates and `bool` signals over all entities, as they are written."""
+def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> tuple[list[str], int]:
+    """The predicates and `bool` signals over all entities, as they are written, and how many more there are."""
+    found: list[str] = []
+    more = 0
+    for name, parameters in _predicates(bindings):
+        if not parameters:
+            found.append(name)
+            continue
+        chosen = islice(product(entities, repeat=parameters), _MOST_INSTANCES)
+        found += [f"{name}({', '.join(each)})" for each in chosen]
+        more += max(0, len(entities) ** parameters - _MOST_INSTANCES)
+    return found, more
+
+
+def _predicates(bindings: Iterable[Binding]) -> Iterator[tuple[str, int]]:
+    """The predicates and `bool` signals that entities alone are given, and how many of them each takes."""
     for binding in bindings:
         declaration = binding.declaration
         is_truth = binding.kind == "signal" and getattr(declaration, "type", None) == "bool"
@@ -187,13 +210,8 @@ def _instances(bindings: Iterable[Binding], entities: Collection[str]) -> Iterat
             continue
         parameters: tuple[Parameter, ...] = getattr(declaration, "parameters", ())
         asked = [each for each in parameters if each.default is None]
-        if any(each.type != "entity" for each in asked):
-            continue
-        if not asked:
-            yield binding.name
-            continue
-        for chosen in islice(product(entities, repeat=len(asked)), _MOST_INSTANCES):
-            yield f"{binding.name}({', '.join(chosen)})"
+        if all(each.type == "entity" for each in asked):
+            yield binding.name, len(asked)
 
 
 def _readable(
@@ -208,6 +226,8 @@ def _readable(
         for atom in every.atoms
         if all(node.name in columns for node in nodes(atom.expression) if isinstance(node, Signal))
     ]
+    if names == list(texts):
+        return every
     return _resolved(module, names, options) if names else None
 
 

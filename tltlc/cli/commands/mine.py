@@ -136,13 +136,19 @@ def command(
         report.add(found)
         search = Search(evidence, Options(min_support, max_length))
         whole, interrupted = _searched(search, seconds, report)
+        left_out = (*_unread(words), *search.left_out())
+        report.add(tuple(_beyond_the_limits(each, predicates) for each in left_out))
         proposals = confirmed(search.ranked(), evidence, words, options, top)
         if not proposals:
             report.add((_nothing(evidence, whole=whole),))
         elif output is not None:
             _write(output, proposals, evidence, search, words, predicates, report)
         if as_json:
-            print(json.dumps(document(proposals, evidence, search, whole=whole), indent=2, ensure_ascii=False))
+            print(
+                json.dumps(
+                    document(proposals, evidence, search, whole=whole and not left_out), indent=2, ensure_ascii=False
+                )
+            )
         elif proposals and not is_stdout(output):
             print(shown(proposals, evidence, search.bits))
     return exits.interrupted() if interrupted else report.status
@@ -248,6 +254,21 @@ def _every_second(report: Report) -> Callable[[str], None]:
             report.say(text)
 
     return tell
+
+
+def _unread(words: Words) -> Iterator[str]:
+    """What is said where there are more atoms than are read."""
+    from tltlc.limits import WORK
+
+    if words.unread:
+        most, instances = WORK["mined columns"], WORK["mined instances"]
+        of_each = f", {instances:,} of one predicate" if words.entities else ""
+        yield f"only the first {most:,} atoms are read{of_each}, and {words.unread:,} others are not"
+
+
+def _beyond_the_limits(title: str, predicates: str | None) -> Diagnostic:
+    way_out = "name fewer predicates in the library" if predicates else "record only the columns that matter"
+    return Diagnostic("TLT0624", title, help=way_out, severity="warning")
 
 
 def _nothing(evidence: Evidence, *, whole: bool) -> Diagnostic:
