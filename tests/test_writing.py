@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.writing import remove_file, write_file, write_files
+from tltlc.writing import remove_file, rewrite, write_file, write_files
 
 
 @pytest.fixture(name="done")
@@ -104,3 +104,12 @@ def test_a_file_is_removed_where_it_is_there(tmp_path: Path) -> None:
     with pytest.raises(TltlError, match=r"TLT0005: cannot remove `.*b`") as error:
         remove_file(tmp_path / "b", "leave it")
     assert [found.help for found in error.value.diagnostics] == ["leave it"]
+
+
+def test_a_source_file_that_could_not_be_read_again_stays(tmp_path: Path) -> None:
+    path = tmp_path / "big.tltl"
+    path.write_text("spec a = true\n")
+    with pytest.raises(TltlError) as caught:
+        rewrite(path, "// ◇\n" * 200_000)
+    assert [each.code for each in caught.value.diagnostics] == ["TLT0004"]
+    assert path.read_text() == "spec a = true\n"

@@ -11,6 +11,7 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
+from tltlc.limits import SOURCE
 from tltlc.temporary import temporaries
 
 _OPTION: Final = "name another place with -o"
@@ -46,7 +47,14 @@ def write_file(path: Path, content: str | bytes, advice: str = _OPTION, *, durab
 
 
 def rewrite(path: Path, content: str) -> None:
-    """Write a source file anew, in the same way; one that is marked as read-only stays, and TLT0005 says so."""
+    """Write a source file anew, in the same way.
+
+    Raises:
+        TltlError: the file stays as it is: TLT0005, it is marked as read-only; TLT0004, it would be too large to read.
+    """
+    if len(content.encode(errors="replace")) > SOURCE.size:
+        title = f"`{path}` would be larger than {SOURCE.size >> 20} MiB"
+        raise TltlError([Diagnostic("TLT0004", title, help="it stays as it is; split it: a file may `import` others")])
     mode = _mode(path)
     # To be renamed over, a file need not be writable.
     if mode is not None and not (mode & _WRITABLE and os.access(path, os.W_OK)):

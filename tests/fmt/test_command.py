@@ -149,3 +149,26 @@ def test_nothing_of_the_compiler_is_loaded(inside: Path) -> None:
 
     modules = loaded("fmt", "hide.tltl", folder=inside)
     assert not modules & {*HEAVY, "tltlc.pipeline", "tltlc.automaton", "tltlc.resolve"}
+
+
+@pytest.mark.parametrize(
+    "first", ["", "spec a { // tltlc: allow TLT0411\n"], ids=["plain", "with a comment that allows"]
+)
+def test_a_file_whose_layout_could_not_be_read_again_stays(tltlc, inside: Path, first: str) -> None:  # type: ignore[no-untyped-def]
+    text = (first or "spec a {\n") + "//c\n" * 200_000 + "require true }\n"
+    Path("big.tltl").write_text(text)
+    for arguments in (("fmt", "big.tltl"), ("fmt", "--check", "big.tltl"), ("fmt", "--diff", "big.tltl")):
+        done = tltlc(*arguments)
+        assert (done.status, done.out) == (1, "")
+        assert (
+            "error[TLT0004]: `big.tltl` would be larger than 1 MiB or 131,072 words and signs in its layout" in done.err
+        )
+        assert "it stays as it is; to lay it out, split it" in done.err
+    assert Path("big.tltl").read_text() == text
+
+
+def test_a_file_grows_up_to_the_limit_in_bytes(tltlc, inside: Path) -> None:  # type: ignore[no-untyped-def]
+    text = "spec a = true\n" + "// ◇◇◇\n" * 80_000
+    Path("big.tltl").write_text(text + "//" + "x" * ((1 << 20) - len(text.encode()) - 3) + "\n", encoding="utf-8")
+    assert tltlc("fmt", "big.tltl").status == 0
+    assert tltlc("check", "big.tltl").status == 0

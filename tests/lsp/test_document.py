@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.lsp.texts import EXAMPLES, opened
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.files import is_file, read_source, unsaved
 from tltlc.lsp.analysis import Request, analyse
 from tltlc.lsp.edits import applied, difference
@@ -137,3 +138,9 @@ def test_what_may_be_left_out_is_shown_faded() -> None:
         if each.diagnostic.code in faded:
             assert not any(edit.text for edit in each.fix)
     assert "TLT0424" in {each.diagnostic.code for each in found}
+
+
+def test_a_layout_that_could_not_be_read_again_is_refused() -> None:
+    document, _, _ = opened("spec a {\n" + "//c\n" * 200_000 + "require true }\n")
+    with pytest.raises(TltlError, match="would be larger than 1 MiB"):
+        formatting(document, "utf-16")

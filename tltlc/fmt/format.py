@@ -4,22 +4,26 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.fmt.allowed import NOTHING, Kept, keeping
 from tltlc.fmt.declarations import Declarations
 from tltlc.fmt.flat import Flat
 from tltlc.fmt.page import Page
 from tltlc.fmt.style import DEFAULT, STYLES, Style
 from tltlc.grammar import tree
-from tltlc.grammar.parser import parse
+from tltlc.grammar.lexer import MAX_TOKENS
+from tltlc.grammar.parser import is_too_large, parse
 from tltlc.source import SourceFile
 
 
 def format_text(text: str, style: str = DEFAULT) -> str:
     r"""The text in its layout, with the operators of a style: ``words``, ``letters``, ``symbols`` or ``unicode``.
 
-    Its syntax tree is that of ``text``, spans and the form of bounds apart.  Errors: :class:`TltlError` with every
-    error of syntax; KeyError for a style that there is not.
+    Its syntax tree is that of ``text``, spans and the form of bounds apart.
+
+    Raises:
+        TltlError: every error of syntax; TLT0004, the result would be larger than what can be read.
+        KeyError: there is no such style.
 
     >>> from tltlc.fmt import format_text
     >>> format_text("signal seen:bool  spec hide=G !seen")
@@ -51,10 +55,19 @@ def _written(module: tree.Module, style: Style) -> str:
     kept = NOTHING
     while True:
         text = _laid_out(module, style, kept)
+        _check_size(module.source.name, text)
         more = keeping(module, text, kept)
         if more == kept:
             return text
         kept = more
+
+
+def _check_size(name: str, text: str) -> None:
+    """Raise TLT0004 where a layout is too large to be read again."""
+    if is_too_large(SourceFile(name, text)):
+        title = f"`{name}` would be larger than 1 MiB or {MAX_TOKENS:,} words and signs in its layout"
+        help_ = "it stays as it is; to lay it out, split it: a file may `import` others"
+        raise TltlError([Diagnostic("TLT0004", title, help=help_)])
 
 
 def _laid_out(module: tree.Module, style: Style, kept: Kept) -> str:

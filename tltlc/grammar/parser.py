@@ -14,6 +14,7 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import MAX_TOKENS, Tokens, tokenize
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Declaration, Expr, Module
+from tltlc.limits import SOURCE
 from tltlc.source import SourceFile, Span
 
 MAX_CHARACTERS: Final = 1 << 20
@@ -49,6 +50,14 @@ def parse_formula(source: SourceFile) -> tuple[Expr | None, tuple[Diagnostic, ..
     if too_deep:
         return None, (too_deep,)
     return formula, (*builder.diagnostics, *checks.check_formula(source, formula))
+
+
+def is_too_large(source: SourceFile) -> bool:
+    """Whether a text is larger than what a file may hold, or has too many words and signs to be read."""
+    if len(source.text.encode(errors="replace")) > SOURCE.size:
+        return True
+    # Each token has a character, so that most texts need not be looked at.
+    return len(source.text) > MAX_TOKENS and _tokens(source) is None
 
 
 def _tokens(source: SourceFile) -> Tokens | None:

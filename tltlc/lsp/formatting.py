@@ -11,9 +11,15 @@ from tltlc.lsp.edits import difference, text_edit
 
 
 def formatting(document: Document, encoding: str) -> list[types.TextEdit] | None:
-    """The edit that lays a document out in the style of its project; None where its syntax is broken."""
+    """The edit that lays a document out in the style of its project; None where its syntax is broken.
+
+    Raises:
+        TltlError: TLT0004, the text is too large, or would be.
+    """
     try:
         after = format_source(document.source, document.project.formatting)
-    except TltlError:
+    except TltlError as error:
+        if any(each.code == "TLT0004" for each in error.diagnostics):
+            raise
         return None
     return [text_edit(document.source, edit, encoding) for edit in difference(document.source, after)]
