@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.place import INFIX, Place, outside, shown
+from tltlc.grammar.place import BEFORE_ONE, INFIX, Place, outside, shown
 from tltlc.grammar.rewording import formula_start, formula_stop, last_of, operand, reworded, span_of
-from tltlc.grammar.words import CASES, CLAUSES, CONDITIONS, UNITS_ELSEWHERE
+from tltlc.grammar.words import CASES, CLAUSES, CONDITIONS, OPERATORS, UNITS_ELSEWHERE
+from tltlc.record import record
 
 _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
 _COMPARISONS: Final = {
@@ -26,13 +27,18 @@ _CONDITION: Final = {"reach": "{a} and {b}", "avoid": "{a} and {b}", "": "{b} im
 _SEQUENCE: Final = {"": "{a} then {b}"}
 _FORMS: Final[dict[str, Forms]] = {
     **dict.fromkeys((*CONDITIONS, "during"), _CONDITION),
-    "before": {"keep": "require {a} until {b}", "avoid": "require (not {a}) until {b}", **_SEQUENCE},
+    # The weak operators: what is kept or avoided must not become a goal.
+    "before": {
+        "keep": "require {a} weak_until {b}",
+        "avoid": "require (not {a}) weak_until {b}",
+        **_SEQUENCE,
+    },
     "after": {
         "keep": "{b} implies always {a}",
         "avoid": "require always ({b} implies always not {a})",
         "": "{b} then {a}",
     },
-    "followed": _SEQUENCE,
+    "followed": {"keep": "{a} implies next eventually {b}", **_SEQUENCE},
     "unless": {"reach": "{a} or {b}", "keep": "{a} or {b}", "avoid": "{a} and not {b}", "": "{a} weak_until {b}"},
     "without": {"": "{a} and not {b}"},
     "but": {"": "{a} and {b}"},
@@ -42,32 +48,34 @@ _FORMS: Final[dict[str, Forms]] = {
 
 _IN_TIME: Final = {
     "reach": "require eventually within {b} {a}",
-    "avoid": "require always for {b} not {a}",
-    "then": "{c} and eventually within {b} {a}",
+    "avoid": "require not eventually within {b} {a}",
+    "then": "{c} and F[1,{end}] {a}",
     "": "eventually within {b} {a}",
 }
 _FOR_TIME: Final = {
     # Past the end of a trace `always for` asks nothing: one step would meet it.
-    "reach": "(always for {b} {a}) and next after {b} {a}",
+    "reach": "(always for {b} {a}) and next after {less} {a}",
     "keep": "require always for {b} {a}",
     "avoid": "require always for {b} not {a}",
-    "then": "{c} then (always for {b} {a}) and next after {b} {a}",
+    "then": "{c} then (always for {b} {a}) and next after {less} {a}",
     "": "always for {b} {a}",
+}
+_AFTER_TIME: Final = {
+    "reach": "require next after {b} eventually {a}",
+    "keep": "require weak_next after {b} always {a}",
+    "avoid": "require weak_next after {b} always not {a}",
+    "then": "{c} and next after {b} eventually {a}",
+    "": "next after {b} {a}",
 }
 _TIMES: Final[dict[str, Forms]] = {
     **dict.fromkeys(("within", "in", "before", "by"), _IN_TIME),
     "for": _FOR_TIME,
-    "after": {
-        "reach": "require next after {b} eventually {a}",
-        "keep": "require next after {b} always {a}",
-        "avoid": "require next after {b} always not {a}",
-        "then": "{c} and next after {b} eventually {a}",
-        "": "next after {b} {a}",
-    },
+    "after": _AFTER_TIME,
 }
 """What `a WORD TIME` and `WORD TIME a` are; under `then`, what `c then a WORD TIME` is, as a time is that of its goal.
 
-With `and`, it begins where `c` is reached.
+With `and`, it begins where `c` is reached.  ``{end}`` is the time as the end of a bound in brackets, ``{less}`` one
+step less.
 """
 _TIMED: Final = {form for forms in _TIMES.values() for form in forms.values()}
 
@@ -90,16 +98,16 @@ def plain_english(place: Place) -> Diagnostic | None:
     if not place.wants_operator or place.before is None:
         return None
     for at, elsewhere in ((place.stop.index - 1, _PREFIXES), (place.stop.index, _FORMS)):
-        word, timed = place.tokens[at], place.tokens[at + 1 :] and place.tokens[at + 1].type == "NUMBER"
+        word, timed = place.tokens[at], at + 1 < len(place.tokens) and place.tokens[at + 1].type == "NUMBER"
         forms = _TIMES.get(word.text) if timed else elsewhere.get(word.text)
         if forms is None or word.type not in ("NAME", "WHEN"):
             continue
         if place.tokens[0].type == "PREDICATE":
             return place.error("TLT0101", f"{shown(word)} is no operator", CASES, span=word.span)
         if word.text == "without" and _kind(place) in ("reach", "keep"):
-            help_ = "write `avoid`, which begins a clause of its own and speaks of every step"
-            return place.error("TLT0101", "`without` is no operator", help_)
-        return _prefixed(place, at, forms) if at < place.stop.index else _infix(place, forms)
+            return _without(place)
+        find = _timed if timed else _untimed
+        return _prefixed(place, at, forms, timed=timed) if at < place.stop.index else find(place, forms)
     return None
 
 
@@ -137,65 +145,208 @@ def filler(place: Place) -> Diagnostic | None:
 
 def conditional(place: Place) -> Diagnostic | None:
     """A line of a spec that begins with ``if`` or ``when``."""
-    return _prefixed(place, 0, {"": "keep {b} implies {a}"}) if place.tokens[0].text in _PREFIXES else None
+    forms = {"": "keep {b} implies {a}"}
+    return _prefixed(place, 0, forms, timed=False) if place.tokens[0].text in _PREFIXES else None
 
 
-def _infix(place: Place, forms: Forms) -> Diagnostic:
+def _without(place: Place) -> Diagnostic:
+    """``reach a without b``: `avoid` asks for what follows, which must be one operand."""
+    help_ = "`avoid`, which begins a clause of its own and speaks of every step"
+    at = place.stop.index
+    alone = not _has(place, at + 1, formula_stop(place), INFIX) and not _has(
+        place, _goals(place, at)[-1], at, _AMBIGUOUS
+    )
+    return place.error("TLT0101", "`without` is no operator", f"{'write' if alone else 'use'} {help_}")
+
+
+def _untimed(place: Place, forms: Forms) -> Diagnostic:
+    """``a WORD b``."""
     at, kind = place.stop.index, _kind(place)
-    start, stop = formula_start(place), formula_stop(place)
-    form, before = forms.get(kind, forms[""]), ""
-    goals = [start]
-    if kind == "reach":
-        goals += [index + 1 for index in outside(place.tokens, start, at) if place.tokens[index].type == "THEN"]
-    begin = goals[-1]
-    if forms in _TIMES.values():
-        b, behind = _time(place, at + 1)
-        if len(goals) > 1:
-            form, start = forms["then"], goals[-2]
-            before = operand(place, start, begin - 1)
-        elif form == forms[""]:
-            # It is that of the last operand alone.
-            last = last_of(place, INFIX, start)
-            start = begin = start if last is None else last + 1
-        return _told(place, at, (start, stop), form, operand(place, begin, at), b if behind == stop else "", before)
+    begin, stop = _goals(place, at)[-1], formula_stop(place)
     behind = at + 1 + (place.tokens[at + 1].text == "by")
-    thens = (index for index in outside(place.tokens, behind, stop) if place.tokens[index].type == "THEN")
-    stop = next(thens, stop)
-    return _told(place, at, (begin, stop), form, operand(place, begin, at), operand(place, behind, stop))
+    end = next((index for index in outside(place.tokens, behind, stop) if place.tokens[index].type == "THEN"), stop)
+    form = forms.get(kind, forms[""])
+    said = _Said(operand(place, begin, at), operand(place, behind, end))
+    is_clear = (
+        (end == stop or kind == "reach")
+        and not _has(place, begin, at, _AMBIGUOUS)
+        and not _has(place, behind, end, _AMBIGUOUS)
+        and not (form == _FORMS["xor"][""] and (_has(place, begin, at, INFIX) or _has(place, behind, end, INFIX)))
+        and not (" then " in form and (kind == "keep" or place.tokens[begin].type == "NOT"))
+        and (form in _ANYWHERE or _is_clear_inside(place, form))
+    )
+    return _told(place, at, (begin, end), form, said if is_clear else None)
 
 
-def _prefixed(place: Place, at: int, forms: Forms) -> Diagnostic:
-    stop = formula_stop(place)
-    if forms in _TIMES.values():
-        b, behind = _time(place, at + 1)
+def _timed(place: Place, forms: Forms) -> Diagnostic:
+    """``a WORD TIME``."""
+    at, kind = place.stop.index, _kind(place)
+    goals, stop = _goals(place, at), formula_stop(place)
+    begin = goals[-1]
+    time, behind = _time(place, at + 1)
+    if len(goals) > 1:
+        before = operand(place, goals[-2], begin - 1)
+        is_clear = not _has(place, goals[-2], begin - 1, _AMBIGUOUS)
+        form, start = forms["then"], goals[-2]
+    elif kind in forms and kind:
+        before, form, start, is_clear = "", forms[kind], begin, True
     else:
-        split = _split(place, at + 1, stop)
-        b, behind = operand(place, at + 1, split), split + (place.tokens[split].text in _SEPARATORS)
-    return _told(place, at, (at, stop), forms.get(_kind(place), forms[""]), operand(place, behind, stop), b)
+        # The time is that of the last operand alone.
+        last = last_of(place, INFIX, begin)
+        start = begin = begin if last is None else last + 1
+        before, form, is_clear = "", forms[""], _is_clear_time(place, begin, forms)
+        is_clear = is_clear and place.tokens[begin].type not in _UNARY
+    is_clear = is_clear and behind == stop and _is_clear_operand(place, begin, at)
+    said = _Said(operand(place, begin, at), time, before)
+    return _told(place, at, (start, stop), form, said if is_clear else None)
 
 
-def _told(place: Place, at: int, part: tuple[int, int], form: str, a: str, b: str, c: str = "") -> Diagnostic:
-    """The error at the word ``at``, with what to write in place of a part of the tokens, where that can be read."""
+def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic:
+    """``WORD b, a`` and ``WORD TIME a``."""
+    if timed:
+        return _prefixed_time(place, at, forms)
+    stop, form = formula_stop(place), forms.get(_kind(place), forms[""])
+    split = _split(place, at + 1, stop)
+    behind = split + (place.tokens[split].text in _SEPARATORS)
+    if _kind(place) == "reach":
+        # What follows is the next goal.
+        stop = next((i for i in outside(place.tokens, behind, stop) if place.tokens[i].type == "THEN"), stop)
+    said = _Said(operand(place, behind, stop), operand(place, at + 1, split))
+    previous = place.tokens[at - 1].type if at > formula_start(place) else None
+    is_clear = previous in _BEFORE_CONDITIONS.get(_kind(place), (None, "AND", "OR", "IMPLIES"))
+    is_clear = is_clear and _is_clear_inside(place, form)
+    wrapped = form if previous in (None, "THEN") else f"({form})"
+    return _told(place, at, (at, stop), wrapped, said if is_clear else None)
+
+
+def _prefixed_time(place: Place, at: int, forms: Forms) -> Diagnostic:
+    stop, kind, first = formula_stop(place), _kind(place), formula_start(place)
+    time, behind = _time(place, at + 1)
+    before, start = "", at
+    is_clear = _is_clear_operand(place, behind, stop)
+    if at == first:
+        form = forms.get(kind, forms[""])
+        is_clear = is_clear and (form != forms[""] or _is_clear_time(place, at, forms))
+    elif kind == "reach" and place.tokens[at - 1].type == "THEN":
+        start = _goals(place, at)[-2]
+        form, before = forms["then"], operand(place, start, at - 1)
+        is_clear = is_clear and not _has(place, start, at - 1, _AMBIGUOUS)
+    else:
+        form = forms[""]
+        is_clear = _is_clear_time(place, at, forms) and not _has(place, behind, stop, INFIX)
+    said = _Said(operand(place, behind, stop), time, before)
+    return _told(place, at, (start, stop), form, said if is_clear else None)
+
+
+@record
+class _Said:
+    """What was written: the formula ``a``, the formula or time ``b``, and the goal before it, ``c``."""
+
+    a: str
+    b: str
+    c: str = ""
+
+    def put_in(self, form: str) -> str:
+        """The form with these in their places, empty where it needs another time than there is."""
+        number, _, unit = self.b.partition(" ")
+        steps = unit in ("step", "steps") and number.isdecimal()
+        less = f"{int(number) - 1} steps" if steps else ""
+        if "{less}" in form and not less:
+            return ""
+        return form.format(a=self.a, b=self.b, c=self.c, end=number if steps else self.b, less=less)
+
+
+def _told(place: Place, at: int, part: tuple[int, int], form: str, said: _Said | None) -> Diagnostic:
+    """The error at the word ``at``, with what to write in place of a part of the tokens.
+
+    ``said`` is None where that cannot be read in one way alone; then the help says how the form is written.
+    """
     word, kind = place.tokens[at], _kind(place)
     title = f"{shown(word)} is no operator" if at else f"no clause begins with {shown(word)}"
     code = "TLT0101" if at else "TLT0107"
     start, stop = part
     timed = form in _TIMED
-    if form.split()[0] in CLAUSES:
+    if _is_clause(form):
         start = 0
-    found = None
-    if a and b:
+    text = said.put_in(form) if said and said.a and said.b and not (timed and _is_zero(said.b)) else ""
+    if said and text:
         reason = ((word.text == "for" or not timed) and _REASONS.get((word.text, kind))) or (
             _WHERE if form == _CONDITION[""] else ""
         )
-        reason = reason.format(a=a, b=b)
-        found = reworded(place, start, stop, form.format(a=a, b=b, c=c), title, reason, code)
-    if found:
-        return found
-    prefixed = at == 0 or at < place.stop.index
-    a, b = ("a", "20 steps") if timed else ("b", "a") if prefixed else ("a", "b")
-    said = f"{word.text} {b}, {a}" if prefixed else f"{'c then ' if c else ''}{a} {word.text} {b}"
-    return place.error(code, title, f"`{said}` is written `{form.format(a=a, b=b, c='c')}`", span=word.span)
+        found = reworded(place, start, stop, text, title, reason.format(a=said.a, b=said.b), code)
+        if found:
+            return found
+    return place.error(code, title, _in_general(place, at, form), span=word.span)
+
+
+def _in_general(place: Place, at: int, form: str) -> str:
+    """How a form is written, with letters for what stands in it."""
+    word, timed, prefixed = place.tokens[at].text, form in _TIMED, at == 0 or at < place.stop.index
+    said = _Said("a", "20 steps" if timed else "b", "c")
+    infix = "followed by" if word == "followed" else word
+    english = f"{word} {said.b}, a" if prefixed else f"a {infix} {said.b}"
+    if "{c}" in form:
+        english = f"c then {english}"
+    if at and _is_clause(form):
+        english = f"{_kind(place)} {english}"
+    return f"`{english}` is written `{said.put_in(form)}`"
+
+
+_AMBIGUOUS: Final = INFIX - {"AND", "OR"}
+"""Operators beside which it is not clear what a word or a time belongs to."""
+_UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
+_BEFORE_CONDITIONS: Final[Mapping[str, tuple[str | None, ...]]] = {
+    "reach": (None, "AND", "OR", "THEN"),
+    "avoid": (None, "AND", "OR"),
+}
+"""What may stand before `if` in these clauses, None for nothing."""
+_ANYWHERE: Final = {_FORMS[word][""] for word in ("without", "but", "xor")}
+"""Forms that mean the same in each clause, in brackets too."""
+
+
+def _has(place: Place, start: int, stop: int, kinds: Collection[str]) -> bool:
+    """Whether one of these kinds of tokens stands outside brackets in a part."""
+    return any(place.tokens[index].type in kinds for index in outside(place.tokens, start, stop))
+
+
+def _is_clear_inside(place: Place, form: str) -> bool:
+    """Whether the form of any clause is right here: in the brackets of `reach`, say, it may ask for too little."""
+    clause = place.tokens[0].text if place.start == "clause" and place.open_brackets else ""
+    return clause not in ("reach", "avoid", "keep") or (clause == "keep" and form == _CONDITION[""])
+
+
+def _is_clear_time(place: Place, begin: int, forms: Forms) -> bool:
+    """Whether a time can be that of the operand which begins here, and of no more."""
+    clause = place.tokens[0].text if place.start == "clause" else ""
+    previous = place.tokens[begin - 1].type if begin > formula_start(place) else None
+    if clause in ("reach", "avoid"):
+        return False
+    # A step that must be there makes a goal of what is kept.
+    if clause == "keep" and (previous is None or forms is _AFTER_TIME):
+        return False
+    return previous in (None, "IMPLIES")
+
+
+def _is_clear_operand(place: Place, start: int, stop: int) -> bool:
+    """Whether a time can be that of all of these tokens."""
+    return not _has(place, start, stop, _AMBIGUOUS) and place.tokens[start].text not in OPERATORS
+
+
+def _goals(place: Place, at: int) -> list[int]:
+    """Where the goals of `reach` begin that stand before ``at``; elsewhere where the formula begins."""
+    start = formula_start(place)
+    if _kind(place) != "reach":
+        return [start]
+    thens = (index for index in outside(place.tokens, start, at) if place.tokens[index].type == "THEN")
+    return [start, *(index + 1 for index in thens)]
+
+
+def _is_clause(form: str) -> bool:
+    return form.split()[0] in CLAUSES
+
+
+def _is_zero(time: str) -> bool:
+    return not float(time.split()[0])
 
 
 def _kind(place: Place) -> str:
