@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
+import pytest
 from lsprotocol import types
 
 from tests.lsp.client import Client
@@ -159,3 +161,19 @@ def test_times_are_shown_in_steps() -> None:
     assert steps_behind(document, Span(limit, limit + 12)) == [("min", "= 1200 steps")]
     without_clock, _, _ = opened(TIMES)
     assert steps_behind(without_clock, whole) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_a_named_pipe_keeps_nobody_waiting(client: Client, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.tltl")
+    (tmp_path / "link.tltl").symlink_to("pipe.tltl")
+    (tmp_path / "plain.tltl").write_text("signal noise: ratio\n", encoding="utf-8")
+    assert [each["name"] for each in client.ask("workspace/symbol", {"query": "n"})] == ["noise"]
+    for name in ("pipe.tltl", "link.tltl"):
+        uri = (tmp_path / name).as_uri()
+        assert client.ask("textDocument/documentSymbol", {"textDocument": {"uri": uri}}) is None
+    # In the editor it is a text like any other.
+    uri = client.open(tmp_path / "pipe.tltl", 'import "link.tltl"\nsignal noisy: bool\n')
+    assert [each["name"] for each in client.ask("workspace/symbol", {"query": "noisy"})] == ["noisy"]
+    (said,) = client.diagnostics(uri, bool)
+    assert "link.tltl" in said["message"]

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import may_be_file, noted, read_source, unsaved
+from tltlc.files import is_file, may_be_file, noted, read_source, unsaved
 from tltlc.lsp.document import Document
 from tltlc.lsp.paths import is_below, name_of, path_of, uri_of
 from tltlc.project import Project, project_for
@@ -54,6 +54,9 @@ class Workspace:
         if found is not None and (opened is not None or found.is_current()):
             return found
         with noted() as notes:
+            # A named pipe would keep the server waiting for its other end.
+            if opened is None and not is_file(name):
+                return None
             try:
                 source = SourceFile(name, opened[2]) if opened else read_source(name)
             except TltlError:
