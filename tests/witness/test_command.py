@@ -68,3 +68,33 @@ def test_a_spec_without_atoms_does_not_stand_in_the_way_of_others(tltlc: Run, in
 @pytest.mark.parametrize("options", [[], ["--cover"], ["--cover", "--as", "csv", "-o", "out"]])
 def test_it_says_the_same_each_time(options: list[str], tltlc: Run, inside: Path) -> None:
     assert tltlc("witness", EXAMPLE, *options).out == tltlc("witness", EXAMPLE, *options).out
+
+
+def test_no_csv_of_a_spec_that_reads_no_signal(tltlc: Run, inside: Path) -> None:
+    Path("constant.tltl").write_text("param p in [0, 2] = 1\nspec s = F p > 1\n")
+    refused = tltlc("witness", "constant.tltl", "--as", "csv")
+    assert refused.status == 1
+    assert "error[TLT0742]: `s` reads no signal, so a CSV trace of it has no columns" in refused.err
+    assert "TLT0620" not in refused.err
+    assert 'test "s: a shortest trace that is rejected"' in tltlc("witness", "constant.tltl").out
+
+
+def test_what_was_not_found_is_not_called_impossible(tltlc: Run, inside: Path) -> None:
+    Path("never.tltl").write_text("signal x in [0, 1]\nspec s = F (x > 0.7 & x < 0.3)\n")
+    said = tltlc("witness", "never.tltl").err
+    assert "no values of the signals were found that give `x > 0.7` and `x < 0.3`" in said
+
+
+@pytest.mark.parametrize("size", ["1e12", "1e150", "1e308"])
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_very_large_values_are_found(tltlc: Run, inside: Path, size: str, sign: str) -> None:
+    Path("far.tltl").write_text(
+        "signal x: number\n"
+        f"predicate p in [-1, 1] = clamp({sign}x / {size} - 1, -1, 1)\n"
+        f"predicate q in [-1, 1] = clamp({sign}x / {size} - 1.5, -1, 1)\n"
+        "spec s = F (p & !q) & F (p & q)\n"
+    )
+    found = tltlc("witness", "far.tltl", "--accepting", "--as", "csv")
+    assert (found.status, found.err) == (0, "")
+    Path("trace.csv").write_text(found.out)
+    assert tltlc("monitor", "far.tltl", "trace.csv").status == 0

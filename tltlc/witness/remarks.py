@@ -33,7 +33,7 @@ def no_trace(moves: Moves, what: str) -> Diagnostic:
     fspa = moves.fspa
     if moves.obstacles:
         edge, obstacles = min(moves.obstacles.items())
-        way_out = f"edge {_edge(fspa, edge)}: nothing gives {' or '.join(each.text(fspa) for each in obstacles[:2])}"
+        way_out = f"edge {_edge(fspa, edge)}: {_none_found(' or '.join(each.text(fspa) for each in obstacles[:2]))}"
         return Diagnostic(
             "TLT0741", f"no samples were found that `{fspa.name}` would have {what}", (), way_out, "warning"
         )
@@ -51,9 +51,9 @@ def untaken(fspa: Fspa, edges: Sequence[Untaken]) -> list[Diagnostic]:
         name = f"the edge {_edge(fspa, each.edge)} of `{fspa.name}` (`{guard}`)"
         if each.obstacles:
             reasons = " or ".join(obstacle.text(fspa) for obstacle in each.obstacles[:2])
-            text, way_out = "no samples were found that take", f"nothing gives {reasons} at once"
+            text, way_out = "no samples were found that take", f"{_none_found(reasons)} at once"
             if all(len(obstacle.literals) == 1 for obstacle in each.obstacles):
-                way_out = f"nothing gives {reasons}"
+                way_out = _none_found(reasons)
         else:
             text, way_out = "no way was found to", "the state that it leaves is reached by edges alone that none takes"
         found.append(Diagnostic("TLT0740", f"{text} {name}", (), way_out, "warning"))
@@ -69,6 +69,17 @@ def no_atoms(fspa: Fspa) -> Diagnostic:
     return Diagnostic(
         "TLT0742", f"`{fspa.name}` has no atoms, so a trace of it says nothing", help="name an atom in it"
     )
+
+
+def no_signals(fspa: Fspa) -> Diagnostic:
+    """The error of a spec that reads no signal, for which no CSV can be written."""
+    title = f"`{fspa.name}` reads no signal, so a CSV trace of it has no columns"
+    return Diagnostic("TLT0742", title, help="ask for `--as test`, or name a signal in it")
+
+
+def _none_found(wanted: str) -> str:
+    """Why there is no sample; the search proves nothing, so this does not say that there can be none."""
+    return f"no values of the signals were found that give {wanted}"
 
 
 @contextmanager

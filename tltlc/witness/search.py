@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from itertools import pairwise
-from math import inf, isfinite
+from math import copysign, inf, isfinite, sqrt
+from sys import float_info
 
 from tltlc.automaton.fspa import Fspa, Implicant
 from tltlc.expression import Const, Expression, Op, nodes
@@ -18,11 +20,20 @@ from tltlc.resolve.spec import Signal
 
 Point = Mapping[str, float]
 
+Candidate = tuple[Point, tuple[float, ...]]
+"""A point, and the values of the atoms there."""
+
 _CLEAR = 0.05
 """A point this far inside is taken at once: the first such point is the simplest."""
 _STARTS = 3
 _ROUNDS = 100
 _HALVINGS = 60
+_FAR = tuple(
+    sign * size for size in (1e9, 1e12, 1e20, 1e50, 1e100, 1e200, 1e300, 1e308, float_info.max) for sign in (1.0, -1.0)
+)
+"""Where simple points do not lead, along a signal without a range."""
+_LARGE = 1e6
+"""From here on, halving a range of values would take too long to find their size."""
 _UNDEFINED = (ZeroDivisionError, OverflowError, ValueError)
 
 
@@ -40,7 +51,6 @@ class Group:
         self._functions = compile_expressions(self._expressions, self._names, self._params)
         self._goals: dict[tuple[int, bool], list[tuple[Callable[[Sequence[float]], float], bool]]] = {}
         self._exclusive = [[self._place[atom] for atom in group if atom in self._place] for group in fspa.exclusive]
-        self._candidates: list[tuple[Point, tuple[float, ...]]] | None = None
         self._known: dict[Implicant, Point | None] = {}
 
     def find(self, literals: Implicant) -> Point | None:
@@ -50,23 +60,25 @@ class Group:
         return self._known[literals]
 
     def _find(self, literals: Implicant) -> Point | None:
-        """The first candidate that is clearly inside, else the one furthest inside, else what a climb finds."""
-        if self._candidates is None:
-            self._candidates = [(point, values) for point in self._points() if (values := self._values(point))]
+        """The best of the simple candidates, else what a climb from them finds, else the best of very large values."""
+        inside = self._best(self._candidates, literals)
+        if inside is not None:
+            return inside
+        outside = [(self._margin(values, literals), point) for point, values in self._candidates]
+        starts = sorted(outside, key=lambda each: -each[0])[:_STARTS]
+        climbed = next((found for _, start in starts if (found := self._climb(start, literals))), None)
+        return climbed or self._best(self._far_candidates, literals)
+
+    def _best(self, candidates: Sequence[Candidate], literals: Implicant) -> Point | None:
+        """The first candidate that is clearly inside, else the one furthest inside."""
         inside: list[tuple[float, Point]] = []
-        outside: list[tuple[float, Point]] = []
-        for point, values in self._candidates:
-            margin = self._margin(values, literals)
+        for point, values in candidates:
             if self._are_true(values, literals):
+                margin = self._margin(values, literals)
                 if margin >= _CLEAR:
                     return point
                 inside.append((margin, point))
-            else:
-                outside.append((margin, point))
-        if inside:
-            return max(inside, key=lambda each: each[0])[1]
-        starts = sorted(outside, key=lambda each: -each[0])[:_STARTS]
-        return next((found for _, start in starts if (found := self._climb(start, literals))), None)
+        return max(inside, key=lambda each: each[0])[1] if inside else None
 
     # --- truth ------------------------------------------------------------------------------------
 
@@ -90,16 +102,40 @@ class Group:
 
     # --- points -----------------------------------------------------------------------------------
 
-    def _points(self) -> Iterator[Point]:
-        """Simple points, then points between the borders of atoms along each signal."""
+    @cached_property
+    def _candidates(self) -> list[Candidate]:
+        return [(point, values) for point in self._points() if (values := self._values(point))]
+
+    @cached_property
+    def _far_candidates(self) -> list[Candidate]:
+        return [(point, values) for point in self._far_points() if (values := self._values(point))]
+
+    @cached_property
+    def _simple(self) -> list[Point]:
+        """Simple points; none where there are no signals."""
         whole = Op("min", (*self._expressions, *map(Const, self._params.values())))
         box: Box = {Variable(name): self._ranges[name] for name in self._names}
         bools: frozenset[AnyVariable] = frozenset(Variable(name) for name in self._bools)
-        simple = [{variable.name: value for variable, value in point.items()} for point in points(whole, box, bools)]
-        yield from simple
+        return [{variable.name: value for variable, value in point.items()} for point in points(whole, box, bools)]
+
+    def _points(self) -> Iterator[Point]:
+        """Simple points, then points between the borders of atoms along each signal."""
+        yield from self._simple
         for name in self._names:
-            if name not in self._bools and simple:
-                yield from self._between_borders(simple[0], name, sorted({point[name] for point in simple}))
+            if name not in self._bools and self._simple:
+                ladder = sorted({point[name] for point in self._simple})
+                yield from self._between_borders(self._simple[0], name, ladder)
+
+    def _far_points(self) -> Iterator[Point]:
+        """Points along each signal whose range has no end there, up to the largest numbers."""
+        for name in self._names:
+            low, high = self._ranges[name]
+            far = [value for value in _FAR if low <= value <= high]
+            if isfinite(high - low) or not self._simple:
+                continue
+            yield from ({**self._simple[0], name: value} for value in far)
+            ladder = sorted({*far, *(point[name] for point in self._simple)})
+            yield from self._between_borders(self._simple[0], name, ladder)
 
     def _between_borders(self, start: Point, name: str, ladder: Sequence[float]) -> Iterator[Point]:
         """Both sides of each border of an atom along one signal, and the middles between one border and the next."""
@@ -110,14 +146,14 @@ class Group:
                 if None not in (below, above) and below != above:
                     borders += self._border({**start}, name, index, low, high)
         borders = sorted(set(borders))
-        for value in (*borders, *((low + high) / 2 for low, high in pairwise(borders))):
+        for value in (*borders, *(midpoint(low, high) for low, high in pairwise(borders))):
             yield {**start, name: value}
 
     def _border(self, start: dict[str, float], name: str, index: int, low: float, high: float) -> tuple[float, float]:
         """Two values, next to each other or nearly so, between which an atom's truth changes."""
         below = self._sign({**start, name: low}, index)
         for _ in range(_HALVINGS):
-            middle = midpoint(low, high)
+            middle = _middle(low, high)
             if self._sign({**start, name: middle}, index) == below:
                 low = middle
             else:
@@ -167,6 +203,14 @@ class Group:
             functions = compile_expressions([each for each, _ in parts], self._names, self._params)
             self._goals[literal] = [(function, part[1]) for function, part in zip(functions, parts, strict=True)]
         return self._goals[literal]
+
+
+def _middle(low: float, high: float) -> float:
+    """The middle of two numbers; of large ones of different sizes, the one whose size lies between theirs."""
+    least, most = sorted((abs(low), abs(high)))
+    if (low > 0) != (high > 0) or least < _LARGE or most / least < 4:
+        return midpoint(low, high)
+    return copysign(sqrt(least) * sqrt(most), low)
 
 
 def _slopes(expression: Expression, holds: bool) -> Iterator[tuple[Expression, bool]]:

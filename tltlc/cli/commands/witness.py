@@ -113,6 +113,9 @@ def _written(fspa: Fspa, traces: list[Witness], kind: Literal["test", "csv"], re
     if traces and not fspa.atoms:
         report.add([remarks.no_atoms(fspa)])
         return {}
+    if traces and kind == "csv" and not fspa.signals:
+        report.add([remarks.no_signals(fspa)])
+        return {}
     covers = sum(trace.kind == "cover" for trace in traces)
     found: dict[str, str] = {}
     number, blocks, monitor = 0, Blocks(fspa), Monitor(fspa)
