@@ -17,6 +17,8 @@ from tltlc.automaton.diagrams import Diagrams
 from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair
 from tltlc.backends import hoa
 from tltlc.backends.drawing.texts import visible
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.limits import Limit
 from tltlc.logic import oracle
 from tltlc.rabin.build import build_infinite
 from tltlc.rabin.lasso import holds_on_lasso
@@ -288,3 +290,14 @@ def test_the_reader_knows_what_a_lasso_is() -> None:
     assert not found.accepts_lasso([], [(False, False)])
     assert found.strings["name:"] == ['it " stays']
     assert found.run([(False, True)]) == 0
+
+
+def test_a_file_that_could_not_be_imported_again_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    (text,) = backends.emit("hoa", cover_and_hide()).values()
+    assert isinstance(text, str)
+    monkeypatch.setattr("tltlc.backends.artefact.size.ARTEFACT", Limit(len(text.encode())))
+    assert backends.emit("hoa", cover_and_hide()) == {"cover_and_hide.hoa": text}
+    monkeypatch.setattr("tltlc.backends.artefact.size.ARTEFACT", Limit(len(text.encode()) - 1))
+    with pytest.raises(TltlError) as caught:
+        backends.emit("hoa", cover_and_hide())
+    assert [each.code for each in caught.value.diagnostics] == ["TLT0004"]

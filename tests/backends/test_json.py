@@ -12,10 +12,12 @@ from tests.backends.strategies import automata, expressions, finite, hostile_aut
 from tests.fixtures import cover_and_hide
 from tltlc import backends
 from tltlc.automaton.fspa import Fspa
+from tltlc.backends.artefact import size as sizes
 from tltlc.backends.artefact.layout import WIDTH, layout
 from tltlc.backends.json import read
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression import Const, Expression
+from tltlc.limits import Limit
 from tltlc.record import replace
 from tltlc.resolve.spec import Atom
 
@@ -154,10 +156,56 @@ values = st.recursive(
 
 @given(values)
 def test_the_layout_changes_no_value(value: object) -> None:
-    assert json.loads(layout(value)) == json.loads(json.dumps(value))
+    assert json.loads("".join(layout(value))) == json.loads(json.dumps(value))
 
 
 def test_lines_are_short_unless_a_text_is_long() -> None:
     lines = emitted(cover_and_hide()).splitlines()
     assert max(map(len, lines)) <= WIDTH
     assert len(lines) < 250
+
+
+def test_what_could_not_be_read_again_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = emitted(cover_and_hide())
+    size, values = len(text.encode()), text.count(",") + 1
+    monkeypatch.setattr(sizes, "ARTEFACT", Limit(size, 900, values))
+    assert emitted(cover_and_hide()) == text
+    for limit, code in ((Limit(size - 1, 900, values), "TLT0004"), (Limit(size, 900, values - 1), "TLT0006")):
+        monkeypatch.setattr(sizes, "ARTEFACT", limit)
+        with pytest.raises(TltlError) as caught:
+            emitted(cover_and_hide())
+        (found,) = caught.value.diagnostics
+        assert found.code == code
+        assert found.title.startswith("the artefact of `cover_and_hide` would ")
+        assert "declare atoms that never hold together `exclusive`" in str(found.help)
+
+
+def test_an_artefact_of_very_many_edges_is_refused_before_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltlc.backends.json.encode", None)
+    fspa = cover_and_hide()
+    with pytest.raises(TltlError) as caught:
+        emitted(replace(fspa, edges=fspa.edges * 500_000))
+    assert [each.code for each in caught.value.diagnostics] == ["TLT0004"]
+
+
+@settings(max_examples=60, deadline=None)
+@given(automata() | infinite_automata())
+def test_an_artefact_is_never_smaller_than_what_is_counted(fspa: Fspa) -> None:
+    text = emitted(fspa)
+    size, commas = sizes.least_size(fspa)
+    assert size <= len(text.encode())
+    assert commas <= text.count(",")
+
+
+@given(
+    st.recursive(
+        st.integers() | st.text(max_size=9),
+        lambda inner: st.lists(inner) | st.dictionaries(st.text(max_size=9), inner),
+        max_leaves=90,
+    )
+)
+def test_a_value_stands_on_one_line_exactly_where_it_fits(value: object) -> None:
+    text = "".join(layout({"key": value}))
+    flat = json.dumps(value, ensure_ascii=False)
+    one_line = not isinstance(value, (dict, list)) or not value or len('  "key": ' + flat) < WIDTH
+    assert (text.count("\n") == 3) == one_line

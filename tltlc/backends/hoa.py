@@ -16,6 +16,7 @@ from tltlc.automaton.diagrams import ACCEPT, REJECT, Diagrams, OutOfSteps
 from tltlc.automaton.fspa import Fspa, Guard, Implicant
 from tltlc.automaton.guards import Guards, TooManyPrimes
 from tltlc.backends import Files, Options, Target
+from tltlc.backends.artefact.size import check_size
 from tltlc.backends.drawing.texts import visible
 from tltlc.rabin.skeleton import pair_marks
 
@@ -28,11 +29,17 @@ ALLOWED_COMMENT = "Exclusive atoms never hold at once: a letter that is not @all
 
 
 def emit(fspa: Fspa, options: Options) -> Files:
-    """``NAME.hoa``; texts are in ASCII notation, atoms numbered as in the artefact."""
+    """``NAME.hoa``; texts are in ASCII notation, atoms numbered as in the artefact.
+
+    Raises:
+        TltlError: TLT0004, the file would be larger than what `tltlc import` reads.
+    """
     clashes = sorted({pair for group in fspa.exclusive for pair in combinations(sorted(set(group)), 2)})
     with recursion_room():
         lines = [*_header(fspa, clashes), "--BODY--", *_body(fspa), "--END--", ""]
-    return {f"{fspa.name}.hoa": "\n".join(lines)}
+    text = "\n".join(lines)
+    check_size(f"`{fspa.name}.hoa`", len(text.encode()))
+    return {f"{fspa.name}.hoa": text}
 
 
 def _header(fspa: Fspa, clashes: Sequence[tuple[int, int]]) -> Iterator[str]:

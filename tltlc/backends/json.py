@@ -11,6 +11,7 @@ from tltlc.backends.artefact.encode import encode
 from tltlc.backends.artefact.errors import JsonSchemaValueException
 from tltlc.backends.artefact.layout import layout
 from tltlc.backends.artefact.place import Path, path_of, span_of
+from tltlc.backends.artefact.size import check_size, least_size
 from tltlc.backends.artefact.validator import validate
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.source import SourceFile, Span
@@ -26,11 +27,21 @@ def emit(fspa: Fspa, options: Options) -> Files:
     """``NAME.fspa.json``, checked against the schema.
 
     Raises:
+        TltlError: TLT0004, the file would be larger than what :func:`read` takes; TLT0006, it would hold more values.
         ValueError: the automaton cannot be said in the format (a bug of the construction).
     """
+    what = f"the artefact of `{fspa.name}`"
+    # Most automata that are too large are known before any of their text is made.
+    check_size(what, *least_size(fspa))
     document = encode(fspa)
     validate(document)
-    return {f"{fspa.name}.fspa.json": layout(document)}
+    blocks: list[str] = []
+    size = commas = 0
+    for block in layout(document):
+        blocks.append(block)
+        size, commas = size + len(block.encode()), commas + block.count(",")
+        check_size(what, size, commas)
+    return {f"{fspa.name}.fspa.json": "".join(blocks)}
 
 
 def read(text: str, name: str) -> Fspa:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from tltlc.automaton.fspa import Edge, Fspa, State, Text
@@ -31,7 +32,7 @@ def encode(fspa: Fspa) -> dict[str, Any]:
         "exclusive": [list(group) for group in fspa.exclusive],
         "states": [_state(state) for state in fspa.states],
         "initial": 0,
-        "edges": [_edge(edge) for edge in fspa.edges],
+        "edges": _edges(fspa.edges),
         "spec_size": fspa.spec_size,
         **_acceptance(fspa),
     }
@@ -70,6 +71,15 @@ def _state(state: State) -> dict[str, Any]:
     }
 
 
-def _edge(edge: Edge) -> dict[str, Any]:
-    primes = [[list(literal) for literal in prime] for prime in edge.guard.primes]
-    return {"source": edge.source, "target": edge.target, "guard": {"text": edge.guard.text, "primes": primes}}
+def _edges(edges: Iterable[Edge]) -> list[dict[str, Any]]:
+    # The lists of equal literals are one list: a large automaton has millions of them.
+    literals: dict[tuple[int, bool], list[int | bool]] = {}
+
+    def literal(atom: int, polarity: bool) -> list[int | bool]:
+        return literals.setdefault((atom, polarity), [atom, polarity])
+
+    def encoded(edge: Edge) -> dict[str, Any]:
+        primes = [[literal(*each) for each in prime] for prime in edge.guard.primes]
+        return {"source": edge.source, "target": edge.target, "guard": {"text": edge.guard.text, "primes": primes}}
+
+    return [encoded(edge) for edge in edges]

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import re
-from typing import Any
+from collections.abc import Callable, Iterator
+from itertools import chain, islice
+from typing import Any, Final
 
-WIDTH = 120
+WIDTH: Final = 120
+_PIECES: Final = 10_000
+"""How many pieces are put together at a time."""
+
+Encode = Callable[[Any], str]
 
 _unsafe = re.compile(
     "<(?=[/!])"
@@ -15,8 +21,8 @@ _unsafe = re.compile(
 )
 
 
-def layout(document: Any) -> str:
-    """The JSON text of a document: a value that fits on a line stands on one line, keys keep their order.
+def layout(document: Any) -> Iterator[str]:
+    """The JSON text of a document, in pieces: what fits on a line stands on one line, keys keep their order.
 
     Invisible and direction-changing characters are escaped, and so is what would end or comment
     out a script element of a page that the text is pasted into.  Numbers are in shortest form.
@@ -27,25 +33,52 @@ def layout(document: Any) -> str:
     import json
 
     encoder = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
-    # These characters can only stand inside strings, so that escaping them in the whole text is right.
-    return _unsafe.sub(_escape, _lines(document, 0, 0, encoder.encode)) + "\n"
+    pieces = chain(_pieces(document, 0, 0, encoder.encode), ("\n",))
+    while block := "".join(islice(pieces, _PIECES)):
+        # These characters can only stand inside strings, and no string is cut: to escape them in all of it is right.
+        yield _unsafe.sub(_escape, block)
 
 
-def _lines(value: Any, indent: int, used: int, encode: Any) -> str:
+def _pieces(value: Any, indent: int, used: int, encode: Encode) -> Iterator[str]:
     """``value``, which begins after ``used`` characters of its line (its key), on as many lines as it needs."""
-    flat: str = encode(value)
-    # The outermost level is always broken up, whatever its length.
-    if not isinstance(value, (dict, list)) or not value or (indent + used + len(flat) < WIDTH and indent > 0):
-        return flat
+    flat = _flat(value, indent, used, encode)
+    if flat is not None:
+        yield flat
+        return
+    is_object = isinstance(value, dict)
     step = indent + 2
-    if isinstance(value, dict):
-        keys = [encode(key) + ": " for key in value]
-        items = [key + _lines(item, step, len(key), encode) for key, item in zip(keys, value.values(), strict=True)]
-    else:
-        items = [_lines(item, step, 0, encode) for item in value]
-    start, end = ("{", "}") if isinstance(value, dict) else ("[", "]")
-    separator = ",\n" + " " * step
-    return f"{start}\n{' ' * step}{separator.join(items)}\n{' ' * indent}{end}"
+    separator = ("{" if is_object else "[") + "\n" + " " * step
+    for key, item in value.items() if is_object else (("", each) for each in value):
+        head = encode(key) + ": " if is_object else ""
+        yield separator + head
+        yield from _pieces(item, step, len(head), encode)
+        separator = ",\n" + " " * step
+    yield "\n" + " " * indent + ("}" if is_object else "]")
+
+
+def _flat(value: Any, indent: int, used: int, encode: Encode) -> str | None:
+    """The text of a value on one line; None for what has to be broken up."""
+    if not isinstance(value, (dict, list)) or not value:
+        return encode(value)
+    # The outermost level is always broken up, whatever its length.
+    if indent == 0 or not _is_small(value):
+        return None
+    flat = encode(value)
+    return flat if indent + used + len(flat) < WIDTH else None
+
+
+def _is_small(value: Any) -> bool:
+    """Whether a value may fit on a line; the answer takes no more steps than a line has characters."""
+    left, waiting = WIDTH, [value]
+    while waiting and left > 0:
+        part = waiting.pop()
+        if isinstance(part, (dict, list)):
+            left -= 2 * len(part)
+            if left > 0:
+                waiting += part.values() if isinstance(part, dict) else part
+        else:
+            left -= len(part) if isinstance(part, str) else 1
+    return left > 0
 
 
 def _escape(match: re.Match[str]) -> str:
