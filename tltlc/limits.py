@@ -108,6 +108,12 @@ PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30
 PLAYGROUND_CHILD: Final = Process(memory=2 << 30, work_s=60)
 """A process that answers one request to the playground."""
 
+COMMAND: Final = Process(memory=4 << 30, work_s=120)
+"""What a command that reads files and ends by itself uses at most, unless `tltlc --max-cpu --max-memory` say otherwise.
+
+The last bound: the work that :data:`WORK` counts ends long before.
+"""
+
 WORK: Final[Mapping[str, int]] = {
     "check of a predicate": 600_000,
     "checks of all predicates": 1_500_000,

@@ -17,6 +17,7 @@ from tltlc.grammar.parser import parse
 from tltlc.record import EMPTY, record, replace
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolution
+from tltlc.resources import bounded
 from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ class Compiled:
     diagnostics: tuple[Diagnostic, ...]
 
 
+@bounded()
 def compile_source(source: SourceFile, options: CompileOptions | None = None) -> Compiled:
     """Compile every spec of a source text, or those that the options name.
 
@@ -156,6 +158,7 @@ def compile_file(path: str | os.PathLike[str], options: CompileOptions | None = 
     return compile_source(read_source(path), options).automata
 
 
+@bounded()
 def load(path: str | os.PathLike[str]) -> Fspa:
     """The automaton that an artefact ``NAME.fspa.json`` holds.
 
@@ -174,6 +177,7 @@ def load(path: str | os.PathLike[str]) -> Fspa:
     return read_artefact(read_source(path, max_bytes=MAX_ARTEFACT_BYTES))
 
 
+@bounded()
 def read_artefact(source: SourceFile) -> Fspa:
     """The automaton in the text of an artefact; errors as for :func:`load`."""
     from tltlc.backends.json import read
@@ -181,6 +185,7 @@ def read_artefact(source: SourceFile) -> Fspa:
     return read(source.text, source.name)
 
 
+@bounded()
 def load_hoa(
     path: str | os.PathLike[str], predicates: str | os.PathLike[str], options: ImportOptions | None = None
 ) -> Fspa:

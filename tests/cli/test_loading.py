@@ -87,9 +87,17 @@ def test_help_loads_no_command_and_no_compiler(tmp_path: Path) -> None:
         "tltlc.cli.command_line",
         "tltlc.cli.exits",
         "tltlc.cli.interrupts",
+        "tltlc.cli.numbers",
         "tltlc.cli.plugins",
     }
-    shared = {"tltlc.diagnostics", "tltlc.diagnostics.diagnostic", "tltlc.record", "tltlc.source"}
+    shared = {
+        "tltlc.limits",
+        "tltlc.resources",
+        "tltlc.diagnostics",
+        "tltlc.diagnostics.diagnostic",
+        "tltlc.record",
+        "tltlc.source",
+    }
     assert modules <= line | shared
 
 

@@ -14,7 +14,11 @@ from typing import Any, Final, NoReturn
 
 import click
 
+from tltlc import resources
 from tltlc.cli import exits, plugins
+from tltlc.cli.numbers import FiniteRange, WholeRange
+from tltlc.limits import COMMAND, Process
+from tltlc.resources import OutOfTimeError
 
 BUILT_IN: Final = {
     "compile": "Compile the specs of a file to artefacts and monitors.",
@@ -38,6 +42,9 @@ BUILT_IN: Final = {
     "new": "Create a starter project that compiles.",
     "completion": "Print the completion script of a shell.",
 }
+
+BOUNDED: Final = frozenset(BUILT_IN) - {"compile", "mine", "monitor", "watch", "lsp", "serve", "new", "completion"}
+"""The commands whose work ends with the files that they read; others bound the parts of theirs that do."""
 
 OF_THE_RUNTIME: Final = {
     "demonstrate": "Have the scripted expert play a level, and record it.",
@@ -69,11 +76,12 @@ class CommandLine(click.Group):
             if hasattr(stream, "reconfigure"):
                 # A terminal that cannot show ∧ gets an escape, not a crash.
                 stream.reconfigure(errors="backslashreplace")
-        extra.update(prog_name="tltlc", complete_var=COMPLETE_VARIABLE, standalone_mode=False)
+        # The process is this command, and nothing else, where the arguments are its own.
+        extra.update(obj=args is None, prog_name="tltlc", complete_var=COMPLETE_VARIABLE, standalone_mode=False)
         try:
             status = super().main(None if args is None else list(args), **extra) or 0
             sys.stdout.flush()
-        except Exception as error:
+        except (Exception, OutOfTimeError) as error:
             status = exits.report(_of_completion(error))
         exits.flush()
         sys.exit(status)
@@ -152,7 +160,7 @@ class CommandLine(click.Group):
         )
 
 
-def _of_completion(error: Exception) -> Exception:
+def _of_completion(error: Exception | OutOfTimeError) -> Exception | OutOfTimeError:
     """Wrong usage where click completes a line, and does not find the variables that a shell's script sets."""
     if os.environ.get(COMPLETE_VARIABLE) and isinstance(error, (KeyError, ValueError)):
         return click.UsageError(f"{COMPLETE_VARIABLE} is for the scripts that `tltlc completion` prints: unset it")
@@ -187,8 +195,29 @@ Start here:
 @click.option(
     "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Show the version and exit."
 )
-def cli() -> None:
+@click.option(
+    "--max-cpu",
+    type=WholeRange(min=0),
+    metavar="SECONDS",
+    default=COMMAND.work_s,
+    show_default=True,
+    help="End the work on files after so much processor time; 0 for no end.",
+)
+@click.option(
+    "--max-memory",
+    type=FiniteRange(min=0),
+    metavar="GIB",
+    default=COMMAND.memory / 2**30,
+    show_default=True,
+    help="End the work on files where it takes more memory; 0 for no end.",
+)
+@click.pass_context
+def cli(ctx: click.Context, max_cpu: int, max_memory: float) -> None:
     """Compile plans for a game, written in temporal logic, to automata that judge and reward a player."""
+    if ctx.obj:
+        resources.permit(Process(memory=int(max_memory * 2**30), work_s=max_cpu))
+    if ctx.invoked_subcommand in BOUNDED:
+        ctx.with_resource(resources.bounded())
 
 
 if os.environ.get("TLTLC_DEBUG") == "1":

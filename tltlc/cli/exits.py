@@ -13,6 +13,7 @@ from typing import Final
 import click
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.resources import OutOfTimeError, exhausted
 
 CLEAN: Final = 0
 FINDINGS: Final = 1
@@ -84,8 +85,12 @@ def missing_component(wanted_by: str, module: str, requirement: str) -> TltlErro
     return TltlError([Diagnostic("TLT0730", title, help=way_out if own else f"pip install '{requirement}'")])
 
 
-def report(error: Exception) -> int:
+def report(error: Exception | OutOfTimeError) -> int:
     """Say on standard error what went wrong and return the exit status."""
+    if spent := exhausted(error):
+        # What was running keeps its memory for as long as the error says where it was.
+        error.__traceback__ = error.__context__ = error.__cause__ = None
+        error = spent
     if isinstance(error, BrokenPipeError):
         error = StopQuietlyError(CLOSED_PIPE)
     if isinstance(error, StopQuietlyError):
@@ -174,7 +179,7 @@ def _discard_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _bug(error: Exception) -> int:
+def _bug(error: BaseException) -> int:
     """An exception that nobody foresaw: a short reference for the report, the traceback only when asked for."""
     import traceback
     import zlib

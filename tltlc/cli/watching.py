@@ -7,8 +7,10 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from typing import Final, NoReturn
 
+from tltlc.cli import exits
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import Stamp, noted, stamp
+from tltlc.resources import OutOfTimeError, bounded
 
 PAUSE_S: Final = 0.2
 """Between two looks at the files.  Editors replace files in steps: a change counts once a second look finds no more."""
@@ -24,8 +26,17 @@ def repeat(work: Callable[[tuple[str, ...]], None], listed: Callable[[], Iterabl
     while True:
         known = frozenset(listed())
         with noted() as before:
-            work(changed)
+            _done(work, changed)
         changed = _changes(before, known, listed)
+
+
+def _done(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> None:
+    """Work; what took too long or too much is reported, and may be mended by the next change."""
+    try:
+        with bounded():
+            work(changed)
+    except (OutOfTimeError, MemoryError, RecursionError) as error:
+        exits.report(error)
 
 
 def _changes(

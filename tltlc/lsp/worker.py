@@ -11,7 +11,9 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Final
 
+from tltlc.limits import COMMAND
 from tltlc.lsp.analysis import Analysis, Request
+from tltlc.resources import limit
 
 LONGEST_S: Final = 60.0
 """After so many seconds an analysis is given up."""
@@ -70,6 +72,7 @@ def _exchange(pipe: Connection, request: Request) -> Analysis | None:
 def answer_all(pipe: Connection) -> None:
     """Answer requests until nobody asks any more: what the process does."""
     threading.Thread(target=_end_with_server, daemon=True).start()
+    limit("RLIMIT_DATA", COMMAND.memory)
     from tltlc.lsp.analysis import analyse
 
     with suppress(EOFError, KeyboardInterrupt, BrokenPipeError):

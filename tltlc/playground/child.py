@@ -12,6 +12,7 @@ from typing import Final
 
 from tltlc.files import confined
 from tltlc.limits import ANSWER, PLAYGROUND_CHILD
+from tltlc.resources import limit
 
 NO_REQUEST: Final = 2
 NO_MEMORY: Final = 3
@@ -47,15 +48,8 @@ def _answer_request() -> None:
 
 def limit_resources() -> None:
     """Limit memory and processor time where the system can: this process may outlive the server."""
-    with suppress(ImportError):
-        import resource
-
-        for name, most in (("RLIMIT_AS", PLAYGROUND_CHILD.memory), ("RLIMIT_CPU", PLAYGROUND_CHILD.work_s)):
-            with suppress(AttributeError, OSError, ValueError):
-                kind = getattr(resource, name)
-                hard = resource.getrlimit(kind)[1]
-                least = most if hard == resource.RLIM_INFINITY else min(most, hard)
-                resource.setrlimit(kind, (least, least))
+    limit("RLIMIT_AS", PLAYGROUND_CHILD.memory)
+    limit("RLIMIT_CPU", PLAYGROUND_CHILD.work_s)
 
 
 def readable_folders() -> list[str | os.PathLike[str]]:

@@ -27,6 +27,7 @@ from tltlc.files import read_bytes
 from tltlc.json_text import loads
 from tltlc.limits import ARTEFACT, POLICY
 from tltlc.pipeline import read_artefact
+from tltlc.resources import bounded
 from tltlc.source import SourceFile
 from tltlc.writing import write_file
 
@@ -58,6 +59,7 @@ def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "na
     write_file(Path(path), to_bytes(policy), advice, durable=True)
 
 
+@bounded()
 def read_policy(path: str | os.PathLike[str]) -> Policy:
     """The policy in a file.
 

@@ -21,6 +21,7 @@ from tltlc.files import read_bytes
 from tltlc.json_text import loads
 from tltlc.limits import REPORT
 from tltlc.record import EMPTY, record
+from tltlc.resources import bounded
 from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-baseline"
@@ -79,6 +80,7 @@ def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     write_file(path, f'{episodes},\n"texts":{{{lines}}}}}\n', "name another place with --output")
 
 
+@bounded()
 def read_baseline(path: Path) -> tuple[Reference, ...]:
     """The baseline in a file.
 

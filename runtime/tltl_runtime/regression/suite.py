@@ -18,6 +18,7 @@ from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import exists, is_file, read_source
 from tltlc.record import record
+from tltlc.resources import bounded
 from tltlc.source import Span
 from tltlc.spec_file import split
 
@@ -92,6 +93,7 @@ def baseline_path(suite: Path) -> Path:
     return suite.with_name(f"{suite.stem}.baseline.json")
 
 
+@bounded()
 def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     """The suite in a file, judged against the baseline beside it or another one; paths in it are relative to it.
 

@@ -22,6 +22,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import read_bytes
 from tltlc.limits import CHECKPOINT
 from tltlc.record import record
+from tltlc.resources import bounded
 from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-checkpoint"
@@ -91,6 +92,7 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True)
 
 
+@bounded()
 def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpoint | None:
     """The checkpoint in a file, None where there is no such file; nothing in it is executed.
 

@@ -55,9 +55,10 @@ def command(
     """
     from tltlc.cli.folders import every_source, in_folders
     from tltlc.cli.report import Report
+    from tltlc.resources import bounded
 
     def compile_once(changed: tuple[str, ...] = ()) -> int:
-        with Report(format) as report:
+        with bounded(), Report(format) as report:
             if changed:
                 report.say(f"\n{time.strftime('%H:%M:%S')} changed: {', '.join(changed)}")
             asked = targets_of(target_lists)

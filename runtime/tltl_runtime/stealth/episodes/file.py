@@ -28,6 +28,7 @@ from tltlc.limits import ARTEFACT, RECORDING
 from tltlc.monitor import RewardOptions
 from tltlc.pipeline import read_artefact
 from tltlc.record import record, replace
+from tltlc.resources import bounded
 from tltlc.source import SourceFile
 from tltlc.writing import write_file
 
@@ -101,6 +102,7 @@ def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
     write_file(Path(path), to_bytes(episode))
 
 
+@bounded()
 def read_episode(path: str | os.PathLike[str]) -> Episode:
     """The episode in a file.
 

@@ -23,6 +23,7 @@ from tltl_runtime.stealth.levels.ways import check_ways
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import is_file, read_source
 from tltlc.record import replace
+from tltlc.resources import bounded
 from tltlc.source import SourceFile, Span
 from tltlc.spec_file import is_plain_name
 
@@ -32,6 +33,7 @@ def level_names() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in LEVELS.glob("*.toml")))
 
 
+@bounded()
 def variants(name_or_path: str) -> tuple[str, ...]:
     """The variants of a level, in the order of its file; errors as :func:`load_level` has them."""
     loading = _Loading(level_path(name_or_path))
@@ -39,17 +41,20 @@ def variants(name_or_path: str) -> tuple[str, ...]:
     return tuple(loading.variants)
 
 
+@bounded()
 def changes(name_or_path: str, variant: str) -> tuple[str, ...]:
     """What the overlays of a variant say that they change, in their order; errors as :func:`load_level` has them."""
     return level_and_changes(name_or_path, variant)[1]
 
 
+@bounded()
 def level_and_changes(name_or_path: str, variant: str) -> tuple[Level, tuple[str, ...]]:
     """A level as :func:`load_level` reads it, and its :func:`changes`."""
     loading = _Loading(level_path(name_or_path))
     return loading.level(variant), tuple(loading.changes)
 
 
+@bounded()
 def load_level(name_or_path: str, variant: str = "v0") -> Level:
     """A level that comes with the package, by name, or one in a ``.toml`` file, in one of its variants.
 
@@ -67,6 +72,7 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
     return _Loading(level_path(name_or_path)).level(variant)
 
 
+@bounded()
 def read_level(name_or_path: str, variant: str = "v0") -> tuple[Level, tuple[Diagnostic, ...]]:
     """A level as :func:`load_level` reads it, and warnings: TLT0809 a mover or an enemy has an odd way."""
     loading = _Loading(level_path(name_or_path))
