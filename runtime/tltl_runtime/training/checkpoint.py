@@ -27,6 +27,8 @@ from tltlc.writing import write_file
 
 FORMAT: Final = "tltl-checkpoint"
 VERSION: Final = 5
+_MOST: Final = 2**53
+"""The largest number of steps or seconds that a checkpoint may hold: larger ones are not exact as floats."""
 
 
 @record
@@ -112,6 +114,7 @@ def read_checkpoint(path: Path, run: Mapping[str, str] | None = None) -> Checkpo
         raise _other_version(path, content.get("version"))
     try:
         checkpoint = _made(content)
+        _check_figures(checkpoint)
     except KeyError as error:
         raise damaged(path, f"it lacks a part: {error}") from None
     except (RecordJsonError, RecursionError) as error:
@@ -154,6 +157,30 @@ def _made(content: Mapping[str, Any]) -> Checkpoint:
     }
     plain = {name: _lists(content[name]) for name in _FIELDS if name not in tensors}
     return from_json(Checkpoint, plain, "it", **tensors)
+
+
+def _check_figures(checkpoint: Checkpoint) -> None:
+    """Raise RecordJsonError for counts and times that no training has: below 0, or beyond all bounds."""
+    best, searched, (rate, since) = checkpoint.best, checkpoint.searched, checkpoint.standstill
+    names = ("iteration", "steps", "seconds", "replayed", "unbroken")
+    _check_counts({f"it.{name}": getattr(checkpoint, name) for name in names})
+    _check_counts({"it.standstill[1]": since}, checkpoint.steps)
+    if not 0.0 <= rate <= 1.0:
+        raise RecordJsonError(f"`it.standstill[0]` is {rate!r:.60}, and a number from 0 to 1 was expected")
+    for index, (_, _, steps, state, _) in enumerate(checkpoint.window):
+        _check_counts({f"it.window[{index}][2]": steps, f"it.window[{index}][3]": state})
+    if best:
+        _check_counts({"best.steps": best.steps}, checkpoint.steps)
+    if searched:
+        found = ("steps", "replayed", "seconds", "places")
+        _check_counts({f"it.searched.{name}": getattr(searched, name) for name in found})
+        _check_counts({f"it.searched.lengths[{index}]": each for index, each in enumerate(searched.lengths)})
+
+
+def _check_counts(counts: Mapping[str, float], most: float = _MOST) -> None:
+    for where, value in counts.items():
+        if not 0 <= value <= most:
+            raise RecordJsonError(f"`{where}` is {value!r:.60}, and a number from 0 to {most:,} was expected")
 
 
 def _best(content: Mapping[str, Any]) -> Best:

@@ -203,8 +203,8 @@ def _check_played(name: str, arrays: Mapping[str, NDArray[Any]]) -> None:
     lengths = arrays[f"{name}_lengths"]
     actions = sum(lengths.tolist())
     _check_array(f"{name}_actions", arrays, np.int8, (actions, len(BRANCHES)) if actions else (0,))
-    if (lengths < 0).any() or (arrays[f"{name}_seeds"] < 0).any():
-        raise ValueError(f"`{name}_lengths` or `{name}_seeds` holds a number below 0")
+    if (lengths < 1).any() or (arrays[f"{name}_seeds"] < 0).any():
+        raise ValueError(f"`{name}_lengths` or `{name}_seeds` holds a number that is too small")
     chosen = arrays[f"{name}_actions"].reshape(-1, len(BRANCHES))
     if (chosen < 0).any() or (chosen >= np.array(BRANCHES)).any():
         raise ValueError(f"`{name}_actions` holds what is no action")

@@ -112,7 +112,7 @@ class _Training:
         self._windows = Windows(self._stop.windows, self._stop.episodes, run.fspa.limit_steps)
         if begun is not None:
             try:
-                take_up(begun, runner)
+                take_up(begun, runner, len(run.fspa.states))
             except RecordJsonError as error:
                 raise damaged(run.folder / CHECKPOINT, str(error)) from None
             runner.current_learning_iteration = begun.iteration

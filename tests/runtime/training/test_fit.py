@@ -97,11 +97,19 @@ CHANGES: dict[str, tuple[Callable[[Content], object], str]] = {
         "`algorithm.exp_avg` has the shape [2]",
     ),
     "averages that are missing": (lambda it: _state(it).pop("exp_avg_sq"), "an optimizer in it has other averages"),
-    "averages that are no tensor": (lambda it: _state(it).update(exp_avg="text"), "its `algorithm` is damaged"),
-    "optimizer of fewer weights": (lambda it: _groups(it)["params"].pop(), "its `algorithm` is damaged"),
+    "averages that are no tensor": (lambda it: _state(it).update(exp_avg="text"), "holds what is no average"),
+    "optimizer of fewer weights": (lambda it: _groups(it)["params"].pop(), "is of another optimizer"),
     "optimizer whose rate is a text": (
         lambda it: _groups(it).update(lr="fast"),
         "an optimizer in it has other options",
+    ),
+    "optimizer whose rate is no number": (
+        lambda it: _groups(it).update(lr=float("nan")),
+        "an optimizer in it has other options: `lr`",
+    ),
+    "optimizer with averages of no weight": (
+        lambda it: it["algorithm"]["optimizer_state_dict"]["state"].update({99: {}}),
+        "`algorithm.optimizer_state_dict.state` is of another optimizer",
     ),
     "optimizer whose betas are one": (
         lambda it: _groups(it).update(betas=(0.9,)),

@@ -1,0 +1,206 @@
+"""Checkpoints with any one value changed: a training goes on from them, or refuses them with a code."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import pytest
+import torch
+from torch import Tensor
+
+from tests.runtime.training.runs import run_in
+from tltl_runtime.training import train as training
+from tltl_runtime.training.beginning import environments
+from tltl_runtime.training.checkpoint import read_checkpoint
+from tltl_runtime.training.run import CHECKPOINT, Run
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.record import replace
+
+Content = dict[Any, Any]
+Path_ = tuple[Any, ...]
+"""The keys that lead to a value in a checkpoint."""
+
+SPEC: Final = """\
+signal stamina: ratio
+predicate tired in [-1, 1] = 0.98 - stamina
+spec get_tired { limit 3 steps  require eventually tired }
+"""
+"""Some episodes of it succeed by chance, and others fail."""
+MISSING: Final = object()
+OTHERS: Final[Mapping[str, Callable[[Any], object]]] = {
+    "missing": lambda value: MISSING,
+    "None": lambda value: None,
+    "a number": lambda value: 3,
+    "a number below 0": lambda value: -5,
+    "a huge number": lambda value: 10**30,
+    "a large number": lambda value: 2**62,
+    "a fraction": lambda value: 0.5,
+    "no number": lambda value: float("nan"),
+    "infinite": lambda value: float("inf"),
+    "a text": lambda value: "x",
+    "true": lambda value: True,
+    "an empty list": lambda value: [],
+    "a list": lambda value: [0, 1],
+    "an empty table": lambda value: {},
+    "a table": lambda value: {"x": {"y": [1]}},
+    "an empty tensor": lambda value: torch.zeros(0),
+    "a tensor of another shape": lambda value: torch.zeros(3, 2),
+    "a tensor of whole numbers": lambda value: _like(value).long() if isinstance(value, Tensor) else torch.tensor(1),
+    "a tensor of other numbers": lambda value: _like(value).double(),
+    "a tensor of no numbers": lambda value: torch.full_like(_like(value).float(), float("nan")),
+    "a tensor of numbers below 0": lambda value: torch.full_like(_like(value), -1),
+    "a tensor of large numbers": lambda value: torch.full_like(_like(value), 100),
+    "a tensor of zeros": lambda value: torch.zeros_like(_like(value)),
+    "a sparse tensor": lambda value: torch.zeros(2, 2).to_sparse(),
+    "one value more": lambda value: _more(value),
+}
+
+_OPTIMIZER: Final = "algorithm", "optimizer_state_dict"
+_GROUP: Final = *_OPTIMIZER, "param_groups", 0
+_NUMBERS: Final = "a number below 0", "a large number", "a huge number", "no number"
+CHOSEN: Final[Mapping[Path_, tuple[str, ...]]] = {
+    ("algorithm", "critic_state_dict"): ("missing", "None", "a number"),
+    _OPTIMIZER: ("missing", "None", "a number", "an empty table", "one value more"),
+    (*_OPTIMIZER, "param_groups"): ("None", "an empty list", "one value more"),
+    (*_OPTIMIZER, "state"): ("None", "an empty table", "one value more"),
+    (*_OPTIMIZER, "state", 0): ("None", "an empty table", "one value more"),
+    (*_OPTIMIZER, "state", 0, "exp_avg"): ("None", "a tensor of another shape", "a tensor of no numbers"),
+    (*_OPTIMIZER, "state", 0, "exp_avg_sq"): ("a tensor of numbers below 0", "a sparse tensor"),
+    (*_OPTIMIZER, "state", 0, "step"): ("a tensor of numbers below 0", "a tensor of no numbers", "a number"),
+    (*_GROUP, "lr"): ("a text", "no number", "a tensor of zeros", "a number below 0"),
+    (*_GROUP, "betas"): ("None", "one value more"),
+    (*_GROUP, "betas", 1): ("a number", "a large number"),
+    (*_GROUP, "amsgrad"): ("None", "true"),
+    (*_GROUP, "capturable"): ("true",),
+    (*_GROUP, "params", 1): ("a tensor of another shape", "a huge number"),
+    ("algorithm", "actor_state_dict", "mlp.0.bias"): ("a tensor of no numbers", "a sparse tensor"),
+    ("best", "actor", "mlp.0.bias"): ("a tensor of no numbers",),
+    ("processes",): ("None", "an empty list", "one value more"),
+    ("processes", 0, "cpu"): ("a tensor of zeros", "an empty tensor", "a sparse tensor"),
+    ("processes", 0, "failure_lengths"): ("a tensor of zeros", "a tensor of numbers below 0"),
+    **{(name,): _NUMBERS for name in ("iteration", "steps", "seconds", "unbroken", "replayed")},
+    **{("standstill", index): _NUMBERS for index in (0, 1)},
+    **{("window", 0, index): _NUMBERS for index in (2, 3)},
+}
+"""Some that ended a training with a bug or a signal, or that went unnoticed into its numbers."""
+
+
+def _like(value: object) -> Tensor:
+    return value if isinstance(value, Tensor) else torch.zeros(2)
+
+
+def _more(value: Any) -> object:
+    """A value with another one in it, or beside it."""
+    if isinstance(value, dict):
+        return value | {99: {"x": 1}}
+    return [*value, None] if isinstance(value, (list, tuple)) else [value, value]
+
+
+def values(content: object, path: Path_ = ()) -> Iterator[Path_]:
+    """The places of all values in a checkpoint, the tables and lists that hold others included."""
+    if path:
+        yield path
+    inside = content.items() if isinstance(content, dict) else enumerate(content) if _is_list(content) else ()
+    for key, each in inside:
+        yield from values(each, (*path, key))
+
+
+def changed(content: Any, path: Path_, change: Callable[[Any], object]) -> Any:
+    """The content with another value at a place."""
+    if not path:
+        return change(content)
+    items = dict(content) if isinstance(content, dict) else dict(enumerate(content))
+    items[path[0]] = changed(items[path[0]], path[1:], change)
+    items = {key: value for key, value in items.items() if value is not MISSING}
+    return items if isinstance(content, dict) else type(content)(items.values())
+
+
+def _is_list(value: object) -> bool:
+    return isinstance(value, (list, tuple))
+
+
+@pytest.fixture(name="made", scope="module")
+def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Run, Content]]:
+    """A training that searches, with a checkpoint in which every part holds something.
+
+    All trainings of this module share its environments: to start processes for each would take long.
+    """
+    run = run_in(
+        tmp_path_factory.mktemp("damaged") / "run",
+        SPEC,
+        exploration__ways=2,
+        exploration__steps=200,
+        exploration__imitation=1,
+        stop__steps=192,
+        stop__windows=1,
+        stop__episodes=4,
+        stop__confirmation=1000,
+        checkpoint_s=1e9,
+    )
+    env = environments(run)
+    close, env.close = env.close, lambda: None  # type: ignore[method-assign]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(training, "environments", lambda run: env)
+        assert list(training.train(run))
+        yield (
+            replace(run, settings=replace(run.settings, stop=replace(run.settings.stop, steps=10**9))),
+            torch.load(run.folder / CHECKPOINT, weights_only=True),
+        )
+    close()
+
+
+def goes_on(run: Run, content: Any, folder: Path) -> bool:
+    """Whether a training goes on from a checkpoint with this content; if it does not, it refuses it with a code."""
+    shutil.copytree(run.folder, folder)
+    run = replace(run, folder=folder)
+    torch.save(content, folder / CHECKPOINT)
+    before = (folder / CHECKPOINT).read_bytes()
+    reports = training.train(run, resume=True)
+    try:
+        next(reports)
+        reports.close()
+        assert read_checkpoint(folder / CHECKPOINT)
+        return True
+    except TltlError as error:
+        assert {each.code for each in error.diagnostics} <= {"TLT0864", "TLT0866", "TLT0868"}
+        # Whatever was refused is left as it was.
+        assert error.diagnostics[0].code == "TLT0866" or (folder / CHECKPOINT).read_bytes() == before
+        return False
+    finally:
+        shutil.rmtree(folder)
+
+
+def test_the_checkpoint_holds_something_in_every_part(made: tuple[Run, Content], tmp_path: Path) -> None:
+    run, content = made
+    own = content["processes"][0]
+    assert all(own[name].numel() for name in ("way_actions", "failure_actions", "rates"))
+    assert content["window"]
+    assert content["best"]
+    assert content["searched"]["lengths"]
+    assert goes_on(run, content, tmp_path / "copy")
+
+
+def check(made: tuple[Run, Content], chosen: list[tuple[Path_, str]], folder: Path) -> None:
+    run, content = made
+    wrong = []
+    for number, (path, name) in enumerate(chosen):
+        try:
+            goes_on(run, changed(content, path, OTHERS[name]), folder / str(number))
+        except Exception as error:
+            wrong.append(f"{'.'.join(map(str, path))}, {name}: {error!r:.200}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_changes_that_ended_trainings_are_refused(made: tuple[Run, Content], tmp_path: Path) -> None:
+    check(made, [(path, name) for path, names in CHOSEN.items() for name in names], tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OTHERS)
+def test_every_change_of_each_value_is_refused_or_harmless(
+    made: tuple[Run, Content], tmp_path: Path, name: str
+) -> None:
+    check(made, [(path, name) for path in values(made[1])], tmp_path)
