@@ -95,6 +95,7 @@ def _check_calls(pickled: bytes) -> None:
     Keys of dicts must be no tuples: tuples that hold each other twice take a time that doubles with each level to hash.
     """
     stack: list[str] = []
+    marks: list[int] = []
     memo: dict[int, str] = {}
     for count, (opcode, argument, _) in enumerate(pickletools.genops(pickled)):
         if count > _OPCODES * (CHECKPOINT.values or 0):
@@ -103,7 +104,7 @@ def _check_calls(pickled: bytes) -> None:
             raise TorchArchiveError("it holds more than plain data")
         if opcode.name == "GLOBAL" and argument not in _GLOBALS:
             raise TorchArchiveError(f"it holds more than plain data: {argument:.60}")
-        taken = _taken(stack, opcode)
+        taken = _taken(stack, marks, opcode)
         keys = taken[1::2] if opcode.name in ("SETITEM", "SETITEMS") else []
         if _TUPLE in keys or (opcode.name == "REDUCE" and taken == [_ORDERED, _TUPLE]):
             raise TorchArchiveError("a key in it is no text and no number")
@@ -112,17 +113,24 @@ def _check_calls(pickled: bytes) -> None:
         elif opcode.name in ("BINGET", "LONG_BINGET", "GET"):
             stack.append(memo[int(str(argument))])
         else:
+            if opcode.name == "MARK":
+                marks.append(len(stack))
             stack += _given(opcode, argument)
 
 
-def _taken(stack: list[str], opcode: pickletools.OpcodeInfo) -> list[str]:
-    """The kinds of the values that an operation takes from the stack, without the mark below them."""
+def _taken(stack: list[str], marks: list[int], opcode: pickletools.OpcodeInfo) -> list[str]:
+    """The kinds of the values that an operation takes from the stack, without the mark below them.
+
+    ``marks`` are where marks were put on the stack; some may be gone.
+    """
     if opcode.name in ("BINPUT", "LONG_BINPUT", "PUT"):
         return []
     count = len(opcode.stack_before)
     if pickletools.markobject in opcode.stack_before:
         below = opcode.stack_before.index(pickletools.markobject)
-        mark = len(stack) - 1 - stack[::-1].index(_MARK)
+        while marks[-1] >= len(stack) or stack[marks[-1]] != _MARK:
+            marks.pop()
+        mark = marks.pop()
         taken = [*stack[mark - below : mark], *stack[mark + 1 :]]
         del stack[mark - below :]
         return taken

@@ -7,6 +7,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from contextlib import suppress
 from io import BytesIO
+from time import monotonic
 from typing import Any
 
 import pytest
@@ -141,3 +142,20 @@ def test_damaged_bytes_are_read_or_refused(place: int, byte: int, cut: int) -> N
     for damaged in (bytes(data), bytes(data[: cut % len(data)])):
         with suppress(TorchArchiveError):
             read_torch(damaged)
+
+
+def test_the_time_to_read_a_pickle_grows_with_its_length() -> None:
+    count = 300_000
+    pickled = b"\x80\x02(" + count * b"N" + count * b"(t" + b"t."
+    data = repacked(saved([]), lambda name, content: pickled if name.endswith("data.pkl") else content)
+    began = monotonic()
+    assert len(read_torch(data)) == 2 * count
+    # It takes two seconds, and with a search through all of the stack for each mark minutes.
+    assert monotonic() - began < 60
+
+
+@pytest.mark.parametrize("pickled", [b"\x80\x02t.", b"\x80\x02(0t.", b"\x80\x02((00t.", b"\x80\x02(N1t."])
+def test_a_pickle_that_takes_a_mark_that_is_gone_is_refused(pickled: bytes) -> None:
+    data = repacked(saved([]), lambda name, content: pickled if name.endswith("data.pkl") else content)
+    with pytest.raises(TorchArchiveError, match="damaged"):
+        read_torch(data)
