@@ -58,6 +58,15 @@ SOURCE: Final = Limit(size=1 << 20)
 TOML: Final = Limit(size=1 << 20, depth=32, values=50_000)
 """A level, an asset, an overlay, a suite, settings, ``tltl.toml``."""
 
+LEVEL: Final = Limit(size=1 << 20, values=4_000)
+"""A level with the parts that it uses; ``values`` counts things, steps of stairs, and points of ways and routes."""
+
+SUITE: Final = Limit(size=1 << 20, values=2_000)
+"""A suite; ``values`` counts cases, each of which names files that are read."""
+
+OVERLAYS: Final = 100
+"""The overlays of one variant of a level."""
+
 ARTEFACT: Final = Limit(size=1 << 27, depth=900, values=10_000_000)
 """An artefact, an automaton of another tool, or a run of a training, which holds an artefact."""
 
@@ -90,6 +99,12 @@ MINED_TRACE: Final = Limit(size=1 << 28)
 
 RECORDING: Final = Limit(size=1 << 28, unpacked=1 << 28)
 """A recorded episode."""
+
+RECORDED_TEXTS: Final[Mapping[str, Limit]] = {
+    "meta": Limit(size=1 << 24, depth=100, values=200_000),
+    "artefact": Limit(size=1 << 26, depth=900, values=2_000_000),
+}
+"""The JSON in a recorded episode, unpacked: a file may be a thousand times smaller than what is compressed in it."""
 
 POLICY: Final = Limit(size=1 << 26)
 """A trained policy."""
@@ -128,6 +143,7 @@ WORK: Final[Mapping[str, int]] = {
     "label nodes": 6_000_000,
     "arrow nodes": 200_000,
     "fixes tried": 200,
+    "cells of reachable space": 3_000_000_000,
     "mined columns": 5_000,
     "mined instances": 2_000,
     "mined pairs": 60_000,

@@ -24,7 +24,7 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.backends import emit
 from tltlc.files import read_bytes
 from tltlc.json_text import loads
-from tltlc.limits import ARTEFACT, RECORDING
+from tltlc.limits import RECORDED_TEXTS, RECORDING
 from tltlc.monitor import RewardOptions
 from tltlc.pipeline import read_artefact
 from tltlc.record import record, replace
@@ -200,8 +200,9 @@ def _members(data: bytes, name: str) -> dict[str, bytes]:
 
 
 def _read_meta(members: Mapping[str, bytes], name: str) -> Meta:
+    text = _text(members, "meta", name)
     try:
-        document = loads(_text(members, "meta", name), ARTEFACT)
+        document = loads(text, RECORDED_TEXTS["meta"])
     except (ValueError, RecursionError):
         raise _REFUSALS.broken(name, "`meta` is not JSON") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
@@ -220,6 +221,10 @@ def _text(members: Mapping[str, bytes], array: str, name: str) -> str:
     data = _array(members, array, name)
     if data.dtype != np.uint8 or data.ndim != 1:
         raise _REFUSALS.broken(name, f"the array `{array}` holds no bytes")
+    limit = RECORDED_TEXTS[array]
+    if data.size > limit.size or np.count_nonzero(data == ord(",")) >= (limit.values or 0):
+        most = f"{limit.size >> 20} MiB or {limit.values:,} values"
+        raise _REFUSALS.broken(name, f"the array `{array}` holds more than {most}")
     try:
         return data.tobytes().decode()
     except UnicodeDecodeError:

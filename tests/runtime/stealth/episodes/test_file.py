@@ -309,6 +309,28 @@ def test_a_bomb_is_not_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "it is larger than 1 MiB" in refused(bytes(2 << 20))
 
 
+@pytest.mark.parametrize("array", ["meta", "artefact"])
+@pytest.mark.parametrize("text", [b"[" + 5_000_000 * b"[]," + b"[]]", b" " * (70 << 20)], ids=["values", "bytes"])
+def test_a_small_file_that_holds_a_large_text_is_not_parsed(
+    episode: Episode, array: str, text: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arrays, _ = taken_apart(to_bytes(episode))
+    data = packed(arrays | {array: np.frombuffer(text, dtype=np.uint8)})
+    assert len(data) < 1 << 20
+    parsed = []
+    monkeypatch.setattr(json, "loads", lambda text, **_: parsed.append(len(text)) or {})
+    monkeypatch.setattr("tltl_runtime.stealth.episodes.file._read_meta", file_read_meta(episode, array))
+    assert f"the array `{array}` holds more than" in refused(data)
+    assert not parsed
+
+
+def file_read_meta(episode: Episode, array: str) -> Any:
+    """What reads ``meta``; a stand-in where the other array is the subject."""
+    from tltl_runtime.stealth.episodes import file
+
+    return file._read_meta if array == "meta" else lambda members, name: file._meta(episode)
+
+
 def test_objects_are_never_unpickled(episode: Episode) -> None:
     class Trap:
         def __reduce__(self) -> tuple[Any, ...]:
