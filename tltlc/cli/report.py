@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterable
 from contextlib import suppress
 from types import TracebackType
-from typing import TextIO
+from typing import Final, TextIO
 
 from tltlc.cli import exits
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+_MOST_ALIKE: Final = 20
+"""At most this many diagnostics of one code in one file are shown to people at a time."""
 
 
 class Report:
@@ -74,15 +78,40 @@ def tally(diagnostics: Iterable[Diagnostic]) -> str:
 
 
 def show(diagnostics: Iterable[Diagnostic], format: str, stream: TextIO) -> None:  # noqa: A002
-    """Write diagnostics to a stream; in colour only for people at a terminal."""
+    """Write diagnostics to a stream; in colour only for people at a terminal.
+
+    Text has the first 20 of each code in a file, and says how many more there are. Formats for machines have all.
+    """
     found = tuple(diagnostics)
     if not found and format == "text":
         return
+    from tltlc.diagnostics.formats.text import visible
     from tltlc.diagnostics.render import render
 
-    text = render(found, format, color=format == "text" and wants_colour(stream))
+    shown, left_out = _first(found) if format == "text" else (found, Counter[_Alike]())
+    text = render(shown, format, color=format == "text" and wants_colour(stream))
     stream.write(text if text.endswith("\n") or not text else text + "\n")
+    for (severity, code, file), count in left_out.items():
+        place = f" in {visible(file)}" if file else ""
+        stream.write(f"\n{severity}[{code}]: {count:,} more like the {_MOST_ALIKE} above{place}\n")
     stream.flush()
+
+
+_Alike = tuple[str, str, str]
+"""Severity, code and file of diagnostics."""
+
+
+def _first(found: Iterable[Diagnostic]) -> tuple[tuple[Diagnostic, ...], Counter[_Alike]]:
+    """The first diagnostics of each code in each file, and how many of them are left out."""
+    counts: Counter[_Alike] = Counter()
+    shown = []
+    for each in found:
+        alike = each.severity, each.code, each.labels[0].source.name if each.labels else ""
+        counts[alike] += 1
+        if counts[alike] <= _MOST_ALIKE:
+            shown.append(each)
+    left_out = Counter({alike: count - _MOST_ALIKE for alike, count in counts.items() if count > _MOST_ALIKE})
+    return tuple(shown), left_out
 
 
 def wants_colour(stream: TextIO) -> bool:
