@@ -18,6 +18,7 @@ from tltl_runtime.stealth.supply.reach import reachable
 from tltl_runtime.stealth.supply.spec_places import SpecPlaces
 from tltl_runtime.texts import between, counted, percent_exactly
 from tltlc.automaton.fspa import Fspa
+from tltlc.diagnostics.diagnostic import TltlError
 
 _OVERLAYS: Final = "overlays/"
 """How the names of overlays among the files of a level begin."""
@@ -73,8 +74,14 @@ def obstacles(level: Level, fspa: Fspa) -> Iterator[str]:
 
 
 def is_infeasible(level: Level, fspa: Fspa) -> bool:
-    """Whether nobody can do what a spec asks, whoever plays; :func:`obstacles` say why."""
-    found = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+    """Whether nobody can do what a spec asks, whoever plays; :func:`obstacles` say why.
+
+    False of a level that is too large to be searched.
+    """
+    try:
+        found = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+    except TltlError:
+        return False
     return any(each.severity == "error" for each in found)
 
 

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import inf
 from typing import Final
 
 from tltl_runtime.stealth.level import Level
 from tltl_runtime.stealth.supply.offer import offers
 from tltl_runtime.stealth.supply.reach import Reach, highest_jump, highest_lift, reachable
+from tltl_runtime.stealth.supply.space import Budget, SpaceBudgetError
 from tltl_runtime.stealth.supply.spec_places import SpecPlaces
 from tltl_runtime.stealth.supply.supply import given_params, used_entities
 from tltl_runtime.stealth.world.player import PlayerKind
 from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic, Severity
+from tltlc.diagnostics.diagnostic import Diagnostic, Severity, TltlError
 from tltlc.expression import Expression, Param, Signal
+from tltlc.limits import WORK
 from tltlc.record import replace
 from tltlc.resolve.predicate_check.cases import TooManyCasesError, cases
 from tltlc.resolve.predicate_check.interval import Interval, UndefinedError
@@ -56,8 +58,14 @@ def check_height(level: Level, reach: Reach) -> list[Diagnostic]:
 
 
 def reach_warnings(level: Level, fspa: Fspa) -> list[Diagnostic]:
-    """:func:`check_reach` for who is about to play, as warnings: one may well play what cannot be finished."""
-    found = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+    """:func:`check_reach` for who is about to play, as warnings: one may well play what cannot be finished.
+
+    A level that is too large to be searched gives a warning, too, TLT0006.
+    """
+    try:
+        found: Iterable[Diagnostic] = check_reach(level, reachable(level), fspa, SpecPlaces(None))
+    except TltlError as error:
+        found = error.diagnostics
     return [replace(each, severity="warning") for each in found]
 
 
@@ -123,11 +131,15 @@ class _Ways:
         self._level, self._reach = level, reach
         self._higher: dict[float, Reach] = {highest_lift(PlayerKind()): reach}
         self._without: dict[str, Reach] = {}
+        self._budget = Budget(WORK["cells of reachable space"])
 
     def end(self, entity: str) -> str:
-        """What is in the way to an entity that nobody reaches."""
+        """What is in the way to an entity that nobody reaches, as far as that is found soon."""
         nearest = f"one gets no nearer to it than {self._reach.distances[entity]:.1f} m"
-        return self._shut(entity) or self._too_high(entity) or nearest
+        try:
+            return self._shut(entity) or self._too_high(entity) or nearest
+        except SpaceBudgetError:
+            return nearest
 
     def _shut(self, entity: str) -> str:
         """The barrier that is in the way, and why it stays shut; nothing where none is."""
@@ -155,11 +167,11 @@ class _Ways:
 
     def _jumping(self, lift: float) -> Reach:
         if lift not in self._higher:
-            self._higher[lift] = reachable(self._level, lift=lift)
+            self._higher[lift] = reachable(self._level, lift=lift, budget=self._budget)
         return self._higher[lift]
 
     def _is_behind(self, entity: str, obstacle: str) -> bool:
         """Whether an entity would be reached without a solid or a barrier."""
         if obstacle not in self._without:
-            self._without[obstacle] = reachable(self._level, without=[obstacle])
+            self._without[obstacle] = reachable(self._level, without=[obstacle], budget=self._budget)
         return self._without[obstacle].reaches(entity)

@@ -25,8 +25,19 @@ from typing import Final
 import numpy as np
 
 from tltl_runtime.stealth.level import Box, Level, Mover, fixed_places
-from tltl_runtime.stealth.supply.space import Field, Space, SpaceGrid, distances, flood, span
+from tltl_runtime.stealth.supply.space import (
+    Budget,
+    Field,
+    Space,
+    SpaceBudgetError,
+    SpaceGrid,
+    distances,
+    flood,
+    span,
+)
 from tltl_runtime.stealth.world.player import PlayerKind
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.limits import WORK
 from tltlc.record import record
 
 NEAR: Final = 1.0
@@ -64,19 +75,40 @@ class Reach:
         return self.distances[entity] <= NEAR
 
 
-def reachable(level: Level, *, lift: float | None = None, without: Collection[str] = ()) -> Reach:
+def reachable(
+    level: Level, *, lift: float | None = None, without: Collection[str] = (), budget: Budget | None = None
+) -> Reach:
     """Everything that a player may reach from anywhere where an episode begins.
 
     ``lift`` is how much higher than the ground that was left the next may be, in metres, by default
     :func:`highest_lift`; solids and barriers ``without`` are not there.
+
+    Raises:
+        TltlError: TLT0006, the level is too large or too winding to be searched.
+        SpaceBudgetError: the same, where the ``budget`` is given.
     """
+    if budget is not None:
+        return _reachable(level, lift, without, budget)
+    try:
+        return _reachable(level, lift, without, Budget(WORK["cells of reachable space"]))
+    except SpaceBudgetError:
+        title = f"it takes too long to find out what can be reached in `{level.name}:{level.variant}`"
+        help_ = "make the level smaller, or leave out barriers whose switches lie behind other barriers"
+        raise TltlError([Diagnostic("TLT0006", title, help=help_)]) from None
+
+
+def _reachable(level: Level, lift: float | None, without: Collection[str], budget: Budget) -> Reach:
     kind = PlayerKind()
-    search = _Search(level, kind, highest_lift(kind) if lift is None else lift, without)
+    search = _Search(level, kind, highest_lift(kind) if lift is None else lift, without, budget)
     switches: set[str] = set()
     opened: set[str] = set()
     while True:
         space = search.spread(opened)
-        now = {each.name for each in level.switches if search.grid.distance(space, each.position) <= each.radius}
+        now = {
+            each.name
+            for each in level.switches
+            if search.grid.distance(space, each.position, each.radius) <= each.radius
+        }
         opens = {each.name for each in level.barriers if each.opened_by and now.issuperset(each.opened_by)}
         opens |= {name for unlock in level.unlocks if unlock.switch in now for name in unlock.barriers}
         if opens == opened and now == switches:
@@ -114,7 +146,7 @@ def highest_jump(kind: PlayerKind) -> float:
 class _Search:
     """The ground that has been reached, by its height, and the space around it."""
 
-    def __init__(self, level: Level, kind: PlayerKind, lift: float, without: Collection[str]) -> None:
+    def __init__(self, level: Level, kind: PlayerKind, lift: float, without: Collection[str], budget: Budget) -> None:
         self._kind, self._lift = kind, lift
         self._solids = [solid.box for solid in level.solids if solid.name not in without]
         self._barriers = {
@@ -128,7 +160,7 @@ class _Search:
         start = level.start.position
         heights = {z for top in tops for z in (top.lowest, top.height)} | {start[2]}
         cuts = [z for height in heights for z in (height - _EDGE_DEPTH, height + _TOUCH, height + lift)]
-        self.grid = SpaceGrid(level.bounds, [*self._solids, *barriers], cuts, kind)
+        self.grid = SpaceGrid(level.bounds, [*self._solids, *barriers], cuts, kind, budget)
         self._tops: dict[tuple[float, float], Field] = {}
         """For the lowest and the last height of tops, the cells from which one is within reach of the foot."""
         for top in tops:
@@ -163,6 +195,7 @@ class _Search:
             for (lowest, top), near in self._tops.items():
                 if lowest > height + self._lift + _ROUNDING:
                     continue
+                self.grid.budget.spend(near.size + flight.size)
                 known = self._ground.setdefault(top, np.zeros_like(near))
                 met = flight[self.grid.slabs(lowest - _EDGE_DEPTH, top + _TOUCH)[: len(flight)]].any(axis=0)
                 new = met & near[window] & ~known[window]
@@ -175,7 +208,7 @@ class _Search:
         """Add to ground that is ``fresh`` what is side by side with it, at the same height."""
         same = np.logical_or.reduce([near for (_, top), near in self._tops.items() if top == height] or [fresh])
         same &= free[self.grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)].any(axis=0)
-        fresh |= flood((same | fresh)[None], fresh[None])[0] & ~self._ground[height]
+        fresh |= flood((same | fresh)[None], fresh[None], self.grid.budget)[0] & ~self._ground[height]
         self._ground[height] |= fresh
 
     def _flight(self, free: Space, height: float, ground: Field) -> tuple[tuple[slice, slice], Space]:
@@ -193,7 +226,7 @@ class _Search:
         allowed = free[: len(leaps)][:, rows, columns] & (afar[None] <= leaps[:, None, None])
         seeds = np.zeros_like(allowed)
         seeds[grid.slabs(height - _EDGE_DEPTH, height + _TOUCH)[: len(leaps)]] = ground[rows, columns]
-        return (rows, columns), flood(allowed, seeds)
+        return (rows, columns), flood(allowed, seeds, grid.budget)
 
     def _time(self, drop: float) -> float:
         """The longest time from ground to ``drop`` metres below it, by a jump that lifts the feet all the way up."""

@@ -8,7 +8,7 @@ crouched one, 5 cm narrower than it is, and round at both ends.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import sqrt
+from math import inf, prod, sqrt
 from typing import Final
 
 import numpy as np
@@ -39,15 +39,35 @@ Space = NDArray[np.bool_]
 """[slabs, rows, columns]"""
 
 
+class SpaceBudgetError(Exception):
+    """A search has looked at more cells of space than it may."""
+
+
+class Budget:
+    """Counts the cells of space that a search looks at; raises SpaceBudgetError beyond ``most``."""
+
+    def __init__(self, most: int) -> None:
+        self._left = most
+
+    def spend(self, cells: int) -> None:
+        """Count cells."""
+        self._left -= cells
+        if self._left < 0:
+            raise SpaceBudgetError
+
+
 class SpaceGrid:
     """The cells and slabs of a level; ``cuts`` are heights at which slabs must end, beside those of the boxes.
 
     ``origin`` is the south-west corner, ``cell`` the side of a cell in metres; ``west`` [columns] and ``south`` [rows]
     are where they begin, ``lows`` and ``highs`` [slabs] the ends of the slabs, in metres, upwards.  ``shape`` is that
-    of a space: slabs, rows, columns.
+    of a space: slabs, rows, columns.  What looks at cells counts them in ``budget``.
     """
 
-    def __init__(self, bounds: Box, boxes: Iterable[Box], cuts: Iterable[float], kind: PlayerKind) -> None:
+    def __init__(
+        self, bounds: Box, boxes: Iterable[Box], cuts: Iterable[float], kind: PlayerKind, budget: Budget
+    ) -> None:
+        self.budget = budget
         (x0, y0, z0), (x1, y1, z1) = bounds.low, bounds.high
         self.origin = (x0, y0)
         self._widths = [(width, kind.radius - sqrt(kind.radius**2 - width**2)) for width in _WIDTHS]
@@ -65,8 +85,10 @@ class SpaceGrid:
 
     def free(self, boxes: Iterable[Box]) -> Space:
         """The space that is left beside boxes."""
+        self.budget.spend(prod(self.shape))
         free: Space = np.ones(self.shape, dtype=np.bool_)
         for box in boxes:
+            self.budget.spend(sum(self.shape))
             # The point of a cell that is farthest away decides: only where all of a cell is taken, none of it is free.
             dx = np.maximum(np.maximum(box.low[0] - self.west, self.west + self.cell - box.high[0]), 0.0)
             dy = np.maximum(np.maximum(box.low[1] - self.south, self.south + self.cell - box.high[1]), 0.0)
@@ -75,11 +97,13 @@ class SpaceGrid:
             for width, shorter in self._widths:
                 low, high = self._in_the_way(box, shorter)
                 slabs = span((self.lows >= low - _ROUNDING) & (self.highs <= high + _ROUNDING))
+                self.budget.spend((slabs.stop - slabs.start) * apart.size)
                 free[slabs, rows, columns] &= apart >= width * width
         return free
 
     def over(self, box: Box, reach: float) -> Field:
         """The cells of which any point is within ``reach`` of a box, seen from above."""
+        self.budget.spend(self.shape[1] * self.shape[2])
         dx = np.maximum(np.maximum(box.low[0] - self.west - self.cell, self.west - box.high[0]), 0.0)
         dy = np.maximum(np.maximum(box.low[1] - self.south - self.cell, self.south - box.high[1]), 0.0)
         found: Field = dx[None, :] ** 2 + dy[:, None] ** 2 <= reach * reach
@@ -90,30 +114,50 @@ class SpaceGrid:
         found: NDArray[np.bool_] = (self.lows < high - _ROUNDING) & (self.highs > low + _ROUNDING)
         return found
 
-    def distance(self, space: Space, point: Point) -> float:
-        """The least distance from anywhere in a space to a point, infinite where the space is empty."""
-        if not space.any():
-            return float("inf")
-        slabs, rows, columns = np.nonzero(space)
-        dx = np.maximum(np.maximum(self.west[columns] - point[0], point[0] - self.west[columns] - self.cell), 0.0)
-        dy = np.maximum(np.maximum(self.south[rows] - point[1], point[1] - self.south[rows] - self.cell), 0.0)
-        dz = np.maximum(np.maximum(self.lows[slabs] - point[2], point[2] - self.highs[slabs]), 0.0)
-        return float(np.sqrt((dx * dx + dy * dy + dz * dz).min()))
+    def distance(self, space: Space, point: Point, most: float = inf) -> float:
+        """The least distance from anywhere in a space to a point, infinite where it is more than ``most``."""
+        away = [_away(lows, highs, value) for (lows, highs), value in zip(self._ends(), point[::-1], strict=True)]
+        radius = min(self.cell, most)
+        while True:
+            # What is nearer than the radius lies in a part around the point; most searches end in a small one.
+            part = tuple(span(each <= radius) for each in away)
+            slabs, rows, columns = (each[within] ** 2 for each, within in zip(away, part, strict=True))
+            self.budget.spend(slabs.size * rows.size * columns.size)
+            apart = slabs[:, None, None] + rows[:, None] + columns
+            nearest = float(np.sqrt(np.min(apart, where=space[part], initial=inf)))
+            if nearest <= radius:
+                return nearest
+            if radius >= min(most, max(float(each.max()) for each in away)):
+                return nearest if nearest <= most else inf
+            radius = min(4 * radius, most)
+
+    def _ends(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        """Where slabs, rows and columns begin and end."""
+        rows, columns = (self.south, self.south + self.cell), (self.west, self.west + self.cell)
+        return [(self.lows, self.highs), rows, columns]
 
     def _in_the_way(self, box: Box, shorter: float) -> tuple[float, float]:
         """The heights of feet at which a box that is near enough is in the way of a body that ends sooner."""
         return box.low[2] - self._height + shorter, box.high[2] - shorter
 
 
-def flood(free: Space, seeds: Space) -> Space:
+def _away(lows: NDArray[np.float64], highs: NDArray[np.float64], value: float) -> NDArray[np.float64]:
+    """How far a value is from intervals."""
+    away: NDArray[np.float64] = np.maximum(np.maximum(lows - value, value - highs), 0.0)
+    return away
+
+
+def flood(free: Space, seeds: Space, budget: Budget) -> Space:
     """What of a space is connected with the seeds in it, side by side.
 
     Each round spreads along whole lines of one axis after the other, so that a few rounds go round many corners.
     """
+    budget.spend(3 * free.size)
     reached: Space = seeds & free
     runs = [_runs(np.moveaxis(free, axis, -1)) for axis in range(3)]
     count = -1
     while count != (count := int(np.count_nonzero(reached))):
+        budget.spend(3 * free.size)
         for axis, (ids, number) in enumerate(runs):
             turned = np.moveaxis(reached, axis, -1)
             hit = np.zeros(number, dtype=np.bool_)

@@ -7,13 +7,18 @@ from contextlib import closing
 import numpy as np
 import pytest
 
+from tltl_runtime.regression.reasons import is_infeasible
 from tltl_runtime.stealth.level import Barrier, Box, Exit, Level, Mover, Point, Sensors, Solid, Start, Switch, Unlock
 from tltl_runtime.stealth.levels.file import level_names, load_level, variants
 from tltl_runtime.stealth.levels.parts import enclosure
+from tltl_runtime.stealth.supply.feasible import reach_warnings
 from tltl_runtime.stealth.supply.reach import Reach, highest_lift, reachable
-from tltl_runtime.stealth.supply.space import distances, flood
+from tltl_runtime.stealth.supply.space import Budget, SpaceGrid, distances, flood
 from tltl_runtime.stealth.world.physics import World
 from tltl_runtime.stealth.world.player import PlayerKind
+from tltl_runtime.task import load_task
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.limits import WORK
 from tltlc.record import replace
 
 BOUNDS = Box((0.0, 0.0, -0.5), (12.0, 5.0, 4.0))
@@ -176,7 +181,7 @@ def test_a_flood_goes_round_corners_and_through_nothing() -> None:
             if inside and free[a, b, c] and (a, b, c) not in found:
                 found.add((a, b, c))
                 waiting.append((a, b, c))
-    assert set(zip(*(axis.tolist() for axis in np.nonzero(flood(free, seeds))), strict=True)) == found
+    assert set(zip(*(axis.tolist() for axis in np.nonzero(flood(free, seeds, Budget(10**6)))), strict=True)) == found
 
 
 def test_distances_between_cells() -> None:
@@ -188,3 +193,52 @@ def test_distances_between_cells() -> None:
             apart = [(max(abs(row - y) - 1, 0), max(abs(column - x) - 1, 0)) for y, x in ((1, 2), (5, 6))]
             nearest = min(np.hypot(*each) for each in apart)
             assert found[row, column] == (pytest.approx(nearest) if nearest < 5 else np.inf)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_distance_is_that_to_the_nearest_cell(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    grid = SpaceGrid(BOUNDS, [], [0.0, 1.0, 2.5], PlayerKind(), Budget(10**9))
+    space = random.random(grid.shape) < 0.003
+    lows = np.array([each.ravel() for each in np.meshgrid(grid.lows, grid.south, grid.west, indexing="ij")])
+    widths = np.array([0.0, grid.cell, grid.cell])[:, None]
+    highs = lows + widths
+    highs[0] = np.repeat(grid.highs, grid.shape[1] * grid.shape[2])
+    for point in random.uniform(-2.0, 14.0, (20, 3)):
+        away = np.maximum(np.maximum(lows - point[::-1, None], point[::-1, None] - highs), 0.0)
+        nearest = float(np.sqrt((away**2).sum(axis=0)[space.ravel()].min()))
+        x, y, z = point.tolist()
+        assert grid.distance(space, (x, y, z)) == pytest.approx(nearest)
+        assert grid.distance(space, (x, y, z), 1.5) == pytest.approx(nearest if nearest <= 1.5 else np.inf)
+    assert grid.distance(np.zeros(grid.shape, dtype=np.bool_), (1.0, 1.0, 1.0)) == np.inf
+
+
+def test_a_switch_nearby_is_found_with_little_work() -> None:
+    grid = SpaceGrid(Box((0.0, 0.0, 0.0), (100.0, 100.0, 2.0)), [], [1.0], PlayerKind(), budget := Budget(10**9))
+    before = budget._left
+    assert grid.distance(np.ones(grid.shape, dtype=np.bool_), (50.0, 50.0, 0.5), 1.0) == 0.0
+    assert before - budget._left < 100
+
+
+def test_a_level_that_takes_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    level = room(wall(0.0, 4.0))
+    fspa = load_task("import spatial\nentity exit\nspec out { limit 9 steps  reach near(exit) }").fspa
+    (found,) = reach_warnings(level, fspa)
+    assert found.code == "TLT0814"
+    assert "the way ends at `box_0`" in (found.help or "")
+    monkeypatch.setattr("tltl_runtime.stealth.supply.feasible.WORK", {"cells of reachable space": 1000})
+    (found,) = reach_warnings(level, fspa)
+    # Only the search for what is in the way has too little.
+    assert (found.code, found.help) == ("TLT0814", "one gets no nearer to it than 4.5 m")
+    monkeypatch.setattr("tltl_runtime.stealth.supply.reach.WORK", {"cells of reachable space": 1000})
+    with pytest.raises(TltlError, match="TLT0006: it takes too long to find out what can be reached in `room:v0`"):
+        reachable(level)
+    # Whoever plays is warned, and plays.
+    assert [(each.code, each.severity) for each in reach_warnings(level, fspa)] == [("TLT0006", "warning")]
+    assert not is_infeasible(level, fspa)
+
+
+def test_shipped_levels_take_a_small_part_of_the_work() -> None:
+    for name, variant in SHIPPED:
+        budget = Budget(WORK["cells of reachable space"] // 20)
+        assert reachable(load_level(name, variant), budget=budget).highest >= 0.0
