@@ -17,6 +17,7 @@ from tltl_runtime.stealth.levels.table import REQUIRED, Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import exists, is_file, read_source
+from tltlc.limits import SUITE
 from tltlc.record import record
 from tltlc.resources import bounded
 from tltlc.source import Span
@@ -30,6 +31,9 @@ LEAST_EPISODES: Final = 25
 
 MOST_EPISODES: Final = 300
 """Are played of a case at the most, where its suite says nothing else."""
+
+_MOST_FAULTS: Final = 100
+"""Of a suite with more faults, no more cases are read: what is wrong with each may take long to find out."""
 
 _LIMIT: Final = 10_000
 _MOST: Final = {"pass_rate": 0.999}
@@ -117,7 +121,17 @@ def read_suite(path: Path, baseline: Path | None = None) -> Suite:
     error = table.number("error", 0.05, low=0.0001, high=0.5, unit="")
     episodes = _episodes(table, MOST_EPISODES)
     thresholds = _thresholds(table, Thresholds())
-    cases = [_case(each, path.parent, episodes, thresholds) for each in table.tables("case")]
+    listed = table.tables("case")
+    if len(listed) > (SUITE.values or 0):
+        title, help_ = f"the suite has more than {SUITE.values:,} cases", "make several suites of it"
+        raise TltlError([Diagnostic("TLT0006", title, (table.label,), help_)])
+    known: dict[str, tuple[str, ...]] = {}
+    cases = []
+    for number, each in enumerate(listed):
+        if len(log) >= _MOST_FAULTS:
+            log.append(_unread(len(listed) - number, each.label))
+            break
+        cases.append(_case(each, path.parent, episodes, thresholds, known))
     table.done()
     if not cases and not log:
         log.append(Diagnostic("TLT0803", "the suite has no cases", (table.label,), "give one, under `[[case]]`"))
@@ -138,7 +152,15 @@ def _something_else(table: Table) -> str | None:
     return next((kind for kind, keys in kinds.items() if keys & table.entries.keys()), None)
 
 
-def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> tuple[Case, Label] | None:
+def _unread(count: int, label: Label) -> Diagnostic:
+    title = f"so much is wrong that the last {count:,} cases were not read"
+    return Diagnostic("TLT0803", title, (label,), "mend what is above, and try again")
+
+
+def _case(
+    table: Table, folder: Path, episodes: int, thresholds: Thresholds, known_variants: dict[str, tuple[str, ...]]
+) -> tuple[Case, Label] | None:
+    """A case and its place, None where something is wrong with it; ``known_variants`` is as of :func:`_variants`."""
     before = len(table.log)
     level, place = _level(table, folder)
     variant = _text(table, "variant", "")
@@ -151,7 +173,7 @@ def _case(table: Table, folder: Path, episodes: int, thresholds: Thresholds) -> 
     table.done()
     if len(table.log) > before or policy is None:
         return None
-    there = _variants(table, level)
+    there = _variants(table, level, known_variants)
     for key, given in (("variant", variant), ("reference", reference)):
         if given and given not in there:
             title = f"the level `{level}` has no variant `{given}`"
@@ -175,13 +197,18 @@ def _text(table: Table, key: str, default: str = REQUIRED) -> str:
     return found
 
 
-def _variants(table: Table, level: str) -> tuple[str, ...]:
-    """The variants of a level; of one that does not load any more, which is its case's finding, what is asked for."""
-    try:
-        return variants(level)
-    except TltlError:
-        asked = (table.entries[key].value for key in ("reference", "variant") if key in table.entries)
-        return (*asked, "v0")
+def _variants(table: Table, level: str, known: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
+    """The variants of a level; of one that does not load any more, which is its case's finding, what is asked for.
+
+    ``known`` has those of levels that were read before, none for one that does not load.
+    """
+    if level not in known:
+        try:
+            known[level] = variants(level)
+        except TltlError:
+            known[level] = ()
+    asked = (table.entries[key].value for key in ("reference", "variant") if key in table.entries)
+    return known[level] or (*asked, "v0")
 
 
 def _level(table: Table, folder: Path) -> tuple[str, str]:

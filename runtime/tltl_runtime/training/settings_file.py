@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import isfinite
 from typing import Any, Final, get_args
 
 from tltl_runtime.policies.network import MAX_KERNEL, MAX_LAYERS, MAX_STRIDE, MAX_WIDTH, Activation
-from tltl_runtime.stealth.levels.table import suggestion
+from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
 from tltl_runtime.training.choices import EntropySchedule, Method, PenaltySchedule, Pool
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
@@ -180,7 +180,7 @@ def read_values(source: SourceFile) -> dict[str, dict[str, Any]]:
         elif name not in KINDS:
             title = f"there is no setting `{name}`"
             known = [*KINDS[""], *(each for each in KINDS if each)]
-            log.append(Diagnostic("TLT0861", title, (entry.label,), _home(name) or suggestion(name, known)))
+            log.append(Diagnostic("TLT0861", title, (entry.label,), _home(name) or _like(name, known, log)))
         elif not isinstance(entry.value, dict):
             log.append(_wrong(entry, name, f"a table: a line `[{name}]` with its keys below"))
         else:
@@ -197,7 +197,7 @@ def _table(table: str, tree: Tree, log: list[Diagnostic]) -> dict[str, Any]:
             _read(table, key, entry, found, log)
         else:
             title = f"there is no setting `{key}` in `[{table}]`"
-            log.append(Diagnostic("TLT0861", title, (entry.label,), _home(key) or suggestion(key, KINDS[table])))
+            log.append(Diagnostic("TLT0861", title, (entry.label,), _home(key) or _like(key, KINDS[table], log)))
     return found
 
 
@@ -208,6 +208,11 @@ def _read(table: str, key: str, entry: Entry, found: dict[str, Any], log: list[D
         log.append(_wrong(entry, key, str(kind)))
     else:
         found[key] = value
+
+
+def _like(key: str, known: Iterable[str], log: list[Diagnostic]) -> str | None:
+    """The setting that may be meant; nothing where so much is wrong that the search for each would take long."""
+    return suggestion(key, known) if len(log) < MOST_SUGGESTIONS else None
 
 
 def _home(key: str) -> str | None:

@@ -242,3 +242,24 @@ def test_a_low_pass_rate_needs_a_fail_rate_below(tmp_path: Path) -> None:
 def test_other_files_of_a_game_are_no_suites(name: str, what: str) -> None:
     with pytest.raises(TltlError, match=f"TLT0803: this is {what}, and no suite"):
         read_suite(LEVELS / f"{name}.toml")
+
+
+def test_a_suite_of_too_many_cases_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(TltlError, match="TLT0006: the suite has more than 2,000 cases"):
+        read(tmp_path, 2001 * '[[case]]\nlevel = "navigation"\n')
+
+
+def test_each_level_of_a_suite_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    monkeypatch.setattr("tltl_runtime.regression.suite.variants", lambda level: asked.append(level) or variants(level))
+    cases = "".join(f'[[case]]\nlevel = "navigation"\nname = "n{number}"\n' for number in range(50))
+    assert len(read(tmp_path, cases)) == 50
+    assert asked == ["navigation"]
+
+
+def test_after_many_faults_no_more_cases_are_read(tmp_path: Path) -> None:
+    with pytest.raises(TltlError) as caught:
+        read(tmp_path, "".join(f'[[case]]\nlevel = "x{number}"\n' for number in range(2000)))
+    found = caught.value.diagnostics
+    assert len(found) == 101
+    assert found[-1].title == "so much is wrong that the last 1,900 cases were not read"

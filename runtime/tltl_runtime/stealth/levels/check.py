@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable
 
 from tltl_runtime.stealth.level import Level, entity_names
 from tltl_runtime.stealth.levels.parts import CELL_TYPES, Places
-from tltl_runtime.stealth.levels.table import suggestion
+from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, suggestion
 from tltl_runtime.stealth.signals import readers
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.record import replace
@@ -38,14 +39,15 @@ def check_references(level: Level, places: Places) -> list[Diagnostic]:
         "cell type": list(CELL_TYPES),
         "signal": [name for name in signals if "(" not in name],
     }
-    found = []
+    there = {kind: frozenset(names) for kind, names in known.items()} | {"signal": frozenset(signals)}
+    found: list[Diagnostic] = []
     for kind, name, label in places.references:
-        if name not in (signals if kind == "signal" else known[kind]):
-            title = f"there is no {kind} `{name}`"
-            found.append(Diagnostic("TLT0805", title, (label,), suggestion(name, known[kind])))
-    unlocked = [name for unlock in level.unlocks for name in unlock.barriers]
+        if name not in there[kind]:
+            way_out = suggestion(name, known[kind]) if len(found) < MOST_SUGGESTIONS else None
+            found.append(Diagnostic("TLT0805", f"there is no {kind} `{name}`", (label,), way_out))
+    unlocked = Counter(name for unlock in level.unlocks for name in unlock.barriers)
     for barrier in level.barriers:
-        ways = bool(barrier.opened_by) + unlocked.count(barrier.name)
+        ways = bool(barrier.opened_by) + unlocked[barrier.name]
         if ways != 1:
             title = f"{'two things open' if ways else 'nothing opens'} the barrier `{barrier.name}`"
             help_ = "name its switches in `opened_by`, or the barrier in one `[[unlock]]`"

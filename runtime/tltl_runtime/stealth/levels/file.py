@@ -9,7 +9,9 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
+from typing import Final
 
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
@@ -17,15 +19,19 @@ from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
 from tltl_runtime.stealth.levels.place import overlays_of, shown_variant
 from tltl_runtime.stealth.levels.regions import named_regions, part_regions
 from tltl_runtime.stealth.levels.room import check_room
-from tltl_runtime.stealth.levels.table import Table, suggestion, wrong
+from tltl_runtime.stealth.levels.table import MOST_SUGGESTIONS, Table, suggestion, wrong
 from tltl_runtime.stealth.levels.toml_tree import Entry, Tree, read_tree
 from tltl_runtime.stealth.levels.ways import check_ways
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.files import is_file, read_source
+from tltlc.limits import LEVEL, OVERLAYS
 from tltlc.record import replace
 from tltlc.resources import bounded
 from tltlc.source import SourceFile, Span
 from tltlc.spec_file import is_plain_name
+
+_MOST_FAULTS: Final = 1_000
+"""A level with more faults is not read to its end."""
 
 
 def level_names() -> tuple[str, ...]:
@@ -63,11 +69,11 @@ def load_level(name_or_path: str, variant: str = "v0") -> Level:
 
     :func:`read_level` also tells what looks like a mistake and is none.
 
-    Errors (:class:`TltlError`): all that is wrong, as far as it can be told at once.  TLT0800 no such level or
-    variant, or overlay to add; TLT0801 a file is no TOML; TLT0802 an unknown key; TLT0803 a missing key, a value of the
-    wrong kind or out of range; TLT0804 a name that is taken or that specs cannot use; TLT0805 a name that stands for
-    nothing; TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay changes what is not there; and those
-    of :func:`tltlc.files.read_source`.
+    Errors (:class:`TltlError`): all that is wrong, as far as it can be told at once.  TLT0006 too many things or
+    overlays; TLT0800 no such level or variant, or overlay to add; TLT0801 a file is no TOML; TLT0802 an unknown key;
+    TLT0803 a missing key, a value of the wrong kind or out of range; TLT0804 a name that is taken or that specs cannot
+    use; TLT0805 a name that stands for nothing; TLT0806 outside the bounds; TLT0807 inside a solid; TLT0808 an overlay
+    changes what is not there; and those of :func:`tltlc.files.read_source`.
     """
     return _Loading(level_path(name_or_path)).level(variant)
 
@@ -139,13 +145,15 @@ class _Loading:
         exits = parts.exits(table, places)
         enemies = parts.enemies(table, kinds, places)
         movers = [*used_movers, *parts.movers(table, places)]
+        solids = [*used_solids, *parts.solids(table, places)]
+        self._check_count(solids, movers, switches, barriers, exits, enemies)
         level = Level(
             name=self.path.stem,
             variant=shown_variant(variant),
             doc=doc,
             bounds=bounds,
             start=parts.start(start if start is not None else Table(self.root, "the start", [])),
-            solids=(*parts.enclosure(bounds), *used_solids, *parts.solids(table, places)),
+            solids=(*parts.enclosure(bounds), *solids),
             switches=tuple(switches),
             barriers=tuple(barriers),
             unlocks=tuple(parts.unlocks(table, places)),
@@ -172,6 +180,16 @@ class _Loading:
         """Raise what is known to be wrong so far."""
         if self.log:
             raise TltlError(self.log)
+
+    def _check_count(self, *groups: Sequence[object]) -> None:
+        """Raise TltlError, TLT0006, where a level has more things than :data:`tltlc.limits.LEVEL` allows."""
+        points = sum(len(getattr(each, "path", ())) + len(getattr(each, "route", ())) for each in chain(*groups))
+        if sum(map(len, groups)) + points > (LEVEL.values or 0):
+            title = f"the level `{self.path.stem}` holds more than {LEVEL.values:,} things"
+            help_ = (
+                "leave some out: steps of stairs and points of ways count, too, as often as a part with them is used"
+            )
+            raise TltlError([Diagnostic("TLT0006", title, (self.root.label,), help_)])
 
     def _read(self, path: Path, name: str) -> Entry:
         source = read_source(path, shown(path))
@@ -221,8 +239,12 @@ class _Loading:
                 found[name] = self._read(path, f"assets/{name}.toml")
         trees: dict[str, Tree] = {name: entry.value for name, entry in found.items()}
         named = self.table.entries["variants"].value[variant].label if self.variants[variant] else self.table.label
-        overlays = [(name, self._shared("overlays", name, named)) for name in self.variants[variant]]
-        overlays += [(name, self._added(name)) for name in added]
+        names = self.variants[variant]
+        overlays = [(name, self._shared("overlays", name, named)) for name in names[: OVERLAYS + 1]]
+        overlays += [(name, self._added(name)) for name in added[: OVERLAYS + 1]]
+        if len(overlays) > OVERLAYS:
+            title = f"a variant of the level `{self.path.stem}` has more than {OVERLAYS} overlays"
+            raise TltlError([Diagnostic("TLT0006", title, (named,), "put their changes together in one overlay")])
         for name, path in overlays:
             if path is not None:
                 change = self._read(path, f"overlays/{path.name}")
@@ -251,10 +273,10 @@ class _Loading:
         for place in (self.path.parent / folder, LEVELS / folder):
             if is_file(path := place / f"{name}.toml") and path.parent == place:
                 return path
-        known = shared_names(self.path, folder)
+        known = shared_names(self.path, folder) if len(self.log) < MOST_SUGGESTIONS else ()
         title = f"there is no {folder[:-1]} `{name}`"
         code, labels = ("TLT0805", (label,)) if label else ("TLT0800", ())
-        self.log.append(Diagnostic(code, title, labels, suggestion(name, known)))
+        self.log.append(Diagnostic(code, title, labels, suggestion(name, known) if known else None))
         return None
 
     def _used(
@@ -283,6 +305,10 @@ class _Loading:
             assets[asset].done()
             solids += its
             movers += moving
+            self._check_count(solids, movers)
+            # Each use repeats what is wrong with its asset.
+            if len(self.log) > _MOST_FAULTS:
+                self.check()
             regions += part_regions(prefix[:-1], its, moving)
         for enemy in self._listed("enemy"):
             kind = enemy.value.get("kind")

@@ -88,9 +88,10 @@ def solids(table: Table, places: Places, shift: Point = (0.0, 0.0, 0.0), prefix:
             item.done()
     for number, item in enumerate(table.tables("stairs"), 1):
         name = prefix + item.text("name", f"stairs_{number}")
-        found += _stairs(item, name, shift)
+        its = _stairs(item, name, shift)
+        found += its
         places.put(name, item, "from")
-        places.spots.update({solid.name: item.place("from") for solid in found if solid.name.startswith(f"{name}_")})
+        places.spots.update({solid.name: item.place("from") for solid in its})
         item.done()
     return found
 

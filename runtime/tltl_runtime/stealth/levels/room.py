@@ -60,21 +60,26 @@ def _start(level: Level, boxes: _Boxes, places: Places, start: Label) -> Iterato
 
 
 def _goals(goals: list[tuple[str, Point]], solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
+    """For each goal, the first solid that it is inside."""
     for goal, point in goals:
-        for name, box in solids:
-            if _overlap(_body(point, 0.01, 0.1), box):
-                title = f"`{goal}` is inside `{name}`, where nobody reaches it"
-                yield Diagnostic("TLT0807", title, places.at(goal, name), "move one of them")
+        if name := _first_around(_body(point, 0.01, 0.1), solids):
+            title = f"`{goal}` is inside `{name}`, where nobody reaches it"
+            yield Diagnostic("TLT0807", title, places.at(goal, name), "move one of them")
 
 
 def _routes(level: Level, solids: _Boxes, places: Places) -> Iterator[Diagnostic]:
+    """For each point of a route, the first solid that is there."""
     for enemy in level.enemies:
         for point in enemy.route:
-            for name, box in solids:
-                if _overlap(_body(point, RADIUS), box):
-                    title = f"`{enemy.name}` cannot walk to {shown(point)}: `{name}` is there"
-                    help_ = f"points of a route keep {RADIUS} m away from what stands in the level"
-                    yield Diagnostic("TLT0807", title, places.at(enemy.name, name), help_)
+            if name := _first_around(_body(point, RADIUS), solids):
+                title = f"`{enemy.name}` cannot walk to {shown(point)}: `{name}` is there"
+                help_ = f"points of a route keep {RADIUS} m away from what stands in the level"
+                yield Diagnostic("TLT0807", title, places.at(enemy.name, name), help_)
+
+
+def _first_around(body: Box, solids: _Boxes) -> str | None:
+    """The name of the first solid that takes some of the room of a body."""
+    return next((name for name, box in solids if _overlap(body, box)), None)
 
 
 def _player(level: Level) -> Box:

@@ -17,6 +17,12 @@ T = TypeVar("T")
 REQUIRED: Final[Any] = object()
 """In place of a default: the key must be there."""
 
+MOST_SUGGESTIONS: Final = 100
+"""At most this many diagnostics of a file look for names that are alike, which takes long for thousands."""
+
+_LONGEST: Final = 100
+"""Longer names, in characters, are like no other."""
+
 FARTHEST: Final = 1000.0
 """No coordinate is further from the origin, in metres."""
 
@@ -99,9 +105,11 @@ class Table:
 
     def done(self, elsewhere: Mapping[str, str] = EMPTY) -> None:
         """Report the keys that nobody asked for (TLT0802); ``elsewhere`` says of what else some of them are keys."""
+        asked = dict.fromkeys(self._asked)
         for key, entry in self.entries.items():
-            if key not in self._asked:
-                help_ = f"it is a key of `{elsewhere[key]}`" if key in elsewhere else suggestion(key, self._asked)
+            if key not in asked:
+                way_out = suggestion(key, asked) if len(self.log) < MOST_SUGGESTIONS else None
+                help_ = f"it is a key of `{elsewhere[key]}`" if key in elsewhere else way_out
                 self.log.append(Diagnostic("TLT0802", f"{self.what} has no key `{key}`", (entry.label,), help_))
 
     def _read(
@@ -132,7 +140,8 @@ def wrong(entry: Entry, key: str, expected: str) -> Diagnostic:
 def suggestion(name: str, known: Iterable[str], listed: str | None = None) -> str:
     """A way out for a name that is none of ``known``; ``listed`` stands for the list of them where that is long."""
     names = list(known)
-    close = get_close_matches(name, names, n=1) or [known for known in names if known.lower() == name.lower()]
+    close = get_close_matches(name, names, n=1) if len(name) <= _LONGEST else []
+    close = close or [known for known in names if known.lower() == name.lower()]
     if close:
         return f"did you mean `{close[0]}`?"
     if listed is not None:

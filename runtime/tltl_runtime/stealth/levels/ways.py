@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import islice, pairwise
 from math import dist
 from typing import Final, cast
 
@@ -15,6 +15,8 @@ from tltl_runtime.stealth.levels.room import shown
 from tltlc.diagnostics.diagnostic import Diagnostic
 
 _EPSILON: Final = 1e-6
+_MOST_EACH: Final = 10
+"""At most this many warnings are given of one mover or enemy."""
 
 
 def check_ways(level: Level, places: Places) -> tuple[Diagnostic, ...]:
@@ -22,8 +24,8 @@ def check_ways(level: Level, places: Places) -> tuple[Diagnostic, ...]:
 
     Those are warned of that begin in reach of the player, and that do not get to a point of their route.
     """
-    found = [warning for mover in level.movers for warning in _mover(mover, level, places)]
-    found += [warning for enemy in level.enemies for warning in _enemy(enemy, level, places)]
+    found = [warning for mover in level.movers for warning in islice(_mover(mover, level, places), _MOST_EACH)]
+    found += [warning for enemy in level.enemies for warning in islice(_enemy(enemy, level, places), _MOST_EACH)]
     return tuple(found)
 
 

@@ -1,0 +1,124 @@
+"""Levels of files that are small and ask for endless work: each is refused, or read in little time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.calls import calls
+from tltl_runtime.stealth.levels import parts
+from tltl_runtime.stealth.levels.file import load_level, read_level
+from tltl_runtime.stealth.levels.table import Table
+from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.source import SourceFile, Span
+
+ROOM = """\
+doc = "a room"
+[bounds]
+at = [0.0, 0.0, -0.5]
+size = [40.0, 40.0, 10.0]
+[start]
+at = [0.0, 0.0, 0.0]
+"""
+WALL = "[[wall]]\nat = [5.0, 5.0, 0.0]\nsize = [0.1, 0.1, 1.0]\n"
+STAIRS = """\
+[[stairs]]
+name = "s{}"
+from = [1.0, 1.0, 0.0]
+to = [15.0, 1.0, 4.0]
+width = 2.0
+steps = 40
+"""
+
+
+def level(folder: Path, text: str, head: str = "") -> str:
+    path = folder / "room.toml"
+    path.write_text(head + ROOM + text, encoding="utf-8")
+    return str(path)
+
+
+def part(folder: Path, name: str, text: str) -> None:
+    (folder / "assets").mkdir(exist_ok=True)
+    (folder / "assets" / f"{name}.toml").write_text(f'doc = "a part"\ntype = "part"\n{text}', encoding="utf-8")
+
+
+def refusal(path: str) -> tuple[Diagnostic, ...]:
+    with pytest.raises(TltlError) as caught:
+        load_level(path)
+    return caught.value.diagnostics
+
+
+def test_a_large_part_that_is_used_often_is_too_much(tmp_path: Path) -> None:
+    part(tmp_path, "big", 4000 * WALL)
+    uses = "".join(f'[[use]]\nasset = "big"\nname = "u{number}"\n' for number in range(6000))
+    (found,) = refusal(level(tmp_path, uses))
+    assert found.code == "TLT0006"
+    assert "more than 4,000 things" in found.title
+
+
+def test_a_wrong_part_that_is_used_often_is_told_a_few_times(tmp_path: Path) -> None:
+    part(tmp_path, "big", 2000 * "[[wall]]\n")
+    uses = "".join(f'[[use]]\nasset = "big"\nname = "u{number}"\n' for number in range(6000))
+    assert len(refusal(level(tmp_path, uses))) < 10_000
+
+
+def test_steps_of_stairs_and_points_of_ways_count(tmp_path: Path) -> None:
+    (found,) = refusal(level(tmp_path, "".join(STAIRS.format(number) for number in range(120))))
+    assert found.code == "TLT0006"
+    points = ", ".join(5000 * ["[1.0, 1.0, 0.0]"])
+    lift = f'[[mover]]\nname = "lift"\nsize = [1.0, 1.0, 1.0]\nspeed = 1.0\npath = [{points}]\n'
+    (found,) = refusal(level(tmp_path, lift))
+    assert found.code == "TLT0006"
+
+
+def stairs(count: int) -> Callable[[], object]:
+    source = SourceFile("room.toml", "".join(STAIRS.format(number) for number in range(count)))
+    table = Table(Entry(read_tree(source), Label(source, Span(0, 0))), "the level", [])
+    return lambda: parts.solids(table, parts.Places({}, {}, []))
+
+
+def test_the_work_for_stairs_grows_with_their_number() -> None:
+    assert calls(stairs(200)) < 15 * calls(stairs(20))
+
+
+def test_a_variant_has_a_hundred_overlays_at_most(tmp_path: Path) -> None:
+    names = ", ".join(40_000 * ['"wider"'])
+    found = refusal(level(tmp_path, f"[variants]\nv0 = [{names}]\n"))
+    assert "TLT0006" in {each.code for each in found}
+    assert len(found) < 200
+
+
+def test_what_stands_in_many_solids_is_told_once(tmp_path: Path) -> None:
+    switches = "".join(f'[[switch]]\nname = "s{number}"\nat = [5.0, 5.0, 0.1]\n' for number in range(100))
+    assert len(refusal(level(tmp_path, 1000 * WALL + switches))) == 100
+
+
+def test_a_mover_that_runs_into_much_is_told_a_few_times(tmp_path: Path) -> None:
+    lift = "speed = 1.0\npath = [[5.0, 5.0, 0.2], [5.0, 8.0, 0.2]]\n"
+    lift = f'[[mover]]\nname = "lift"\nsize = [1.0, 1.0, 0.5]\n{lift}'
+    assert len(read_level(level(tmp_path, 1000 * WALL + lift))[1]) == 10
+
+
+@pytest.mark.parametrize(
+    ("text", "head"),
+    [
+        ("", "".join(f"k{number} = 1\n" for number in range(40_000))),
+        ("".join(f'[[use]]\nasset = "a{number}"\n' for number in range(6_000)), ""),
+        (f"[sensors]\nentities = [{', '.join(f'{chr(34)}e{number}{chr(34)}' for number in range(40_000))}]\n", ""),
+    ],
+    ids=["unknown keys", "unknown assets", "unknown entities"],
+)
+def test_only_the_first_mistakes_look_for_names_that_are_alike(
+    tmp_path: Path, text: str, head: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked = []
+    monkeypatch.setattr(
+        "tltl_runtime.stealth.levels.table.get_close_matches", lambda *given, **more: looked.append(given) or []
+    )
+    found = refusal(level(tmp_path, text, head))
+    # No mistake is left out.
+    assert len(found) >= 6_000
+    assert len(looked) <= 200
