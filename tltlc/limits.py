@@ -112,6 +112,9 @@ POLICY: Final = Limit(size=1 << 26)
 CHECKPOINT: Final = Limit(size=1 << 30, depth=32, values=1_000_000)
 """A checkpoint of a training."""
 
+MEASUREMENTS: Final = Limit(size=1 << 30)
+"""The measurements of a training, a line an iteration; each line has the limits of :data:`TRACE_LINE`."""
+
 REVISION: Final = Limit(size=1 << 28, values=20_000)
 """The files of a git revision that are read; :data:`REVISION_PATHS` counts all paths that are looked at."""
 
@@ -143,6 +146,7 @@ WORK: Final[Mapping[str, int]] = {
     "label nodes": 6_000_000,
     "arrow nodes": 200_000,
     "fixes tried": 200,
+    "cells of floor": 1_000_000,
     "cells of reachable space": 3_000_000_000,
     "mined columns": 5_000,
     "mined instances": 2_000,

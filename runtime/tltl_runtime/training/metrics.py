@@ -18,7 +18,7 @@ from tltlc.automaton.fspa import Fspa, State
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reading_error, reason
 from tltlc.json_text import loads
-from tltlc.limits import TRACE_LINE
+from tltlc.limits import MEASUREMENTS, TRACE_LINE
 from tltlc.writing import write_file
 
 METRICS: Final = "metrics.jsonl"
@@ -104,14 +104,20 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
     One is left out that was cut short, or lacks what is read again.
 
     Raises:
-        TltlError: TLT0001, the system does not give us the file.
+        TltlError: TLT0001, the system does not give us the file; TLT0004, it is larger than
+            :data:`tltlc.limits.MEASUREMENTS` allows.
     """
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        with path.open("rb") as file:
+            data = file.read(MEASUREMENTS.size + 1)
     except FileNotFoundError:
         return []
     except OSError as error:
         raise reading_error(str(path), error) from None
+    if len(data) > MEASUREMENTS.size:
+        title = f"`{path}` is larger than {MEASUREMENTS.size >> 20} MiB"
+        raise TltlError([Diagnostic("TLT0004", title, help="move it away: the training then goes on without it")])
+    text = data.decode(errors="replace")
     return [measured for line in text.splitlines() if (measured := _measured(line)) is not None]
 
 

@@ -17,6 +17,7 @@ from tltl_runtime.training.metrics import METRICS, Metrics, read_metrics
 from tltl_runtime.training.report import Confirmation
 from tltlc.automaton.fspa import Fspa
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.limits import Limit
 
 LEFT = {
     "label": "F(near(s2) & X F near(exit)) & G alive",
@@ -117,3 +118,10 @@ def test_a_place_that_cannot_be_written_to(tmp_path: Path, fspa: Fspa) -> None:
     (tmp_path / METRICS).mkdir()
     with pytest.raises(TltlError, match="it is a folder"):
         Metrics(tmp_path, fspa)
+
+
+def test_measurements_without_end_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltl_runtime.training.metrics.MEASUREMENTS", Limit(size=1 << 20))
+    (tmp_path / METRICS).symlink_to("/dev/zero")
+    with pytest.raises(TltlError, match="TLT0004"):
+        read_metrics(tmp_path / METRICS)

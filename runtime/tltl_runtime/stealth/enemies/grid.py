@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from tltl_runtime.stealth.enemies.fields import ARRIVED, GOALS, middles, nearest_numbers, neighbours, steps_to
 from tltl_runtime.stealth.enemies.segments import Rectangle, crosses
 from tltl_runtime.stealth.level import Box, Level
+from tltlc.limits import WORK
 
 CELL: Final = 0.25
 RADIUS: Final = 0.35
@@ -46,6 +47,12 @@ _TOUCH: Final = 1e-6
 def grid_of(level: Level) -> Grid:
     """The grid of a level, made once in a process."""
     return Grid(level)
+
+
+def is_too_large(bounds: Box) -> bool:
+    """Whether a floor has so many cells that finding the ways on it would take minutes, and gigabytes."""
+    columns, rows = (int((bounds.high[axis] - bounds.low[axis]) / CELL + 1e-9) for axis in (0, 1))
+    return columns * rows > WORK["cells of floor"]
 
 
 class Grid:

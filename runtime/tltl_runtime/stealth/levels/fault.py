@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltl_runtime.stealth.enemies.branches import added_branches
+from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, Level, Point
 from tltl_runtime.stealth.levels.table import FARTHEST
 from tltl_runtime.stealth.signals import readers
@@ -29,6 +30,8 @@ def _faults(level: Level) -> Iterator[str]:
         good = mover.path and all(map(_is_place, mover.path)) and min(mover.size) >= _THINNEST and mover.speed > 0.0
         if not good or min(mover.pause, mover.offset) < 0.0:
             yield f"the mover `{mover.name}` has no way"
+    if level.enemies and is_too_large(level.bounds):
+        yield "the bounds are too large for enemies"
     for enemy in level.enemies:
         if not enemy.route or not all(map(_is_place, enemy.route)):
             yield f"the enemy `{enemy.name}` has no route"

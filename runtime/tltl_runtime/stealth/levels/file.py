@@ -13,6 +13,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
+from tltl_runtime.stealth.enemies.grid import is_too_large
 from tltl_runtime.stealth.level import Box, EnemyKind, Level, Mover, Region, Solid, entity_names
 from tltl_runtime.stealth.levels import check, overlay, parts
 from tltl_runtime.stealth.levels.made_for import LEVELS, made_for, shown
@@ -147,6 +148,10 @@ class _Loading:
         movers = [*used_movers, *parts.movers(table, places)]
         solids = [*used_solids, *parts.solids(table, places)]
         self._check_count(solids, movers, switches, barriers, exits, enemies)
+        if enemies and is_too_large(bounds):
+            title = f"the bounds of the level `{self.path.stem}` are too large for enemies"
+            help_ = "let them hold 250 m by 250 m at most, or leave the enemies out"
+            raise TltlError([Diagnostic("TLT0006", title, (table.place("bounds"),), help_)])
         level = Level(
             name=self.path.stem,
             variant=shown_variant(variant),

@@ -9,10 +9,12 @@ import pytest
 
 from tests.calls import calls
 from tltl_runtime.stealth.levels import parts
+from tltl_runtime.stealth.levels.fault import fault
 from tltl_runtime.stealth.levels.file import load_level, read_level
 from tltl_runtime.stealth.levels.table import Table
 from tltl_runtime.stealth.levels.toml_tree import Entry, read_tree
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.record import replace
 from tltlc.source import SourceFile, Span
 
 ROOM = """\
@@ -122,3 +124,17 @@ def test_only_the_first_mistakes_look_for_names_that_are_alike(
     # No mistake is left out.
     assert len(found) >= 6_000
     assert len(looked) <= 200
+
+
+def test_a_floor_that_would_take_gigabytes_is_too_large_for_enemies(tmp_path: Path) -> None:
+    guard = '[[enemy]]\nname = "guard"\nkind = "guard"\nroute = [[5.0, 5.0, 0.0]]\n'
+    assert load_level(level(tmp_path, guard)).enemies
+    wide = ROOM.replace("40.0, 40.0", "1000.0, 1000.0")
+    (tmp_path / "room.toml").write_text(wide + guard, encoding="utf-8")
+    (found,) = refusal(str(tmp_path / "room.toml"))
+    assert (found.code, found.title) == ("TLT0006", "the bounds of the level `room` are too large for enemies")
+    (tmp_path / "room.toml").write_text(wide, encoding="utf-8")
+    large = load_level(str(tmp_path / "room.toml"))
+    assert fault(large) is None
+    guards = load_level(level(tmp_path, guard)).enemies
+    assert fault(replace(large, enemies=guards)) == "the bounds are too large for enemies"
