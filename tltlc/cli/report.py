@@ -47,8 +47,10 @@ class Report:
     def say(self, text: str) -> None:
         """Narration: a line on standard error, only beside diagnostics for people."""
         if self.format == "text":
+            from tltlc.diagnostics.shortening import short_text
+
             with suppress(OSError):
-                print(text, file=sys.stderr, flush=True)
+                print(short_text(text), file=sys.stderr, flush=True)
 
     def __enter__(self) -> Report:
         return self

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Final, Protocol, cast
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.diagnostics.shortening import shortened
 
 FORMATS: Final = ("text", "json", "sarif", "github")
 """The formats there are; each is the name of a module with a function ``render``."""
@@ -22,9 +23,9 @@ class Renderer(Protocol):
 def render(diagnostics: Sequence[Diagnostic], format: str = "text", color: bool = False) -> str:  # noqa: A002
     """The diagnostics in one of the :data:`FORMATS`; raises ValueError for any other.
 
-    ``color`` matters to ``text`` alone.
+    ``color`` matters to ``text`` alone.  Very long names in messages are shortened in all formats.
     """
     if format not in FORMATS:
         raise ValueError(f"no format {format!r}: one of {', '.join(FORMATS)}")
     renderer = cast(Renderer, import_module(f"tltlc.diagnostics.formats.{format}").render)
-    return renderer(diagnostics, color=color)
+    return renderer([shortened(diagnostic) for diagnostic in diagnostics], color=color)

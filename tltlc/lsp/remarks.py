@@ -8,6 +8,7 @@ from typing import Final
 from lsprotocol import types
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.shortening import shortened
 from tltlc.grammar.tree import Import
 from tltlc.lsp.document import Document
 from tltlc.lsp.positions import range_of
@@ -24,6 +25,7 @@ _UNNECESSARY: Final = {"TLT0421", "TLT0422", "TLT0425", "TLT0427"}
 
 def remark(diagnostic: Diagnostic, document: Document, encoding: str, uri_of: Callable[[str], str]) -> types.Diagnostic:
     """A diagnostic, where it is to be seen in a document: of an imported file, at the import that leads there."""
+    diagnostic = shortened(diagnostic)
     main = label_in(diagnostic, document)
     place = main.span if main else _import_of(diagnostic, document)
     message = diagnostic.title
@@ -57,6 +59,7 @@ def label_in(diagnostic: Diagnostic, document: Document) -> Label | None:
 
 def remark_on_project(diagnostic: Diagnostic, encoding: str) -> types.Diagnostic:
     """A diagnostic of a project file, where it is to be seen in that."""
+    diagnostic = shortened(diagnostic)
     label = diagnostic.labels[0]
     return types.Diagnostic(
         range_of(label.source, label.span, encoding),

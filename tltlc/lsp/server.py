@@ -17,6 +17,7 @@ from pygls.exceptions import JsonRpcException
 from pygls.io_ import StdoutWriter
 
 from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.diagnostics.shortening import shortened
 from tltlc.lsp.answers import ANSWERS, FILES_AND_FOLDERS, run_tests
 from tltlc.lsp.frames import Frames
 from tltlc.lsp.lenses import RUN_TESTS
@@ -113,7 +114,7 @@ def _guarded(server: Server, handler: Callable[[Server, Any], Any]) -> Callable[
         try:
             return handler(server, params)
         except TltlError as error:
-            found = error.diagnostics[0]
+            found = shortened(error.diagnostics[0])
             text = f"{found.title}; {found.help}" if found.help else found.title
             raise JsonRpcException(f"{text} ({found.code})", _REFUSED) from None
         finally:

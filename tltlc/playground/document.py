@@ -9,6 +9,7 @@ from typing import Any, Final
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.backends import Notation
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.diagnostics.shortening import shortened
 from tltlc.explain.document import failure_texts
 from tltlc.explain.explanation import Explanation, explain
 from tltlc.explain.values import values
@@ -123,12 +124,13 @@ def diagnostic(said: Diagnostic, source: SourceFile | None = None, ways_out: Ite
 
     Of the ways out it takes those of this very message.
     """
+    short = shortened(said)
     return {
-        "code": said.code,
-        "severity": said.severity,
-        "title": said.title,
-        "help": said.help,
-        "labels": [_label(label, source) for label in said.labels],
+        "code": short.code,
+        "severity": short.severity,
+        "title": short.title,
+        "help": short.help,
+        "labels": [_label(label, source) for label in short.labels],
         "ways_out": [_way_out(each, source) for each in ways_out if source and each.diagnostic is said],
     }
 

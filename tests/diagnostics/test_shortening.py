@@ -1,0 +1,38 @@
+"""Messages quote what others wrote, and stay readable whatever that is."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.cli.conftest import Outcome, tltlc  # noqa: F401
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.render import FORMATS, render
+from tltlc.diagnostics.shortening import LONGEST_QUOTE, LONGEST_TEXT, short_text
+from tltlc.source import SourceFile, Span
+
+LONG = "a" * (3 << 20)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_shortens_a_long_name(name: str) -> None:
+    label = Label(SourceFile("x.tltl", "spec"), Span(0, 4), f"`{LONG}` is here")
+    found = Diagnostic("TLT0101", f"there is no `{LONG}`", (label,), f"did you mean `{LONG}b`?")
+    text = render([found], name)
+    assert len(text) < 10_000
+    assert f"`{'a' * 199}…{'a' * 100}`" in text.replace("\\u2026", "…")
+
+
+def test_what_is_between_two_short_quotes_stays_whole() -> None:
+    text = f"`a` {'word ' * 200}`b`"
+    assert short_text(text) == text
+
+
+def test_a_quote_keeps_its_beginning_and_its_end() -> None:
+    short = short_text("no file `" + "x" * 500 + "/end.tltl`")
+    assert short.startswith("no file `xxx")
+    assert short.endswith("/end.tltl`")
+    assert len(short) == len("no file ``") + LONGEST_QUOTE
+
+
+def test_a_text_without_quotes_has_an_end() -> None:
+    assert len(short_text("word " * 10_000)) == LONGEST_TEXT
