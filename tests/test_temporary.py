@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from tests.waiting import HANG_S
-from tltlc.temporary import remove_abandoned, temporaries
+from tltlc.diagnostics.diagnostic import TltlError
+from tltlc.temporary import remove_abandoned, temporaries, temporary_folder
 from tltlc.writing import write_files
 
 ROOT = Path(__file__).parents[1]
@@ -68,6 +69,75 @@ def test_a_signal_ends_a_command_in_order(number: signal.Signals, tmp_path: Path
         out, _ = running.communicate(timeout=HANG_S)
     assert (running.returncode, out) == (128 + number, "")
     assert list((tmp_path / "out").iterdir()) == []
+
+
+AT_THE_LOCK = """
+import os, signal, sys, time
+from pathlib import Path
+from tltlc import temporary
+# The files are not renamed before the signal has been handled.
+Path.replace = lambda path, target: time.sleep(60)
+try_lock = temporary.try_lock
+def interrupted(file):
+    temporary.try_lock = try_lock
+    os.kill(os.getpid(), signal.{name})
+    return try_lock(file)
+temporary.try_lock = interrupted
+"""
+"""A signal comes after the lock file was made, and before anybody knows of it."""
+
+WHILE_CLEANING = """
+import os, signal, sys
+from pathlib import Path
+replace, unlink = Path.replace, Path.unlink
+def first(path, target):
+    os.kill(os.getpid(), signal.{name})
+    return replace(path, target)
+def second(path, missing_ok=False):
+    os.kill(os.getpid(), signal.{name})
+    return unlink(path, missing_ok)
+Path.replace, Path.unlink = first, second
+"""
+"""A signal comes before the first file is renamed, and another one whenever a temporary file is removed."""
+
+
+@pytest.mark.parametrize("program", [AT_THE_LOCK, WHILE_CLEANING], ids=["lock", "cleaning"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_at_a_bad_moment_leaves_no_file(number: signal.Signals, program: str, tmp_path: Path) -> None:
+    (tmp_path / "specs.tltl").write_text(SPECS, encoding="utf-8")
+    script = program.format(name=number.name) + "from tltlc.cli.main import main\nmain()\n"
+    command = [sys.executable, "-c", script, "compile", "specs.tltl", "-o", "out"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TLTLC_CACHE_DIR": ""}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=HANG_S)
+    assert temporary(tmp_path) == []
+    assert (done.returncode, done.stdout) == (128 + number, "")
+
+
+def test_the_next_folder_removes_that_of_a_killed_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    script = (
+        "import os\nfrom tltlc.temporary import temporary_folder\n"
+        "with temporary_folder() as folder:\n"
+        "    (folder / 'a' / 'b').mkdir(parents=True)\n    (folder / 'a' / 'b' / 'c').touch()\n"
+        "    os.kill(os.getpid(), 9)\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", script], env=environment, timeout=HANG_S, check=False)
+    assert (done.returncode, len(list(tmp_path.iterdir()))) == (-9, 2)
+    with temporary_folder() as folder:
+        assert sorted(tmp_path.iterdir()) == [folder, folder.with_name(f"{folder.name[:-2]}.lock")]
+        # Another process, or thread, leaves it alone.
+        with temporary_folder():
+            assert folder.is_dir()
+        assert folder.is_dir()
+        assert folder.stat().st_mode & 0o077 == 0
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_temporary_folder_without_a_place_has_a_message(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "gone"))
+    with pytest.raises(TltlError, match="TLT0005: cannot make a temporary folder"), temporary_folder():
+        pass
 
 
 def test_a_signal_that_is_ignored_stays_ignored(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from unicodedata import normalize
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
+from tltlc.limits import UNPACKED_PATH
 from tltlc.record import record
 
 _IS_WINDOWS: Final = os.name == "nt"
@@ -37,8 +38,8 @@ def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -
     """Write files into a folder that exists, each at its path below it, with ``/`` between the parts.
 
     Raises:
-        TltlError: TLT0009, a path leads out of the folder or is no file's path on this system, or two paths cannot
-            both be there; TLT0005, the system refuses to write.
+        TltlError: TLT0009, a path leads out of the folder, is too long, or is no file's path on this system, or two
+            paths cannot both be there; TLT0005, the system refuses to write.
     """
     written: list[str] = []
     for name, content in files:
@@ -57,7 +58,8 @@ def unpack(folder: Path, files: Iterable[tuple[str, bytes]], archive: Archive) -
 
 
 def inside(folder: Path, name: str, archive: Archive) -> Path:
-    """The place of an archive's path below a folder; raises TltlError, TLT0009, where there is no such place."""
+    """The place of an archive's path below a folder; raises TltlError, TLT0009, if there is no such place."""
+    check_extent(name, archive)
     parts = name.split("/")
     if _IS_WINDOWS and any(map(_is_foreign, parts)):
         raise _refused(f"{archive.name} holds the path `{name}`, which cannot be a file on Windows", archive.elsewhere)
@@ -66,6 +68,18 @@ def inside(folder: Path, name: str, archive: Archive) -> Path:
     if path == folder or not Path(os.path.realpath(path.parent)).is_relative_to(os.path.realpath(folder)):
         raise _refused(f"{archive.name} holds the path `{name}`, which leads out of its folder", archive.damaged)
     return path
+
+
+def check_extent(name: str, archive: Archive) -> None:
+    """Raise TltlError, TLT0009, if a path has more bytes or parts than :data:`tltlc.limits.UNPACKED_PATH` allows."""
+    depth = UNPACKED_PATH.depth or 0
+    if len(name.encode(errors="surrogatepass")) > UNPACKED_PATH.size:
+        what = f"which is longer than {UNPACKED_PATH.size:,} bytes"
+    elif name.count("/") >= depth:
+        what = f"which has more than {depth} parts"
+    else:
+        return
+    raise _refused(f"{archive.name} holds the path `{name}`, {what}", archive.damaged)
 
 
 def _is_foreign(part: str) -> bool:

@@ -116,9 +116,16 @@ MEASUREMENTS: Final = Limit(size=1 << 30)
 """The measurements of a training, a line an iteration; each line has the limits of :data:`TRACE_LINE`."""
 
 REVISION: Final = Limit(size=1 << 28, values=20_000)
-"""The files of a git revision that are read; :data:`REVISION_PATHS` counts all paths that are looked at."""
+"""The files of a git revision that are read."""
 
-REVISION_PATHS: Final = 5_000_000
+REVISION_PATHS: Final = Limit(size=1 << 29, values=5_000_000)
+"""All paths of a git revision, folders too: ``values`` counts paths, ``size`` the bytes of the list of them."""
+
+REVISION_PATH: Final = Limit(size=1 << 20)
+"""One path in that list."""
+
+UNPACKED_PATH: Final = Limit(size=4096, depth=100)
+"""A path in a git revision or another archive that is unpacked; ``depth`` counts its parts."""
 
 PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
 """The connections to the playground's server."""

@@ -3,6 +3,10 @@
 A process that writes into a folder creates a lock file there, ``.tltlc-PID-TOKEN.lock``, and holds a lock on it for as
 long as it has temporary files ``.tltlc-PID-TOKEN-NUMBER.ENDING`` there. The system releases the lock when the process
 ends, even if it is killed. So whoever gets the lock knows that the owner is gone, and may remove its files.
+A temporary folder, :func:`temporary_folder`, has such a name and such a lock, too.
+
+No signal that :mod:`tltlc.cli.interrupts` handles interrupts a function of this module: it could leave a lock file that
+nobody knows of, or stop the removal half-way.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Final
 
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.locking import try_lock
 
 _NAME: Final = re.compile(r"(\.tltlc-[0-9]{1,20}-[0-9a-f]{16})(?:(\.lock)|-[0-9]+(?:\.[^.]+)?)")
@@ -49,8 +54,7 @@ class Temporaries:
     def close(self) -> None:
         """Remove what is left, the lock files last: files without a lock file would stay for ever."""
         for path in self._made:
-            with suppress(OSError):
-                path.unlink(missing_ok=True)
+            _remove(path)
         for folder, (beginning, lock) in self._owned.items():
             if lock is not None:
                 _remove_lock(folder / f"{beginning}.lock", lock)
@@ -68,10 +72,35 @@ def temporaries() -> Iterator[Temporaries]:
         made.close()
 
 
-def remove_abandoned(folder: Path) -> None:
-    """Remove the temporary files in a folder whose owners are gone; what cannot be removed stays.
+@contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """Within, there is a folder that only this user can read; at the end, it is removed with all that is in it.
 
-    Only regular files with names of our own are touched, and no link is followed.
+    If the process is killed, the next one that makes such a folder removes it. Error: TLT0005, there is no room for it.
+    """
+    # Loaded late: both take long.
+    import tempfile
+
+    with temporaries() as made:
+        try:
+            folder = made.path(Path(os.path.realpath(tempfile.gettempdir()), "folder"), "")
+            folder.mkdir(mode=0o700)
+        except OSError as error:
+            raise _no_folder(error) from None
+        yield folder
+
+
+def _no_folder(error: OSError) -> TltlError:
+    title = f"cannot make a temporary folder: {(error.strerror or str(error)).lower()}"
+    return TltlError(
+        [Diagnostic("TLT0005", title, help="make room, or set TMPDIR to a folder that you may write into")]
+    )
+
+
+def remove_abandoned(folder: Path) -> None:
+    """Remove the temporary files and folders in a folder whose owners are gone; what cannot be removed stays.
+
+    Only regular files with names of our own are touched, and folders of this user; no link is followed.
     """
     with suppress(OSError):
         names = list(filter(None, (_NAME.fullmatch(entry.name) for entry in os.scandir(folder))))
@@ -94,12 +123,28 @@ def _remove_of(folder: Path, beginning: str, names: list[str]) -> None:
         return
     try:
         for name in names:
-            if _is_file(folder / name):
-                (folder / name).unlink(missing_ok=True)
+            _remove(folder / name)
     except BaseException:
         file.close()
         raise
     _remove_lock(lock, file)
+
+
+def _remove(path: Path) -> None:
+    """Remove a temporary file, or a temporary folder of this user; what cannot be removed stays."""
+    with suppress(OSError):
+        if _is_file(path):
+            path.unlink(missing_ok=True)
+        elif _is_own_folder(path):
+            import shutil
+
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _is_own_folder(path: Path) -> bool:
+    # Folders are made without an ending.
+    found = path.lstat()
+    return stat.S_ISDIR(found.st_mode) and not path.suffix and (os.name == "nt" or found.st_uid == os.getuid())
 
 
 def _open_lock(path: Path) -> IO[bytes] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +11,9 @@ import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
 from tests.diff.test_breaking import git, needs_git, repository  # noqa: F401
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.diff import git as revisions
+from tltlc.limits import Limit
 
 Run = Callable[..., Outcome]
 
@@ -116,7 +119,7 @@ def test_a_tree_of_billions_of_paths_is_refused(
     top = tree((PLAIN, b"x", stored("blob", b"")))
     for _ in range(10):
         top = tree(*((FOLDER, b"%02d" % number, top) for number in range(10)))
-    monkeypatch.setattr(revisions, "REVISION_PATHS", 1000)
+    monkeypatch.setattr(revisions, "REVISION_PATHS", Limit(size=1 << 20, values=1000))
     done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
     assert (done.status, done.out) == (3, "")
     assert done.err == (
@@ -140,3 +143,67 @@ def test_specs_that_are_too_large_together_are_refused(inside: Path, tltlc: Run)
     done = tltlc("breaking", "specs/leave.tltl", "--against", name)
     assert done.status == 3
     assert "the revision `bomb` holds more than 256 MiB of specs and artefacts" in done.err
+
+
+def nested(name: bytes, levels: int, top: bytes) -> bytes:
+    """A tree in as many folders, each of which has that name."""
+    for _ in range(levels):
+        top = tree((FOLDER, name, top))
+    return top
+
+
+def doubled(levels: int, names: tuple[bytes, bytes], top: bytes) -> bytes:
+    """A tree of two to the power of ``levels`` paths."""
+    for _ in range(levels):
+        top = tree(*((FOLDER, name, top) for name in names))
+    return top
+
+
+@pytest.mark.parametrize("kind", ["empty", "long"])
+def test_folders_without_end_are_refused(inside: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch, kind: str) -> None:  # noqa: F811
+    """Folders without any file, and few paths that are long each: neither is a matter of the number of files."""
+    monkeypatch.setattr(revisions, "REVISION_PATHS", Limit(size=1 << 20, values=1000))
+    if kind == "empty":
+        top = doubled(60, (b"a", b"b"), tree())
+    else:
+        top = doubled(60, (b"a" * 4000, b"b" * 4000), tree((PLAIN, b"x", stored("blob", b""))))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bomb", top))
+    assert (done.status, done.out) == (3, "")
+    what = "paths of more than 1 MiB" if kind == "long" else "more than 1,000 paths"
+    assert f"error[TLT0764]: the revision `bomb` holds {what}" in done.err
+
+
+def test_a_path_of_megabytes_is_read_no_further(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.BytesIO(b"100644 blob 0\t" + bytes([97]) * (50 << 20))
+    with pytest.raises(TltlError, match="TLT0764: the revision `bomb` holds a path of more than 1 MiB"):
+        list(revisions._listed(stream, "bomb"))
+    assert stream.tell() < 2 << 20
+
+
+def test_paths_are_the_same_in_whichever_blocks_they_come() -> None:
+    names = [b"a" * length + b".tltl" for length in (1, 65_000, 65_516, 65_517, 65_518, 200_000, 3)]
+    listed = b"".join(b"100644 blob %d\t%s\0" % (place, name) for place, name in enumerate(names))
+    found = list(revisions._listed(io.BytesIO(listed), "v1"))
+    assert [(file.name, file.path.encode()) for file in found] == [(str(i), name) for i, name in enumerate(names)]
+
+
+@pytest.mark.parametrize(
+    ("name", "levels", "why"),
+    [(b"d", 1000, "which has more than 100 parts"), (b"d" * 200, 60, "which is longer than 4,096 bytes")],
+    ids=["deep", "long"],
+)
+def test_a_path_that_no_folder_can_hold_is_refused(
+    inside: Path,
+    tltlc: Run,  # noqa: F811
+    name: bytes,
+    levels: int,
+    why: str,
+) -> None:
+    top = nested(name, levels, tree((PLAIN, b"leave.tltl", stored("blob", b"spec a = true\n"))))
+    done = tltlc("breaking", "specs/leave.tltl", "--against", revision("bad", top))
+    assert (done.status, done.out) == (3, "")
+    assert "error[TLT0009]: the revision `bad` holds the path `dd" in done.err or "`d/d" in done.err
+    assert why in done.err
+    # The name itself is shortened.
+    assert len(done.err) < 700
+    assert "…" in done.err

@@ -19,8 +19,11 @@ from tltlc.cli.main import end_at_once
 REQUESTS: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 """The signals by which other programs, and a terminal that is closed, ask a process to end."""
 
+_TEMPORARY: Final = "tltlc.temporary"
+"""The module whose functions must not be interrupted."""
+
 _AGAIN_S: Final = 0.05
-"""From an interrupt that came in the middle of an import to the next attempt."""
+"""From an interrupt that came in the middle of such code to the next attempt."""
 
 _PATIENCE_S: Final = 1.0
 """From the first one to the end of the process, if by then nothing but imports has gone on."""
@@ -68,16 +71,19 @@ def _stop_listening() -> None:
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
-    """The handler of a signal: raises KeyboardInterrupt, as soon as no module is being imported.
+    """The handler of a signal: raises KeyboardInterrupt, as soon as no code runs that must not be interrupted.
 
-    Half-imported modules turn it into errors of their own, or lose it.  Imports that take long end with the process.
+    Half-imported modules turn the exception into errors of their own, or lose it; an import that takes long ends with
+    the process.  Temporary files would stay if the code that makes and removes them were interrupted, by a second
+    signal for instance.
     """
-    if not _is_importing(frame):
-        _came.pop(number, None)
-        exits.heard.append(number)
-        raise KeyboardInterrupt
-    if monotonic() - _came.setdefault(number, monotonic()) > _PATIENCE_S:
-        _end(128 + number)
+    if not _is_at_temporary_files(frame):
+        if not _is_importing(frame):
+            _came.pop(number, None)
+            exits.heard.append(number)
+            raise KeyboardInterrupt
+        if monotonic() - _came.setdefault(number, monotonic()) > _PATIENCE_S:
+            _end(128 + number)
     again = Timer(_AGAIN_S, _send_again, (number,))
     again.daemon = True
     again.start()
@@ -93,11 +99,19 @@ def _end(status: int) -> NoReturn:
 
 
 def _is_importing(frame: FrameType | None) -> bool:
+    return any(each.f_code.co_filename.startswith("<frozen importlib") for each in _stack(frame))
+
+
+def _is_at_temporary_files(frame: FrameType | None) -> bool:
+    """Whether temporary files are made or removed now, or a ``with`` that may do so is about to begin or end."""
+    is_at_with = frame is not None and frame.f_globals.get("__name__") == "contextlib"
+    return is_at_with or any(each.f_globals.get("__name__") == _TEMPORARY for each in _stack(frame))
+
+
+def _stack(frame: FrameType | None) -> Iterator[FrameType]:
     while frame is not None:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):
-            return True
+        yield frame
         frame = frame.f_back
-    return False
 
 
 def _send_again(number: int) -> None:

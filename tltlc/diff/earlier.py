@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +13,7 @@ from tltlc.diff import git
 from tltlc.files import exists, is_dir, is_file
 from tltlc.record import record, replace
 from tltlc.source import SourceFile, Span
+from tltlc.temporary import temporary_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -100,7 +100,7 @@ def earlier(against: str, paths: Collection[str]) -> Iterator[Tree]:
     That revision is one of the repository in which the first path lies; its specs, artefacts and project files are
     put into a folder that is gone at the end.
 
-    Errors: TLT0751 neither a folder nor a revision, TLT0730 git is not installed.
+    Errors: TLT0751 neither a folder nor a revision, TLT0730 git is not installed, TLT0005 no temporary folder.
     """
     if is_dir(against):
         yield Tree(Path(against), Path.cwd(), os.path.join(against, ""), is_revision=False)  # noqa: PTH118 (with a slash)
@@ -115,8 +115,7 @@ def earlier(against: str, paths: Collection[str]) -> Iterator[Tree]:
     def is_wanted(path: str) -> bool:
         return path.endswith(SOURCE_ENDINGS) or path.rpartition("/")[2] == _PROJECT or path in named
 
-    with tempfile.TemporaryDirectory(prefix="tltlc-") as folder:
-        root = Path(os.path.realpath(folder))
+    with temporary_folder() as root:
         git.write_out(repository, commit, against, is_wanted, root)
         yield Tree(root, repository, f"{against}:", is_revision=True)
 

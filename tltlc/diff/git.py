@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
-from tltlc.archive import Archive, unpack
+from tltlc.archive import Archive, check_extent, unpack
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.limits import REVISION, REVISION_PATHS
+from tltlc.interrupted import raise_if_interrupted
+from tltlc.limits import REVISION, REVISION_PATH, REVISION_PATHS
 from tltlc.record import record
 
 if TYPE_CHECKING:
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 
 _OF_HOOKS: Final = {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX", "GIT_COMMON_DIR"}
 _PLAIN_FILES: Final = (b"100644", b"100755")
+_MOST_NAMES: Final = 1000
+_LONGEST_NAME: Final = 200
+"""Branches and tags that a misspelt revision is compared with: so many, and so many characters each."""
 
 
 @record
@@ -53,8 +57,9 @@ def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[
     ``revision`` is what messages call the commit.
 
     Raises:
-        TltlError: TLT0751, git does not give the files; TLT0764, they are more than :data:`tltlc.limits.REVISION`
-            allows; TLT0009, a path cannot be a file below the folder; TLT0005, the system refuses to write.
+        TltlError: TLT0751, git does not give the files; TLT0764, they are more than :data:`tltlc.limits.REVISION` and
+            the rows below it allow; TLT0009, a path cannot be a file below the folder; TLT0005, the system refuses to
+            write.
     """
     files = _wanted(_files(repository, commit, revision), is_wanted, revision)
     _check_sizes(repository, files, revision)
@@ -70,12 +75,11 @@ def _archive(revision: str) -> Archive:
 
 
 def _wanted(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: str) -> list[_File]:
-    """Those of the files that are wanted; error TLT0764 where they, or all of them, are too many."""
+    """The files that are wanted; errors: TLT0764, they are too many; TLT0009, a path is too long."""
     wanted: list[_File] = []
-    for count, file in enumerate(files):
-        if count >= REVISION_PATHS:
-            raise _too_large(revision, f"more than {REVISION_PATHS:,} paths")
+    for file in files:
         if is_wanted(file.path):
+            check_extent(file.path, _archive(revision))
             wanted.append(file)
         if len(wanted) > (REVISION.values or 0):
             raise _too_large(revision, f"more than {REVISION.values:,} specs and artefacts")
@@ -85,32 +89,52 @@ def _wanted(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: 
 def _files(repository: Path, commit: str, revision: str) -> Iterator[_File]:
     """The plain files of a commit, as git lists them; the caller may stop before the end.
 
-    Raises TltlError, TLT0751, where git cannot list them all.
+    Raises TltlError: TLT0751, git cannot list them all; TLT0764, they are too many.
     """
     from subprocess import DEVNULL, PIPE, Popen
 
-    command = ["git", "-C", str(repository), "ls-tree", "-r", "-z", "--full-tree", commit]
+    # With folders (-t): nested trees without any file would keep git busy without a word.
+    command = ["git", "-C", str(repository), "ls-tree", "-r", "-t", "-z", "--full-tree", commit]
     with Popen(command, stdin=DEVNULL, stdout=PIPE, stderr=DEVNULL, env=_environment()) as git:
         assert git.stdout is not None
         try:
-            yield from _listed(git.stdout)
-        except GeneratorExit:
+            yield from _listed(git.stdout, revision)
+        except BaseException:
             git.kill()
             raise
         if git.wait() != 0:
+            raise_if_interrupted(git.returncode)
             raise _no_version(f"git cannot list the files of the revision `{revision}`", "repair it: `git fsck`")
 
 
-def _listed(stream: IO[bytes]) -> Iterator[_File]:
-    """The plain files in what ``git ls-tree -r -z`` prints."""
-    rest = b""
+def _listed(stream: IO[bytes], revision: str) -> Iterator[_File]:
+    """The plain files in what ``git ls-tree -r -t -z`` prints; error TLT0764 if that is too much."""
+    for line in _lines(stream, revision):
+        about, _, path = line.partition(b"\t")
+        mode, kind, name = about.split()
+        if mode in _PLAIN_FILES and kind == b"blob":
+            yield _File(name.decode(), os.fsdecode(path))
+
+
+def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
+    """The texts in front of each NUL, in time that grows with their bytes; error TLT0764 if they are too many."""
+    size = count = 0
+    begun: list[bytes] = []
     while block := stream.read(1 << 16):
-        *lines, rest = (rest + block).split(b"\0")
-        for line in lines:
-            about, _, path = line.partition(b"\t")
-            mode, kind, name = about.split()
-            if mode in _PLAIN_FILES and kind == b"blob":
-                yield _File(name.decode(), os.fsdecode(path))
+        size += len(block)
+        if size > REVISION_PATHS.size:
+            raise _too_large(revision, f"paths of more than {REVISION_PATHS.size >> 20} MiB")
+        first, *others = block.split(b"\0")
+        begun.append(first)
+        if sum(map(len, begun)) > REVISION_PATH.size:
+            raise _too_large(revision, f"a path of more than {REVISION_PATH.size >> 20} MiB")
+        if others:
+            lines = (b"".join(begun), *others[:-1])
+            begun = [others[-1]]
+            count += len(lines)
+            if count > (REVISION_PATHS.values or 0):
+                raise _too_large(revision, f"more than {REVISION_PATHS.values:,} paths")
+            yield from lines
 
 
 def _check_sizes(repository: Path, files: Sequence[_File], revision: str) -> None:
@@ -152,16 +176,23 @@ def _run(folder: Path, *arguments: str, given: bytes = b"") -> bytes | None:
 
 
 def _git(folder: Path, *arguments: str, given: bytes = b"") -> CompletedProcess[bytes]:
-    """What became of a git command in a folder; error TLT0730 where there is no git."""
+    """The end of a git command in a folder.
+
+    Raises:
+        TltlError: TLT0730, there is no git.
+        KeyboardInterrupt: a signal has ended git.
+    """
     from subprocess import run
 
     command = ["git", "-C", str(folder), *arguments]
     try:
-        return run(command, input=given, capture_output=True, env=_environment(), check=False)
+        done = run(command, input=given, capture_output=True, env=_environment(), check=False)
     except FileNotFoundError:
         title = "comparing with a revision needs `git`, which is not installed"
         way_out = "install git, or name a folder that holds the old files: `--against DIR`"
         raise TltlError([Diagnostic("TLT0730", title, help=way_out)]) from None
+    raise_if_interrupted(done.returncode)
+    return done
 
 
 def _environment() -> dict[str, str]:
@@ -172,7 +203,8 @@ def _environment() -> dict[str, str]:
 def _way_out(repository: Path, revision: str) -> str:
     from difflib import get_close_matches
 
-    known = (_run(repository, "for-each-ref", "--format=%(refname:short)") or b"").decode(errors="replace").split()
+    listed = _run(repository, "for-each-ref", f"--count={_MOST_NAMES}", "--format=%(refname:short)") or b""
+    known = [name for name in listed.decode(errors="replace").split() if len(name) <= _LONGEST_NAME]
     close = get_close_matches(revision, known, n=1)
     if close:
         return f"did you mean `{close[0]}`?"

@@ -9,9 +9,9 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from html import escape
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Final
+
+from tltlc.temporary import temporary_folder
 
 _PAGE: Final = """\
 <!doctype html>
@@ -28,10 +28,10 @@ _PAGE: Final = """\
 def leading_to(address: str) -> Iterator[str]:
     """Within, the URI of a file that leads to an address, and that only this user can read.
 
-    Raises OSError where there is no room for a temporary file.
+    Raises OSError or TltlError if there is no room for a temporary file.
     """
-    with TemporaryDirectory(prefix="tltlc-", ignore_cleanup_errors=True) as folder:
-        path = Path(folder, "open.html")
+    with temporary_folder() as folder:
+        path = folder / "open.html"
         with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as file:
             file.write(_PAGE.format(address=escape(address)))
         yield path.as_uri()

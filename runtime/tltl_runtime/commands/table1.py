@@ -19,6 +19,7 @@ from tltlc.cli import exits
 from tltlc.cli.numbers import FiniteRange
 from tltlc.cli.report import Report
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interrupted import raise_if_interrupted
 from tltlc.record import record
 
 if TYPE_CHECKING:
@@ -160,3 +161,4 @@ def _train(arguments: list[str]) -> None:
                 training.terminate()
                 training.wait()
             raise
+    raise_if_interrupted(training.returncode)

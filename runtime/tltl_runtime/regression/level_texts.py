@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Final
 
 from tltl_runtime.regression.baseline import Reference, text_sha256
@@ -16,6 +15,7 @@ from tltl_runtime.stealth.levels.place import overlays_of
 from tltlc.archive import Archive, unpack
 from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.files import is_file, read_source
+from tltlc.temporary import temporary_folder
 
 Texts = tuple[tuple[str, str], ...]
 """Names of files, as the files of a :class:`~tltl_runtime.stealth.level.Level` have them, and what is in them."""
@@ -58,10 +58,10 @@ def designed(reference: Reference) -> Level | None:
     # The spec of the level lies elsewhere, and nothing here shows it.
     texts[name] = _SPEC.sub("", texts[name], count=1)
     files = [(file, text.encode("utf-8", "surrogatepass")) for file, text in texts.items()]
-    with TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         try:
-            unpack(Path(folder), files, _BASELINE)
-            return load_level(str(Path(folder, name)), played.variant)
+            unpack(folder, files, _BASELINE)
+            return load_level(str(folder / name), played.variant)
         except TltlError:
             return None
 

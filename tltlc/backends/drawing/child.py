@@ -5,7 +5,12 @@ A layout cannot be interrupted from within, so that it runs where it can be ende
 
 from __future__ import annotations
 
+import signal
 import sys
+
+if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+    # Ctrl-C reaches the parent, too, which recognises this end.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def main() -> None:

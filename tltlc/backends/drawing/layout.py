@@ -13,6 +13,7 @@ from tltlc.backends.dot import Detail, graph
 from tltlc.backends.drawing.shown import shown
 from tltlc.backends.drawing.worded import worded
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.interrupted import raise_if_interrupted
 
 CHILD = Path(__file__).with_name("child.py")
 
@@ -62,12 +63,13 @@ def draw(fspa: Fspa, options: Options, picture_format: str) -> Files:
 
 
 def _laid_out(dot: str, picture_format: str, engine: str, limit_s: float) -> bytes | None:
-    """The picture of a graph, None if the limit was reached first."""
+    """The picture of a graph, None if the limit was reached first; raises KeyboardInterrupt if a signal ended it."""
     command = [sys.executable, str(CHILD), picture_format, engine]
     try:
         done = subprocess.run(command, input=dot.encode(), capture_output=True, timeout=limit_s, check=False)
     except subprocess.TimeoutExpired:
         return None
+    raise_if_interrupted(done.returncode)
     if done.returncode < 0:
         return None  # the process was ended from outside, mostly since it used up the memory or the stack
     if done.returncode or not done.stdout:

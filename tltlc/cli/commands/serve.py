@@ -100,11 +100,12 @@ def _open(address: str, stack: ExitStack) -> None:
     """Have a browser open an address, by a file that stays until ``stack`` ends."""
     from threading import Thread
 
+    from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.playground.opening import leading_to
 
     try:
         file = stack.enter_context(leading_to(address))
-    except OSError:
+    except (OSError, TltlError):
         print("no temporary file can be written: open the address yourself", file=sys.stderr, flush=True)
         return
     # Some browsers return when they are closed, and all of them need an answer before.
