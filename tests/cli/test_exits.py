@@ -217,3 +217,23 @@ def test_a_path_at_which_the_system_does_not_let_us_look_is_no_bug(capsys: pytes
     assert exits.report(error.value) == exits.UNREADABLE
     said = capsys.readouterr().err
     assert said.startswith(f"error[TLT0001]: cannot look at `{'a' * 300}`: file name too long\n  help: ")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs limits of processes")
+@pytest.mark.parametrize("files", [7, 10])
+def test_a_limit_of_the_system_is_no_bug(files: int, inside: Path) -> None:
+    script = f"ulimit -n {files}; exec {sys.executable} -m tltlc serve --port 0"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(["/bin/sh", "-c", script], env=environment, capture_output=True, text=True, timeout=HANG_S)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert done.stderr == (
+        "error[TLT0768]: this process may open no more files\n"
+        "  help: `ulimit -a` shows your limits: raise the one that is too small, or close other programs\n"
+    )
+
+
+def test_what_led_to_an_error_counts(capsys: pytest.CaptureFixture[str]) -> None:
+    error = RuntimeError("no thread")
+    error.__cause__ = MemoryError()
+    assert exits.report(error) == exits.UNREADABLE
+    assert "error[TLT0768]: there is not enough memory" in capsys.readouterr().err

@@ -36,6 +36,7 @@ _STATUS_OF_CODE: Final = {
     "TLT0730": MISSING_COMPONENT,
     "TLT0751": UNREADABLE,
     "TLT0764": UNREADABLE,
+    "TLT0768": UNREADABLE,
     "TLT0776": USAGE,
     "TLT0800": USAGE,
     "TLT0815": USAGE,
@@ -54,6 +55,14 @@ _NO_OUTPUT: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.E
 
 _NO_LOOK: Final = {errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP}
 """What the system may say of a path at which it is only asked whether something is there."""
+
+_NO_ROOM: Final = {
+    errno.EMFILE: "this process may open no more files",
+    errno.ENFILE: "the system can open no more files",
+    errno.EAGAIN: "the system can start no more processes",
+    errno.ENOMEM: "there is not enough memory",
+}
+"""What the system lacks, by what it says to whoever asks for a file or a process."""
 
 _NO_NUMBER: Final = re.compile(r"'([^']*)' is not a valid (float|integer)(?: range)?")
 
@@ -108,6 +117,9 @@ def report(error: Exception | OutOfTimeError) -> int:
     if isinstance(error, OSError) and error.filename is None and error.errno in _NO_OUTPUT:
         _discard_output()
         error = _no_output(error)
+    if not isinstance(error, TltlError) and (lacking := _lacking(error)) is not None:
+        help_ = "`ulimit -a` shows your limits: raise the one that is too small, or close other programs"
+        error = TltlError([Diagnostic("TLT0768", lacking, help=help_)])
     if isinstance(error, OSError) and error.filename is not None and error.errno in _NO_LOOK:
         error = _refused_path(error)
     if isinstance(error, TltlError):
@@ -127,6 +139,17 @@ def is_interrupted(error: BaseException | None) -> bool:
             return True
         error = error.__cause__ or error.__context__
     return False
+
+
+def _lacking(error: BaseException | None) -> str | None:
+    """What the system lacks for this command; None if an exception, or one that led to it, is about something else."""
+    while error is not None:
+        if isinstance(error, MemoryError):
+            return _NO_ROOM[errno.ENOMEM]
+        if isinstance(error, OSError) and error.errno in _NO_ROOM:
+            return _NO_ROOM[error.errno]
+        error = error.__cause__ or error.__context__
+    return None
 
 
 def _usage(error: click.ClickException) -> Diagnostic:
