@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 STDIN: Final = "-"
 """The path that stands for standard input."""
 
+ARTEFACT_ENDING: Final = ".json"
+
 STDIN_NAME: Final = "<stdin>"
 """What standard input is called in messages; it can be named so, too."""
 
@@ -40,7 +42,10 @@ def is_plain_name(text: str) -> bool:
 
 
 def read(path: str) -> tuple[SourceFile, bool]:
-    """The text of a file or of standard input, and whether it is an artefact: no source begins with a brace.
+    """The text of a file or of standard input, and whether it is an artefact.
+
+    An artefact begins with a brace, as no source does. A file ``….json`` is one, too, even if it was cut off at its
+    first byte.
 
     Errors: those of :func:`tltlc.files.read_source`.
     """
@@ -89,7 +94,7 @@ def input_error(name: str, error: OSError | ValueError) -> TltlError:
 
 def _read_stream(stream: BinaryIO, name: str) -> tuple[SourceFile, bool]:
     data = stream.read(MAX_SOURCE_BYTES + 1)
-    if not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
+    if not name.endswith(ARTEFACT_ENDING) and not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
         return decode(data, name), False
     data += stream.read(MAX_ARTEFACT_BYTES + 1 - len(data))
     return decode(data, name, max_bytes=MAX_ARTEFACT_BYTES), True

@@ -132,7 +132,10 @@ def test_several_files_with_one_spec_of_the_same_name(tltlc, inside: Path) -> No
     (inside / "again.tltl").write_text("signal seen: bool\nspec hide = F seen\n")
     done = tltlc("compile", "hide.tltl", "again.tltl", "-t", "json")
     assert done.status == 2
-    assert "`again.tltl` and a file before it both make `hide.fspa.json`: compile them apart, with -o" in done.err
+    assert done.err == (
+        "error[TLT0700]: `hide.tltl` and `again.tltl` both make `hide.fspa.json`\n"
+        "  help: rename one of the specs, or compile each file into a folder of its own, with -o\n"
+    )
     assert sorted(path.name for path in inside.iterdir()) == ["again.tltl", "hide.tltl"]
 
 

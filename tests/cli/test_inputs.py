@@ -1,11 +1,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import HIDE
+from tests.cli.conftest import HIDE, Outcome
 from tltlc.spec_file import split
 
 
@@ -124,3 +125,28 @@ def test_not_every_folder_is_searched_for_a_spec(tltlc, inside: Path) -> None:  
         Path(name, "file.tltl").write_text(f"spec {name}_spec = true\n")
     assert "did you mean `a001/file.tltl:a001_spec`?" in tltlc("check", "a001_spec").err
     assert "did you mean" not in tltlc("check", "a299_spec").err
+
+
+@pytest.mark.parametrize("text", [b"", b"\n", b"\xef\xbb\xbf"])
+@pytest.mark.parametrize("name", ["hide.fspa.json", "hide.tltl.json"])
+@pytest.mark.parametrize("command", ["check", "compile", "test", "explain", "render", "witness", "lint", "fmt"])
+def test_an_artefact_that_was_cut_off_is_an_error(
+    command: str,
+    name: str,
+    text: bytes,
+    inside: Path,
+    tltlc: Callable[..., Outcome],
+) -> None:
+    """A full disk leaves an empty file: a build must not take it for one without specs."""
+    (inside / name).write_bytes(text)
+    done = tltlc(command, name)
+    code, status = ("TLT0722", 2) if command in ("lint", "fmt") else ("TLT0601", 1)
+    assert done.status == status
+    assert f"error[{code}]: `{name}`" in done.err
+
+
+def test_an_empty_source_is_no_error(inside: Path, tltlc: Callable[..., Outcome]) -> None:
+    """A library of nothing, which others may import."""
+    (inside / "empty.tltl").touch()
+    (inside / "hide.tltl").write_text(f'import "empty.tltl"\n{HIDE}')
+    assert tltlc("check", "empty.tltl", "hide.tltl").status == 0

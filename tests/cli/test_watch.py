@@ -119,7 +119,10 @@ def test_two_specs_that_come_to_have_one_name_are_waited_out(inside: Path) -> No
     try:
         running.said()
         _replace(inside / "b.tltl", "signal seen: bool\nspec a = F seen\n")
-        assert "error[TLT0700]: `b.tltl` and a file before it both make `a.fspa.json`" in running.said()
+        said = running.said()
+        assert (
+            "error[TLT0700]: `a.tltl` and `b.tltl` both make `a.fspa.json`\n  help: rename one of the specs\n" in said
+        )
         _replace(inside / "b.tltl", "signal seen: bool\nspec b = G seen\n")
         assert "wrote out/b.fspa.json\n" in running.said()
     finally:
@@ -149,3 +152,29 @@ def test_what_cannot_be_mended_by_a_change_ends_it(process, inside: Path) -> Non
         3,
         "error[TLT0001]: cannot read `none.tltl`: there is no such file",
     )
+
+
+def test_a_file_that_changes_all_the_time_is_compiled_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tltlc import files
+    from tltlc.cli import watching
+
+    log, looks, worked = tmp_path / "log.tltl", [], []
+
+    def changed_meanwhile(_: float) -> None:
+        looks.append(1)
+        assert len(looks) < 100, "it waits for ever"
+        log.write_text("x" * len(looks))
+
+    def work(changed: tuple[str, ...]) -> None:
+        worked.append((len(looks), changed))
+        if len(worked) == 3:
+            raise KeyboardInterrupt
+        files.is_file(str(log))
+
+    monkeypatch.setattr(watching.time, "sleep", changed_meanwhile)
+    with pytest.raises(KeyboardInterrupt):
+        watching.repeat(work)
+    assert [changed for _, changed in worked] == [(), (str(log),), (str(log),)]
+    assert [place for place, _ in worked] == [0, 11, 22]

@@ -145,6 +145,51 @@ def test_what_is_told_wrongly_is_logged_alone(client: Client) -> None:
     )
 
 
+NOTEBOOK = {"uri": "file:///a.ipynb", "version": 1, "notebookType": "jupyter", "cells": []}
+FOLDER = {"uri": "file:///never", "name": "never"}
+UNTIMELY = [
+    told("$/cancelRequest", id=[]),
+    told("$/cancelRequest", id={"a": 1}),
+    told("$/cancelRequest", id=None),
+    told("$/cancelRequest"),
+    told("$/cancelRequest", id="never asked"),
+    {**told("$/cancelRequest"), "params": [1]},
+    told("notebookDocument/didOpen", notebookDocument=NOTEBOOK, cellTextDocuments=[]),
+    told("notebookDocument/didChange", notebookDocument={"uri": "file:///b.ipynb", "version": 1}, change={}),
+    told("notebookDocument/didSave", notebookDocument={"uri": "file:///b.ipynb"}),
+    told("notebookDocument/didClose", notebookDocument={"uri": "file:///b.ipynb"}, cellTextDocuments=[]),
+    told("textDocument/didClose", textDocument={"uri": HERE}),
+    told("textDocument/didSave", textDocument={"uri": HERE}),
+    told("window/workDoneProgress/cancel", token=[]),
+    told("window/workDoneProgress/cancel", token="never"),
+    told("workspace/didChangeWorkspaceFolders", event={"added": [], "removed": [FOLDER]}),
+    told("workspace/didChangeWorkspaceFolders", event={"added": [{"uri": "", "name": ""}], "removed": []}),
+    told("workspace/didChangeConfiguration", settings=[]),
+    told("workspace/didChangeWatchedFiles", changes=[{"uri": "no uri", "type": 2}]),
+    told("workspace/didDeleteFiles", files=[{"uri": "file://[oh/a.tltl"}]),
+    told("$/setTrace", value="loud"),
+    {"jsonrpc": "2.0", "id": [], "result": 1},
+    {"jsonrpc": "2.0", "id": {}, "error": {"code": 1, "message": "x"}},
+    {"jsonrpc": "2.0", "id": None, "error": {"code": 1, "message": "x"}},
+]
+
+
+@pytest.mark.parametrize("message", UNTIMELY, ids=lambda each: json.dumps(each)[17:70])
+def test_nothing_that_is_told_wrongly_is_shown_to_the_user(message: Any, lasting: Client) -> None:
+    before = len(lasting.said)
+    send(lasting, json.dumps(message).encode())
+    assert lives(lasting)
+    shown = [each for each in lasting.said[before:] if str(each.get("method", "")).startswith("window/")]
+    assert shown == []
+
+
+def test_what_cannot_be_cancelled_is_answered_if_it_is_asked(lasting: Client) -> None:
+    send(lasting, json.dumps(asked("$/cancelRequest", id=[])).encode())
+    assert code_of(lasting, 900) == -32602
+    send(lasting, json.dumps(asked("notebookDocument/didClose", a=1)).encode())
+    assert code_of(lasting, 900) == -32600
+
+
 def test_what_comes_before_the_beginning() -> None:
     server, sent = create(), io.BytesIO()
     server.protocol.set_writer(sent, include_headers=False)

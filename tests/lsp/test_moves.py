@@ -71,6 +71,17 @@ def test_imports_lead_where_they_led(moves: dict[str, str], expected: dict[str, 
     assert [each.said for each in workspace.all()] == [()] * 4
 
 
+@pytest.mark.parametrize("name", ['p"q', "p\nq", "p\rq"])
+def test_a_path_that_no_source_can_hold_is_not_written(name: str, tmp_path: Path) -> None:
+    """The import stays as it is, and then has a message."""
+    for path, text in FILES.items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(text, encoding="utf-8")
+    workspace = Workspace()
+    workspace.folders = [str(tmp_path)]
+    assert edits_of_moves([(str(tmp_path / "levels"), str(tmp_path / name))], workspace) == []
+
+
 def test_an_editor_asks_before_it_renames(tmp_path: Path) -> None:
     client = Client(tmp_path, workspace={"fileOperations": {"willRename": True, "didRename": True}})
     (filters,) = {str(each) for each in client.capabilities["workspace"]["fileOperations"].values()}

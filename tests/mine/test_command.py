@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -317,3 +318,16 @@ def test_an_interrupt_shows_what_there_is(
     assert done.status == 130
     assert "interrupted" in done.err
     assert proposals(done)[0]["clauses"] == list(SPEC.clauses)
+
+
+@pytest.mark.parametrize("folder", ['p"q', "p\nq", "p\rq", os.fsdecode(b"p\xff")])
+@pytest.mark.parametrize("output", ["mined.tltl", "-"])
+def test_a_library_that_no_source_can_import_is_refused_before_the_search(
+    folder: str, output: str, recorded: Path, tltlc: Run
+) -> None:
+    (recorded / folder).mkdir()
+    (recorded / folder / "c.tltl").write_text("signal seen: bool\n")
+    done = tltlc("mine", "good", "--predicates", f"{folder}/c.tltl", "-o", output)
+    assert (done.status, done.out) == (2, "")
+    assert "for a quote or a line break in its path: rename it" in done.err
+    assert not (recorded / "mined.tltl").exists()

@@ -194,3 +194,10 @@ def test_the_server_confines_what_it_is_asked(tmp_path: Path, monkeypatch: pytes
             answer = json.loads(ask(server, "POST", "/api", text, JSON)[2])
             assert [(each["code"], each["title"]) for each in answer["diagnostics"]] == refusal(target)
             assert answer["diagnostics"][0]["labels"][0]["start"] == len("import ")
+
+
+@pytest.mark.parametrize("target", ["\0", "a\0.tltl", "a\0b/c.tltl", "below/\0", "../\0"])
+def test_a_path_that_no_system_has_is_no_file(folder: Path, target: str) -> None:
+    """It leads nowhere, and so not out of the folder either."""
+    (code, title), *_ = said(f'import "{target}"\n{SPEC}')
+    assert (code, title) == ("TLT0010", f"there is no file `{target}` beside this one")

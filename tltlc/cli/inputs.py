@@ -11,7 +11,7 @@ from tltlc.cli.settings import Settings, check_libraries, compile_settings
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError, stop_at_errors
 from tltlc.project import Project, project_for
 from tltlc.record import record
-from tltlc.spec_file import STDIN, STDIN_NAME, read, split
+from tltlc.spec_file import ARTEFACT_ENDING, STDIN, STDIN_NAME, read, split
 
 if TYPE_CHECKING:
     from tltlc.automaton.fspa import Fspa
@@ -79,7 +79,7 @@ def check_text(source: SourceFile) -> None:
     """For commands that take source texts alone: error TLT0722 for an artefact, TLT0652 for an automaton of others."""
     if source.text.startswith("HOA:"):
         raise TltlError([_of_another_tool(source)])
-    if source.text.lstrip().startswith("{"):
+    if source.text.lstrip().startswith("{") or source.name.endswith(ARTEFACT_ENDING):
         raise TltlError([no_text(source.name)])
 
 

@@ -15,6 +15,9 @@ from tltlc.resources import OutOfTimeError, bounded
 PAUSE_S: Final = 0.2
 """Between two looks at the files.  Editors replace files in steps: a change counts once a second look finds no more."""
 
+_MOST_LOOKS: Final = 10
+"""So many looks after the first change it counts anyway: some programs write to a file all the time."""
+
 
 def repeat(work: Callable[[tuple[str, ...]], None], listed: Callable[[], Iterable[str]] = tuple) -> NoReturn:
     """Work at once, and again after each change, until something is raised, as Ctrl-C does.
@@ -42,10 +45,11 @@ def _done(work: Callable[[tuple[str, ...]], None], changed: tuple[str, ...]) -> 
 def _changes(
     before: Mapping[str, Stamp], known: frozenset[str], listed: Callable[[], Iterable[str]]
 ) -> tuple[str, ...]:
-    """Wait until files are no longer as they were, and then until they stay as they are."""
+    """Wait until files are no longer as they were, and then until they stay as they are, or for some more looks."""
     found: dict[str, Stamp] = {}
     new: tuple[str, ...] = ()
     due = 0.0
+    looks = 0
     while True:
         time.sleep(PAUSE_S)
         begun = time.monotonic()
@@ -55,7 +59,8 @@ def _changes(
             due = begun + 20 * (time.monotonic() - begun)
         last, found = found, {path: now for path, was in before.items() if (now := stamp(path)) != was}
         found.update({path: stamp(path) for path in new})
-        if found and found == last:
+        looks += bool(found)
+        if found and (found == last or looks > _MOST_LOOKS):
             # A file may have been looked at under several paths: the first is the one that messages use.
             files = {_place(path): path for path in reversed(found)}
             return tuple(path for path in found if path in files.values())

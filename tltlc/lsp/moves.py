@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from os.path import dirname, normpath, relpath
 from pathlib import Path, PurePath
 
+from tltlc.grammar.quoted import quoted
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Import
 from tltlc.lint.rule import Edit
@@ -34,7 +35,7 @@ def _edits(document: Document, moves: Moves) -> Iterator[Edit]:
             folder = dirname(_moved(here, moves))  # noqa: PTH120
             target = _target(declaration, _moved(there, moves), folder, document.project.libraries)
             written = document.source.slice(declaration.target_span)
-            if target != written and not _leads(declaration, folder, _moved(there, moves)):
+            if target is not None and target != written and not _leads(declaration, folder, _moved(there, moves)):
                 yield Edit(declaration.target_span, target)
 
 
@@ -50,12 +51,15 @@ def _leads(declaration: Import, folder: str, there: str) -> bool:
     return declaration.is_path and normpath(PurePath(folder, declaration.target)) == there
 
 
-def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str:
-    """How a file is imported into one of a folder: by its name where it was so and can be, else by its path."""
+def _target(declaration: Import, there: str, folder: str, libraries: tuple[Path, ...]) -> str | None:
+    """How a file is imported into one of a folder: by its name where it was so and can be, else by its path.
+
+    None for a path that no source can hold.
+    """
     if not declaration.is_path:
         for place in (folder, *map(str, libraries)):
             if is_below(there, place):
                 parts = PurePath(there).relative_to(place).with_suffix("").parts
                 if all(part.isidentifier() and part.isascii() and part not in load().words for part in parts):
                     return ".".join(parts)
-    return f'"{PurePath(relpath(there, folder)).as_posix()}"'
+    return quoted(PurePath(relpath(there, folder)).as_posix())

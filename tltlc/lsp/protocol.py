@@ -22,6 +22,7 @@ from tltlc.lsp.frames import Fault, Frame
 LOG: Final = logging.getLogger("tltlc.lsp")
 """Goes to standard error, which editors show in a log of the server."""
 _ANSWERS: Final = {"result", "error"}
+_OF_NOTEBOOKS: Final = "notebookDocument/"
 
 
 class Protocol(LanguageServerProtocol):
@@ -66,6 +67,8 @@ class Protocol(LanguageServerProtocol):
             raise JsonRpcInvalidRequest("this is no message of JSON-RPC 2.0")
         if "method" in message:
             self._check_request(message)
+        elif not _is_id(message.get("id", "")) and message["id"] is not None:
+            raise JsonRpcInvalidRequest("an id is a number or a text")
         elif "id" not in message or not message.keys() & _ANSWERS:
             raise JsonRpcInvalidRequest("this is neither a request nor an answer")
         try:
@@ -86,6 +89,10 @@ class Protocol(LanguageServerProtocol):
         method = message["method"]
         if not isinstance(method, str) or ("id" in message and not _is_id(message["id"])):
             raise JsonRpcInvalidRequest("a method is a text, an id is a number or a text")
+        if method == types.CANCEL_REQUEST and not _cancels(message.get("params")):
+            raise JsonRpcInvalidParams("an id is a number or a text")
+        if method.startswith(_OF_NOTEBOOKS):
+            raise JsonRpcInvalidRequest("notebooks are not supported, as the server has said at its start")
         if method == types.INITIALIZE and self._workspace is not None:
             raise JsonRpcInvalidRequest("the server is initialized already")
         if method not in (types.INITIALIZE, types.EXIT) and self._workspace is None:
@@ -95,6 +102,10 @@ class Protocol(LanguageServerProtocol):
         if self.get_message_type(method) is None:
             # What is unknown may have none, and the library says that it is unknown.
             message.setdefault("params", None)
+
+
+def _cancels(params: Any) -> bool:
+    return isinstance(params, dict) and _is_id(params.get("id"))
 
 
 def _is_id(number: Any) -> bool:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterable, Mapping
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from lsprotocol import types
+from pygls.exceptions import FeatureRequestError
 from pygls.lsp.server import LanguageServer
 
 from tltlc import __version__
@@ -17,11 +18,14 @@ from tltlc.lsp.document import Document
 from tltlc.lsp.kept import kept
 from tltlc.lsp.paths import name_of, path_of
 from tltlc.lsp.positions import UTF_16
-from tltlc.lsp.protocol import Protocol
+from tltlc.lsp.protocol import LOG, Protocol
 from tltlc.lsp.queue import Queue
 from tltlc.lsp.remarks import remark, remark_on_project
 from tltlc.lsp.worker import Worker
 from tltlc.lsp.workspace import Workspace
+
+if TYPE_CHECKING:
+    from pygls.server import ServerErrors
 
 SOON_S: Final = 0.01
 """Seconds from a change to what is said at once: changes that come together are looked at together."""
@@ -71,6 +75,11 @@ class Server(LanguageServer):
             for uri, own in edits.items()
         ]
         return types.WorkspaceEdit(document_changes=[*changes])
+
+    def report_server_error(self, error: Exception, source: ServerErrors) -> None:
+        """Log what a message has led to, and show the user nothing: requests are answered with their errors anyway."""
+        if source is not FeatureRequestError:
+            LOG.error("a message was not understood: %s", error)
 
     # --- changes ------------------------------------------------------------------------------
 

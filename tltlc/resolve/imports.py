@@ -163,8 +163,11 @@ def _is_gone(path: Path) -> bool:
 
 
 def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
-    """Raise TLT0777 for a path that may not be read, whether there is a file or not: that is not said either."""
-    if not may_read(path):
+    """Raise TLT0777 for a path that may not be read, whether there is a file or not: that is not said either.
+
+    A path with a NUL leads nowhere in any system, and so not out of a folder.
+    """
+    if "\0" not in declaration.target and not may_read(path):
         raise ResolutionError(outside(declaration.target, (Label(source, declaration.target_span),)))
 
 
@@ -187,7 +190,7 @@ def _files(folder: Path) -> list[Path]:
         return []
     try:
         return sorted(filter(may_be_file, folder.glob("*.tltl")))
-    except OSError:
+    except (OSError, ValueError):
         return []
 
 

@@ -63,10 +63,13 @@ def command(
                 report.say(f"\n{time.strftime('%H:%M:%S')} changed: {', '.join(changed)}")
             asked = targets_of(target_lists)
             files: Files = {}
+            sources: dict[str, str] = {}
             for opened in _opened(every_source(specs, report), settings, names, report):
                 if not opened.automata and opened.name not in in_folders(specs):
                     report.say(f"{opened.name}: there is no spec in it")
-                _add(files, files_of(opened.automata, asked, opened.project, report), opened.name)
+                made = files_of(opened.automata, asked, opened.project, report)
+                _check_apart(made, opened.name, sources, is_waiting=bool(changed))
+                files |= made
             if report.status == exits.CLEAN:
                 write_and_tell(folder, files, report)
         return report.status
@@ -75,7 +78,7 @@ def command(
         try:
             status = compile_once(changed)
         except click.UsageError as error:
-            # That two specs have one name may be a matter of what was just written.
+            # That two targets write one file may be a matter of what was just written in `tltl.toml`.
             if not changed:
                 raise
             status = exits.report(error)
@@ -110,9 +113,16 @@ def _opened(specs: list[str], settings: Settings, names: tuple[str, ...], report
         yield opened
 
 
-def _add(files: Files, more: Files, source: str) -> None:
-    """Add what a file makes; raises click.UsageError where another has made one of the same name."""
-    for name in more:
-        if name in files:
-            raise click.UsageError(f"`{source}` and a file before it both make `{name}`: compile them apart, with -o")
-    files |= more
+def _check_apart(made: Files, source: str, sources: dict[str, str], *, is_waiting: bool) -> None:
+    """Note in ``sources`` which source makes which file; error TLT0700 if another one has made a file of that name.
+
+    ``is_waiting`` is whether the command goes on with the next change of a file.
+    """
+    from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+
+    for name in made:
+        if name in sources:
+            apart = "" if is_waiting else ", or compile each file into a folder of its own, with -o"
+            title = f"`{sources[name]}` and `{source}` both make `{name}`"
+            raise TltlError([Diagnostic("TLT0700", title, help=f"rename one of the specs{apart}")])
+        sources[name] = source

@@ -127,6 +127,7 @@ def command(
     with Report(format, results=True) as report:
         options = _compile_options(predicates, settings)
         library = None if predicates is None else _library(predicates)
+        imported = _import(library, predicates, output) if library and predicates and output else None
         resolve = ResolveOptions(options.library_dirs, options.params)
         words, evidence, found = gathered(
             _files(traces), _files(counterexamples), library, resolve, _every_second(report)
@@ -142,7 +143,7 @@ def command(
         if not proposals:
             report.add((_nothing(evidence, whole=whole),))
         elif output is not None:
-            _write(output, proposals, evidence, search, words, predicates, report)
+            _write(output, proposals, evidence, search, words, imported, report)
         if as_json:
             print(
                 json.dumps(
@@ -290,21 +291,14 @@ def _write(
     evidence: Evidence,
     search: Search,
     words: Words,
-    predicates: str | None,
+    imported: str | None,
     report: Report,
 ) -> None:
-    """Write the proposals as a source file, or print it."""
-    from tltlc.files import is_same
+    """Write the proposals as a source file, or print it; ``imported`` is the line that imports their library."""
     from tltlc.fmt import format_text
     from tltlc.mine.written import declarations, source_text
     from tltlc.writing import write_file
 
-    if predicates and is_same(path, predicates):
-        raise click.UsageError(f"`{predicates}` would be written over: give -o another name")
-    imported = None
-    if predicates is not None:
-        is_file = words.library.name == predicates
-        imported = _import(predicates, path) if is_file else f"import {predicates}\n"
     preamble = declarations(proposals, words, imported)
     text = format_text(source_text(proposals, evidence, search.bits, preamble))
     if is_stdout(path):
@@ -314,13 +308,26 @@ def _write(
         report.say(f"wrote {path}")
 
 
-def _import(library: str, path: Path) -> str:
-    """The line that imports a library from a file that is to be at ``path``."""
+def _import(library: SourceFile, predicates: str, path: Path) -> str:
+    """The line that imports a library, or the file of that path, into a file that is to be at ``path``.
+
+    Raises click.UsageError where there can be no such line, or the file would be written over.
+    """
     import os
 
+    from tltlc.files import is_same
+    from tltlc.grammar.quoted import quoted
+
+    if library.name != predicates:
+        return f"import {predicates}\n"
+    if is_same(path, predicates):
+        raise click.UsageError(f"`{predicates}` would be written over: give -o another name")
     try:
-        relative = os.path.relpath(library, path.parent)
+        relative = os.path.relpath(predicates, path.parent)
     except ValueError:
         # Another drive of Windows.
-        relative = str(Path(library).absolute())
-    return f'import "{Path(relative).as_posix()}"\n'
+        relative = str(Path(predicates).absolute())
+    target = quoted(Path(relative).as_posix())
+    if target is None:
+        raise click.UsageError(f"no file can import `{relative}`, for a quote or a line break in its path: rename it")
+    return f"import {target}\n"
