@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tltlc
-from tests.lint.helpers import codes, mended
+from tests.lint.helpers import codes, found, mended
 from tltlc.grammar.parser import parse
 
 SPEC = "spec s = F a\n"
@@ -65,6 +65,17 @@ BLOCK = "spec s {\n    reach a\n}\n"
             "signal a: bool\nsignal b: bool\n" + NO_LIMIT + BLOCK,
             "signal a: bool\n" + NO_LIMIT + BLOCK,
         ),
+        # It stays, too, where it stands in the documentation of what goes.
+        ("/// Old.\n" + NO_LIMIT + "import core\nsignal a: bool\n" + BLOCK, NO_LIMIT + "signal a: bool\n" + BLOCK),
+        (
+            "/// Old.\n" + NO_LIMIT + "/// Older.\nsignal b: bool\nsignal a: bool\n" + BLOCK,
+            NO_LIMIT + "signal a: bool\n" + BLOCK,
+        ),
+        # Of two statements of one line one stays.
+        (
+            "signal a: bool\n/// Old.\n" + NO_LIMIT + "signal b: bool " + BLOCK,
+            "signal a: bool\n" + NO_LIMIT + BLOCK,
+        ),
         # A comment on the whole file stays one.
         (NO_LIMIT + "signal b: bool\nsignal a: bool\n" + BLOCK, NO_LIMIT + "signal a: bool\n" + BLOCK),
     ],
@@ -112,6 +123,42 @@ def modules(draw: st.DrawFn) -> str:
     specs = [f"spec s{number} = {formula}\n" for number, formula in enumerate(formulas)]
     block = "spec block {\n    " + "\n    ".join(clauses) + "\n}\n"
     return "".join(map("".join, zip(order, gaps, strict=True))) + "\n".join([*specs, block])
+
+
+ALLOWS = tuple(f"// tltlc: allow {code}" for code in ("TLT0419", "TLT0418", "TLT0421", "TLT0422", "TLT0425"))
+PIECES = (
+    *("import core", "import core (less)", "import stealth", "signal a: bool", "signal b: bool", "signal c: bool"),
+    *("entity x, y", "param most: number in [1, 9] = 5", "let soon = F a", "let late = F c"),
+    *("spec s = F a", "spec r = F a & F a", "spec block {\n    reach a\n    reach a\n}"),
+    "spec other {\n    // tltlc: allow TLT0425\n    reach a\n    reach a  // tltlc: allow TLT0423\n}",
+)
+
+
+@st.composite
+def commented(draw: st.DrawFn) -> str:
+    """A file with documentation, comments, and comments that allow something, in all places."""
+    order = draw(st.permutations(PIECES))
+    lines = st.lists(st.sampled_from(("/// Documented.", "// tltlc: a remark", "", *ALLOWS)), max_size=3)
+    text = ""
+    for piece in order:
+        text += "".join(f"{line}\n" for line in draw(lines))
+        text += piece + draw(st.sampled_from(("\n", " ", f"  {ALLOWS[0]}\n", f"  {ALLOWS[2]}\n")))
+    return text
+
+
+def remarks(text: str) -> set[tuple[str, str, str]]:
+    """What is said of a text: the code, the title, and the words it is about."""
+    said = [each.diagnostic for each in found(text)]
+    return {(each.code, each.title, each.labels[0].source.slice(each.labels[0].span)) for each in said}
+
+
+@settings(deadline=None, max_examples=25)
+@given(commented())
+def test_fixes_keep_every_comment_that_allows_something(text: str) -> None:
+    """What was silenced stays silenced."""
+    silenced = remarks(text.replace("// tltlc: allow", "// tltlc, allow")) - remarks(text)
+    after = remarks(mended(text).source.text)
+    assert not silenced & after
 
 
 @settings(deadline=None)

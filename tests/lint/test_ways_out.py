@@ -52,5 +52,12 @@ def test_what_leaves_as_much_to_be_mended_is_no_way_out() -> None:
 
 
 def test_a_fix_is_named_by_what_it_does() -> None:
-    found = lint(SourceFile("x.tltl", "import core\nsignal a: bool\nentity e\nspec x = F a"))
-    assert [each.title for each in of_findings(found)] == ["Remove the import", "Remove it"]
+    source = SourceFile("x.tltl", "import core\nsignal a: bool\nentity e\nspec x = F a")
+    assert [each.title for each in of_findings(lint(source), parse(source)[0])] == ["Remove the import", "Remove it"]
+
+
+def test_a_fix_keeps_the_comments_that_allow_something() -> None:
+    allow = "// tltlc: allow TLT0419\n"
+    source = SourceFile("x.tltl", f"/// Old.\n{allow}import core\nsignal a: bool\nspec x {{\n    reach a\n}}\n")
+    (way_out,) = of_findings(lint(source), parse(source)[0])
+    assert after(source.text, way_out) == f"{allow}signal a: bool\nspec x {{\n    reach a\n}}\n"

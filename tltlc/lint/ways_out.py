@@ -9,9 +9,11 @@ from itertools import islice
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.allowed import spoken_of
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Import, Module
 from tltlc.lint.rule import Edit, Finding
+from tltlc.lint.scopes import keeping_scopes
 from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
@@ -34,13 +36,15 @@ class WayOut:
     edits: tuple[Edit, ...]
 
 
-def of_findings(found: Iterable[Finding]) -> Iterator[WayOut]:
-    """The fixes of rules, as ``tltlc lint --fix`` applies them."""
+def of_findings(found: Iterable[Finding], module: Module) -> Iterator[WayOut]:
+    """The fixes of rules in a module, as ``tltlc lint --fix`` applies them: comments keep what they allow."""
+    has_comments = bool(spoken_of(module))
     for finding in found:
-        if finding.fix:
+        edits = keeping_scopes(module, finding.fix) if finding.fix and has_comments else finding.fix
+        if edits:
             # "remove it, or use it": the second is left to whoever writes.
             way_out = (finding.diagnostic.help or "mend it").splitlines()[0].partition(", or ")[0]
-            yield WayOut(f"{way_out[0].upper()}{way_out[1:]}", finding.diagnostic, finding.fix)
+            yield WayOut(f"{way_out[0].upper()}{way_out[1:]}", finding.diagnostic, edits)
 
 
 def of_messages(told: Iterable[Diagnostic], module: Module, errors: Errors) -> Iterator[WayOut]:

@@ -41,7 +41,7 @@ def actions(
             edit=edit_of({uri: [text_edit(document.source, edit, encoding) for edit in way_out.edits]}),
             is_preferred=True,
         )
-        for way_out in (*of_findings(near), *of_messages(told, document.module, errors))
+        for way_out in (*of_findings(near, document.module), *of_messages(told, document.module, errors))
     ]
 
 

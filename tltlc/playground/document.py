@@ -67,7 +67,7 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     remarks = levelled(findings(seen), project.lint)
     results = run_tests(seen.program, (each.fspa for each in seen.specs))
     said = [*(each.diagnostic for each in remarks), *(result.failure for result in results if result.failure)]
-    found.update(_told(said, source, list(of_findings(remarks[:MOST_MESSAGES]))))
+    found.update(_told(said, source, list(of_findings(remarks[:MOST_MESSAGES], seen.module))))
     found["specs"] = [each.spec.name for each in seen.specs]
     found["tests"] = [
         {"title": result.test.title, "spec": result.test.spec, "passed": result.passed} for result in results
