@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+import tracemalloc
 from collections.abc import Sequence
 from pathlib import Path
 from random import Random
@@ -14,6 +15,7 @@ from tests.hoa.files import Automaton, Condition, Shape, some_automaton, written
 from tltlc import backends
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.comparison import are_equivalent
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.files import read_source
 from tltlc.hoa.load import ImportOptions, load
 from tltlc.record import replace
@@ -274,3 +276,21 @@ def test_every_terminal_has_words_for_messages() -> None:
 
     patterns = [each.name for each in reader._parser().terminals if each.pattern.type == "re"]
     assert set(patterns) - {"__IGNORE_0"} <= set(reader._NAMES)
+
+
+def test_the_messages_on_many_names_take_linear_memory_and_name_their_places() -> None:
+    count = 3_000
+    names = " ".join(f'"n{number}"' for number in range(count))
+    head = f"HOA: v1\nStates: 1\nStart: 0\nAP: {count} {names}\nAcceptance: 1 Inf(0)\n"
+    source = SourceFile("x.hoa", f"{head}--BODY--\nState: 0\n[t] 0 {{0}}\n--END--\n")
+    tracemalloc.start()
+    try:
+        with pytest.raises(TltlError) as raised:
+            load(source, PROPOSITIONS, ImportOptions())
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert most < 30_000_000
+    labels = [message.labels[0] for message in raised.value.diagnostics]
+    assert [label.source for label in labels] == [source] * count
+    assert [source.slice(label.span) for label in labels] == [f"n{number}" for number in range(count)]

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.resolve.helpers import good, only, resolved, write
+from tests.calls import calls
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.spec import Spec
 
@@ -144,3 +145,9 @@ def test_the_standard_library_is_suggested_by_what_its_files_declare() -> None:
     assert library_with("near") == "spatial"
     assert library_with("nea") is None
     assert library_with("no_such_name") is None
+
+
+def test_the_standard_library_is_read_once_for_all_unknown_names() -> None:
+    library_with("near")
+    work = calls(lambda: [library_with(f"no_such_name_{number}") for number in range(1_000)])
+    assert work < 20_000

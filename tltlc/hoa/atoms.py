@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, stop_at_errors
 from tltlc.grammar.parser import parse
@@ -11,7 +11,7 @@ from tltlc.record import replace
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import FormulaOf, resolve_atoms
 from tltlc.resolve.spec import Vocabulary
-from tltlc.source import SourceFile
+from tltlc.source import SourceFile, Span
 
 
 def vocabulary_of(
@@ -28,14 +28,18 @@ def vocabulary_of(
     module, found = parse(library)
     stop_at_errors(found)
     given = _by_name(hoa, given)
-    # Blanks up to a name, so that places in it are those in the file.
-    names = [SourceFile(hoa.source.name, " " * atom.span.start + hoa.source.slice(atom.span)) for atom in hoa.atoms]
     written = [
-        SourceFile(f"--atom {atom.text}", given[atom.text]) if atom.text in given else name
-        for atom, name in zip(hoa.atoms, names, strict=True)
+        SourceFile(f"--atom {atom.text}", given[atom.text])
+        if atom.text in given
+        # Unlike the name of the file, this name differs for each place: otherwise messages would be taken for one.
+        else SourceFile(f"{hoa.source.name}:{atom.span.start}", hoa.source.slice(atom.span))
+        for atom in hoa.atoms
     ]
     words, formula_of, more = resolve_atoms(module, written, options)
-    found += tuple(_in_file(each, names, hoa.source) for each in more)
+    starts = {
+        source.name: atom.span.start for source, atom in zip(written, hoa.atoms, strict=True) if atom.text not in given
+    }
+    found += tuple(_in_file(each, starts, hoa.source) for each in more)
     stop_at_errors(found)
     assert words is not None
     return words, formula_of, found
@@ -65,13 +69,19 @@ def _unknown(hoa: Hoa, name: str) -> Diagnostic:
     return Diagnostic("TLT0655", f"`{hoa.source.name}` has no atomic proposition `{name}`", help=way_out)
 
 
-def _in_file(message: Diagnostic, names: Sequence[SourceFile], source: SourceFile) -> Diagnostic:
-    """A message that speaks of a name in the file alone, speaking of the whole file."""
-    if not message.labels or message.labels[0].source not in names:
+def _in_file(message: Diagnostic, starts: Mapping[str, int], source: SourceFile) -> Diagnostic:
+    """A message that speaks of a name in the file alone, speaking of the whole file.
+
+    ``starts`` is where each such name begins, by the name of its source.
+    """
+    if not message.labels or message.labels[0].source.name not in starts:
         return message
 
     def placed(label: Label) -> Label:
-        return replace(label, source=source) if label.source in names else label
+        start = starts.get(label.source.name)
+        if start is None:
+            return label
+        return replace(label, source=source, span=Span(label.span.start + start, label.span.end + start))
 
     mapped = f'say which predicate it is: `--atom "{message.labels[0].source.text.strip()}=…"`'
     # Other advice is for whoever wrote the formula.

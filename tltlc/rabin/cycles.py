@@ -44,10 +44,10 @@ def decomposition(edges: Iterable[Edge], clauses: Sequence[Clause], work: Work) 
     def node(some: Edges) -> Node:
         nonlocal count
         index, count = count, count + 1
-        accepted = _accepts(some, clauses)
+        accepted = _accepts(some, clauses, work)
         inside = (rejecting_parts if accepted else accepting_parts)(some, clauses, work)
-        greatest = [each for each in inside if not any(each < other for other in inside)]
-        greatest = sorted(dict.fromkeys(greatest), key=lambda each: sorted(map(order.__getitem__, each)))
+        greatest = _greatest(inside, work)
+        greatest = sorted(greatest, key=lambda each: sorted(map(order.__getitem__, each)))
         below = tuple(node(each) for each in greatest)
         states = frozenset(state for source, target, _ in some for state in (source, target))
         return Node(index, some, states, accepted, below)
@@ -55,7 +55,19 @@ def decomposition(edges: Iterable[Edge], clauses: Sequence[Clause], work: Work) 
     return node(frozenset(order))
 
 
-def _accepts(edges: Edges, clauses: Sequence[Clause]) -> bool:
+def _greatest(sets: Sequence[Edges], work: Work) -> list[Edges]:
+    """The sets that lie in no other one, each once."""
+    distinct = sorted(dict.fromkeys(sets), key=len, reverse=True)
+    found: list[Edges] = []
+    for some in distinct:
+        work.spend(1 + len(found))
+        if not any(some < other for other in found):
+            found.append(some)
+    return found
+
+
+def _accepts(edges: Edges, clauses: Sequence[Clause], work: Work) -> bool:
+    work.spend(len(edges) + len(clauses))
     marks = marks_of(edges)
     return any(clause.accepts(marks) for clause in clauses)
 
@@ -67,6 +79,7 @@ def marks_of(edges: Iterable[Edge]) -> Marks:
 
 def accepting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list[Edges]:
     """The accepted sets inside that are greatest for a clause."""
+    work.spend(len(edges) * len(clauses))
     return [
         part
         for clause in clauses
@@ -85,12 +98,14 @@ def rejecting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list
         if some in seen:
             continue
         seen.add(some)
+        work.spend(len(some) + len(clauses))
         marks = marks_of(some)
         met = next((clause for clause in clauses if clause.accepts(marks)), None)
         if met is None:
             found[some] = None
             continue
         for mark in met.infs:
+            work.spend(len(some))
             stack += parts((edge for edge in some if mark not in edge[2]), work)
     return list(found)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
@@ -71,14 +72,22 @@ def standard_library() -> Path:
 
 
 def library_with(name: str) -> str | None:
-    """The standard library that declares a name, to suggest its import; reads the files, so only for messages."""
+    """The standard library that declares a name, to suggest its import."""
+    return _names_of_libraries().get(name)
+
+
+@lru_cache(maxsize=1)
+def _names_of_libraries() -> Mapping[str, str]:
+    """For each name, the first standard library that declares it; reads the files, so only for messages."""
     import re
 
-    pattern = re.compile(rf"^(?:predicate|signal|param|let)\s+{re.escape(name)}(?![A-Za-z0-9_.])", re.MULTILINE)
+    declared = re.compile(r"^(?:predicate|signal|param|let)\s+([A-Za-z_][A-Za-z0-9_]*)(?![A-Za-z0-9_.])", re.MULTILINE)
+    found: dict[str, str] = {}
     for path in _files(standard_library()):
-        if not path.stem.endswith("_tests") and pattern.search(read_source(path, _shown(path)).text):
-            return path.stem
-    return None
+        if not path.stem.endswith("_tests"):
+            for match in declared.finditer(read_source(path, _shown(path)).text):
+                found.setdefault(match[1], path.stem)
+    return found
 
 
 class _Visit:

@@ -1,0 +1,57 @@
+"""The alternating cycle decomposition counts all that it does, so that a budget ends it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.calls import calls
+from tltlc.rabin.cycles import Edge, decomposition
+from tltlc.rabin.products import telling_apart
+from tltlc.rabin.skeleton import Clause, Marks
+from tltlc.rabin.work import OutOfWork, Work
+
+NONE: Marks = frozenset()
+SIZE = 200
+BUDGET = 20_000
+MOST_CALLS = 20 * BUDGET
+
+
+def ring(marks: Marks) -> list[Edge]:
+    """A cycle whose edges have these marks."""
+    return [(state, (state + 1) % SIZE, marks) for state in range(SIZE)]
+
+
+def spends(edges: list[Edge], clauses: list[Clause]) -> int:
+    """The calls of a decomposition that runs out of its budget."""
+
+    def work() -> None:
+        with pytest.raises(OutOfWork):
+            decomposition(edges, clauses, Work(BUDGET))
+
+    return calls(work)
+
+
+def test_clauses_that_no_edge_is_left_for_are_counted() -> None:
+    clauses = [Clause(frozenset((0,)), frozenset((number,))) for number in range(1, 20_000)]
+    assert spends(ring(frozenset((0,))), clauses) < MOST_CALLS
+
+
+def test_sets_that_are_rejected_are_counted() -> None:
+    marks = frozenset(range(2_000))
+    clauses = [Clause(NONE, frozenset(range(2_000)))] * 1_000
+    assert spends(ring(marks), clauses) < MOST_CALLS
+
+
+def test_a_comparison_counts_clauses_that_no_edge_is_left_for() -> None:
+    one = [Clause(frozenset((0,)), frozenset((number,))) for number in range(1, 20_000)]
+
+    def work() -> None:
+        with pytest.raises(OutOfWork):
+            telling_apart(
+                [(0, 0)],
+                lambda both: [(((both[0] + 1) % SIZE, 0), frozenset((0,)))],
+                [(one, [])],
+                Work(BUDGET),
+            )
+
+    assert calls(work) < MOST_CALLS
