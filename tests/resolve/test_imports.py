@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.resolve.helpers import good, only, resolved, write
 from tests.calls import calls
+from tests.resolve.helpers import good, only, resolved, write
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.spec import Spec
 
