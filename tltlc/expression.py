@@ -81,3 +81,24 @@ def nodes(expression: Expression | Condition) -> Iterator[Expression | Condition
             stack.append(node.otherwise)
             for condition, value in reversed(node.cases):
                 stack += (value, condition)
+
+
+def depth(expression: Expression | Condition) -> int:
+    """How many operators stand in each other: 0 for a number or a signal.  Shared parts are looked at once a level."""
+    found, level = -1, {id(expression): expression}
+    while level:
+        found += 1
+        level = {id(part): part for node in level.values() for part in parts(node)}
+    return found
+
+
+def most_parts(expression: Expression | Condition) -> int:
+    """The most cases that a ``when`` has in an expression, or the most arguments that an operator has."""
+    return max(len(node.cases) if isinstance(node, When) else len(parts(node)) for node in nodes(expression))
+
+
+def parts(node: Expression | Condition) -> tuple[Expression | Condition, ...]:
+    """What a node is made of."""
+    if isinstance(node, When):
+        return (*(part for case in node.cases for part in case), node.otherwise)
+    return node.args if isinstance(node, (Op, Condition)) else ()

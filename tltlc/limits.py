@@ -52,6 +52,22 @@ class Process:
     work_s: int
 
 
+@record
+class Arithmetic:
+    """How large an expression may be: ``depth`` counts operators in each other, functions, conditions and ``when`` too.
+
+    ``compared`` is the depth of two such expressions that an atom compares; ``parts`` counts the cases of one ``when``,
+    or the arguments of one function.
+    """
+
+    depth: int
+    compared: int
+    parts: int
+
+
+ARITHMETIC: Final = Arithmetic(depth=100, compared=110, parts=500)
+"""The arithmetic of an atom: all code that walks expressions by recursion has room for it, Python's compiler, too."""
+
 SOURCE: Final = Limit(size=1 << 20)
 """A source text; the grammar has more limits of its own, on words and on nesting."""
 
@@ -67,8 +83,11 @@ SUITE: Final = Limit(size=1 << 20, values=2_000)
 OVERLAYS: Final = 100
 """The overlays of one variant of a level."""
 
-ARTEFACT: Final = Limit(size=1 << 27, depth=900, values=10_000_000)
-"""An artefact, an automaton of another tool, or a run of a training, which holds an artefact."""
+ARTEFACT: Final = Limit(size=1 << 27, depth=400, values=10_000_000)
+"""An artefact, an automaton of another tool, or a run of a training, which holds an artefact.
+
+``depth`` leaves room for :data:`ARITHMETIC`, of which an operator takes three levels of JSON at most.
+"""
 
 REPORT: Final = Limit(size=1 << 27, depth=100, values=10_000_000)
 """A baseline or a record of a training."""

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import itertools
+import tracemalloc
 from typing import Any
 
 import pytest
@@ -8,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.backends.strategies import automata, infinite_automata
+from tests.calls import calls
 from tests.fixtures import cover_and_hide
 from tltlc import compile_text
-from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair
+from tltlc.automaton.fspa import Edge, Fspa, Guard, Pair, State
 from tltlc.backends.artefact import consistency, guards
 from tltlc.backends.artefact.consistency import problems
 from tltlc.expression import Param, Signal
@@ -251,3 +253,29 @@ def test_a_guard_that_covers_too_little_or_too_much_is_found(fspa: Fspa, data: s
         assert messages(damaged)
     if set(other.primes) == set(edge.guard.primes):
         assert not messages(damaged)
+
+
+def test_a_large_group_of_exclusive_atoms_takes_little_memory() -> None:
+    count = 3_000
+    fspa = cover_and_hide()
+    more = tuple(replace(fspa.atoms[0], name=f"a{number}") for number in range(count))
+    fspa = replace(
+        fspa, atoms=(*fspa.atoms, *more), exclusive=(tuple(range(len(fspa.atoms), len(fspa.atoms) + count)),)
+    )
+    tracemalloc.start()
+    try:
+        assert not list(guards.guard_problems(fspa))
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert most < 10_000_000
+
+
+def test_guards_beside_many_exclusive_atoms_are_counted() -> None:
+    fspa = cover_and_hide()
+    more = tuple(replace(fspa.atoms[0], name=f"a{number}") for number in range(200))
+    group = tuple(range(len(fspa.atoms), len(fspa.atoms) + 200))
+    states = tuple(State(number, fspa.states[0].label, False, "pending", None) for number in range(2_000))
+    edges = tuple(Edge(number, number, Guard("alive", (((3, True),),))) for number in range(2_000))
+    fspa = replace(fspa, atoms=(*fspa.atoms, *more), exclusive=(group,), states=states, edges=edges)
+    assert calls(lambda: list(guards.guard_problems(fspa))) < 10 * guards.WORK_LIMIT

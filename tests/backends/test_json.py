@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 import sys
 import unicodedata
+from collections.abc import Callable
 
 import pytest
 from hypothesis import given, settings
@@ -13,11 +14,14 @@ from tests.fixtures import cover_and_hide
 from tltlc import backends
 from tltlc.automaton.fspa import Fspa
 from tltlc.backends.artefact import size as sizes
+from tltlc.backends.artefact.encode import encode
 from tltlc.backends.artefact.layout import WIDTH, layout
 from tltlc.backends.json import read
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.expression import Const, Expression
-from tltlc.limits import Limit
+from tltlc.diff.relation import different_atoms
+from tltlc.expression import Condition, Const, Expression, Op, Signal, When
+from tltlc.expression_python import compile_expressions
+from tltlc.limits import ARITHMETIC, Limit
 from tltlc.record import replace
 from tltlc.resolve.spec import Atom
 
@@ -209,3 +213,71 @@ def test_a_value_stands_on_one_line_exactly_where_it_fits(value: object) -> None
     flat = json.dumps(value, ensure_ascii=False)
     one_line = not isinstance(value, (dict, list)) or not value or len('  "key": ' + flat) < WIDTH
     assert (text.count("\n") == 3) == one_line
+
+
+X: Expression = Signal("health")
+BELOW = Condition("<", (X, Const(0.5)))
+
+
+def nested(level: Callable[[Expression], Expression], count: int) -> Expression:
+    """An expression in which so many levels stand in each other."""
+    found = X
+    for _ in range(count):
+        found = level(found)
+    return found
+
+
+def with_arithmetic(expression: Expression) -> Fspa:
+    fspa = cover_and_hide()
+    first, *others = fspa.atoms
+    return replace(fspa, atoms=(replace(first, expression=expression), *others))
+
+
+LEVELS: dict[str, tuple[int, Callable[[Expression], Expression]]] = {
+    "minus": (1, lambda inner: Op("neg", (inner,))),
+    "left": (1, lambda inner: Op("+", (inner, X))),
+    "right": (1, lambda inner: Op("+", (X, inner))),
+    "power": (1, lambda inner: Op("^", (inner, Const(2.0)))),
+    "otherwise": (1, lambda inner: When(((BELOW, Const(1.0)),), inner)),
+    "case": (1, lambda inner: When(((BELOW, inner),), Const(1.0))),
+    "condition": (2, lambda inner: When(((Condition("<", (inner, X)), Const(1.0)),), Const(0.0))),
+    "not": (3, lambda inner: When(((Condition("not", (Condition("<", (inner, X)),)), X),), X)),
+}
+
+
+@pytest.mark.parametrize("name", LEVELS)
+def test_all_that_reads_an_automaton_has_room_for_the_deepest_arithmetic(name: str) -> None:
+    nodes, level = LEVELS[name]
+    text = emitted(with_arithmetic(nested(level, (ARITHMETIC.compared - 1) // nodes)))
+    one, other = read(text, "x.fspa.json"), read(text, "x.fspa.json")
+    assert one == other
+    assert different_atoms(one, other) == ()
+    assert hash(one.atoms[0].expression) == hash(other.atoms[0].expression)
+    compile_expressions([one.atoms[0].expression], [signal.name for signal in one.signals], {"level_size": 20.0})
+    for target in ("python", "c", "csharp", "gdscript", "javascript", "lua", "rust"):
+        assert backends.emit(target, one)
+
+
+@pytest.mark.parametrize("name", LEVELS)
+def test_arithmetic_that_is_deeper_is_refused(name: str) -> None:
+    nodes, level = LEVELS[name]
+    text = json.dumps(encode(with_arithmetic(nested(level, ARITHMETIC.compared // nodes + 1))))
+    with pytest.raises(TltlError) as caught:
+        read(text, "x.fspa.json")
+    assert caught.value.diagnostics[0].code == "TLT0006"
+
+
+@pytest.mark.parametrize(
+    "wide",
+    [
+        lambda count: Op("min", (X,) * count),
+        lambda count: When(tuple((Condition("<", (X, Const(case / count))), X) for case in range(count)), X),
+    ],
+    ids=["arguments", "cases"],
+)
+def test_one_part_has_a_limit_too(wide: Callable[[int], Expression]) -> None:
+    fspa = read(emitted(with_arithmetic(wide(ARITHMETIC.parts))), "x.fspa.json")
+    compile_expressions([fspa.atoms[0].expression], [signal.name for signal in fspa.signals], {"level_size": 20.0})
+    with pytest.raises(TltlError) as caught:
+        read(emitted(with_arithmetic(wide(ARITHMETIC.parts + 1))), "x.fspa.json")
+    assert caught.value.diagnostics[0].code == "TLT0006"

@@ -18,9 +18,9 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tables import STARTS, load
-from tltlc.limits import WORK
+from tltlc.limits import ARITHMETIC, WORK
 from tltlc.record import replace
-from tltlc.resolve import context, quantities, scope, units
+from tltlc.resolve import context, scope, units
 from tltlc.resolve.predicate_check import cases, check
 from tltlc.source import SourceFile
 
@@ -189,7 +189,8 @@ def test_limits() -> None:
         [files.MAX_SOURCE_BYTES / 2**20, lexer.MAX_TOKENS],
         [nesting.MAX_BRACKETS],
         [nesting.MAX_DEPTH],
-        [quantities.DEEPEST_ARITHMETIC],
+        [ARITHMETIC.depth],
+        [ARITHMETIC.parts],
         [WORK["arithmetic of all atoms"]],
         [context.LARGEST_EXPANSION],
         [context.MOST_EXPANSIONS],

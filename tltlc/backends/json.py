@@ -14,6 +14,8 @@ from tltlc.backends.artefact.place import Path, path_of, span_of
 from tltlc.backends.artefact.size import check_size, least_size
 from tltlc.backends.artefact.validator import validate
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.expression import depth, most_parts
+from tltlc.limits import ARITHMETIC, ARTEFACT
 from tltlc.source import SourceFile, Span
 
 TARGET = Target("json", "the automaton as JSON, for every tool that loads one", (".fspa.json",))
@@ -56,6 +58,7 @@ def read(text: str, name: str) -> Fspa:
     source = SourceFile(name, text)
     try:
         fspa = decode(_document(source))
+        _check_arithmetic(fspa, source)
         found = []
         for problem in problems(fspa):
             found.append(_problem(source, "TLT0604", problem.message, problem.path))
@@ -69,12 +72,23 @@ def read(text: str, name: str) -> Fspa:
     return fspa
 
 
+def _check_arithmetic(fspa: Fspa, source: SourceFile) -> None:
+    """Raise TLT0006 for the first atom whose expression is larger than a spec could have made it."""
+    for index, atom in enumerate(fspa.atoms):
+        path = ("atoms", index, "expression")
+        if depth(atom.expression) > ARITHMETIC.compared:
+            title = f"the arithmetic of `{atom.name}` is more than {ARITHMETIC.compared} operators deep"
+            raise TltlError([_problem(source, "TLT0006", title, path)])
+        if most_parts(atom.expression) > ARITHMETIC.parts:
+            title = f"the arithmetic of `{atom.name}` has a part with more than {ARITHMETIC.parts} cases or arguments"
+            raise TltlError([_problem(source, "TLT0006", title, path)])
+
+
 def _document(source: SourceFile) -> dict[str, Any]:
     """The parsed text, once it is known to be an artefact of this version and to fit the schema."""
     import json
 
     from tltlc.json_text import JsonLimitError, loads
-    from tltlc.limits import ARTEFACT
 
     try:
         document = loads(source.text, ARTEFACT, _no_constant)

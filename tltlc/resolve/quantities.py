@@ -6,8 +6,10 @@ from math import isinf
 from typing import cast
 
 from tltlc.expression import Condition, ConditionOp, Const, When
+from tltlc.expression import depth as depth_of
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Number
+from tltlc.limits import ARITHMETIC
 from tltlc.record import replace
 from tltlc.resolve import functions, units
 from tltlc.resolve.arguments import match
@@ -21,7 +23,6 @@ from tltlc.resolve.spec import Signal
 from tltlc.resolve.units import Dimension
 from tltlc.resolve.values import LOOSEST, Env, Quantity, Unknown, apply, constant
 
-DEEPEST_ARITHMETIC = 100
 _ARITHMETIC = ("+", "-", "*", "/", "^")
 _COMPARISONS = ("<", "<=", ">", ">=")
 
@@ -30,10 +31,10 @@ def quantity(expr: Expr, env: Env, depth: int = 0) -> Quantity:
     """The number that an expression stands for; raises ResolutionError where it is none or its units do not fit."""
     while isinstance(expr, Group):
         expr = expr.inner
-    if depth > DEEPEST_ARITHMETIC:
+    if depth > ARITHMETIC.depth:
         raise _too_deep(expr, env)
     result = _quantity(expr, env, depth + 1)
-    if result.depth > DEEPEST_ARITHMETIC:
+    if result.depth > ARITHMETIC.depth:
         raise _too_deep(expr, env)
     return result
 
@@ -42,7 +43,7 @@ def condition(expr: Expr, env: Env, depth: int = 0) -> tuple[Condition, str]:
     """The condition of a ``when`` and its text; raises ResolutionError."""
     while isinstance(expr, Group):
         expr = expr.inner
-    if depth > DEEPEST_ARITHMETIC:
+    if depth > ARITHMETIC.depth:
         raise _too_deep(expr, env)
     if isinstance(expr, tree.Unary) and expr.op == "not" and expr.bound is None:
         inner, text = condition(expr.operand, env, depth + 1)
@@ -78,6 +79,8 @@ def _quantity(expr: Expr, env: Env, depth: int) -> Quantity:
     if isinstance(expr, Call):
         if expr.name in FUNCTIONS and expr.name not in env.local:
             functions.check_arguments(expr, env)
+            if len(expr.arguments) > ARITHMETIC.parts:
+                raise _too_wide(f"`{expr.name}` has more than {ARITHMETIC.parts} arguments here", expr, env)
             values = tuple(quantity(argument.value, env, depth) for argument in expr.arguments)
             return _applied(expr.name, values, functions.dimension(expr, values, env), expr, env)
         return _named(expr, env, depth)
@@ -211,6 +214,8 @@ def _power(expr: tree.Binary, base: Quantity, exponent: Quantity, env: Env) -> Q
 
 
 def _when(expr: tree.When, env: Env, depth: int) -> Quantity:
+    if len(expr.cases) > ARITHMETIC.parts:
+        raise _too_wide(f"this `when` has more than {ARITHMETIC.parts} cases", expr, env)
     tests: list[tuple[Condition, str]] = []
     values: list[Quantity] = []
     for case in expr.cases:
@@ -218,6 +223,8 @@ def _when(expr: tree.When, env: Env, depth: int) -> Quantity:
         values.append(quantity(case.value, env, depth))
     otherwise = quantity(expr.otherwise, env, depth)
     values.append(otherwise)
+    # What a test compares may be a value that was known before, and deep.
+    deepest = max([*(value.depth for value in values), *(depth_of(test) for test, _ in tests)])
     typical = next((value for value in values if value.dimension is not None), otherwise)
     for value, at in zip(values, [*(case.value for case in expr.cases), expr.otherwise], strict=True):
         same_dimension(typical, value, at, env)
@@ -230,7 +237,7 @@ def _when(expr: tree.When, env: Env, depth: int) -> Quantity:
         *hull(tuple((value.low, value.high) for value in values)),
         " ".join([*texts, f"otherwise: {otherwise.text}"]),
         LOOSEST,
-        1 + max(value.depth for value in values),
+        1 + deepest,
         overflows=any(value.overflows for value in values),
     )
 
@@ -259,8 +266,13 @@ def _too_deep(expr: Expr, env: Env) -> ResolutionError:
     env.context.broken.update(env.context.expanding)
     return problem(
         "TLT0317",
-        f"this arithmetic is more than {DEEPEST_ARITHMETIC} operators deep",
+        f"this arithmetic is more than {ARITHMETIC.depth} operators deep",
         env.scope.source,
         expr.span,
         advice="let the game compute the value and offer it as a signal",
     )
+
+
+def _too_wide(title: str, expr: Expr, env: Env) -> ResolutionError:
+    advice = "let the game compute the value and offer it as a signal"
+    return problem("TLT0317", title, env.scope.source, expr.span, advice=advice)

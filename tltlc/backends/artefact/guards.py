@@ -19,6 +19,10 @@ WORK_LIMIT = 200_000
 """Cube operations after which the rest is left unchecked (about a fifth of a second)."""
 
 
+_BITS_OF_A_STEP = 512
+"""How many atoms a cube operation looks at; one with more counts more."""
+
+
 class _SpentError(Exception):
     """The work limit is reached."""
 
@@ -41,12 +45,14 @@ def guard_problems(fspa: Fspa) -> Iterator[tuple[Path, str]]:
     Indices are taken to be in range.  Large automata are checked up to a fixed amount of work.
     """
     work = _Work()
-    pairs = [(1 << a | 1 << b, 0) for group in fspa.exclusive for a, b in combinations(group, 2)]
     leaving: list[list[int]] = [[] for _ in fspa.states]
     for index, edge in enumerate(fspa.edges):
         leaving[edge.source].append(index)
     cubes: list[list[Cube]] = []
     try:
+        # A pair takes as many bits as there are atoms, and each guard is compared with all of them.
+        work.spend(sum(len(group) ** 2 // 2 for group in fspa.exclusive) * (1 + len(fspa.atoms) // _BITS_OF_A_STEP))
+        pairs = [(1 << a | 1 << b, 0) for group in fspa.exclusive for a, b in combinations(group, 2)]
         for index, edge in enumerate(fspa.edges):
             cubes.append([_cube(prime) for prime in edge.guard.primes])
             message = _guard_problem(edge.guard.primes, cubes[index], pairs, work)
@@ -87,8 +93,10 @@ def _guard_problem(
     for prime, cube in zip(primes, cubes, strict=True):
         if len({atom for atom, _ in prime}) < len(prime):
             return "an implicant names an atom twice"
+        work.spend(1 + len(pairs) // 8)
         if any(_lies_in(cube, pair) for pair in pairs):
             return "an implicant asks for two exclusive atoms at once"
+    work.spend(len(pairs) * len(cubes) // 8)
     uncovered = {pair for pair in pairs if not any(_lies_in(pair, cube) for cube in cubes)}
     whole = [*cubes, *sorted(uncovered)]
     for one, other in combinations(whole, 2):
@@ -122,6 +130,7 @@ def _meet(one: Cube, other: Cube, pairs: Sequence[Cube], work: _Work) -> bool:
     if one[0] & other[1] or one[1] & other[0]:
         return False
     both = (one[0] | other[0], one[1] | other[1])
+    work.spend(len(pairs) // 8)
     return not any(_lies_in(both, pair) for pair in pairs)
 
 
