@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, Final
 
 import torch
@@ -54,8 +54,13 @@ def _check_part(found: object, wanted: object, where: str) -> None:
     elif isinstance(wanted, Mapping) and where.endswith(_NETWORK):
         if all(isinstance(each, Tensor) for each in wanted.values()):
             _check_weights(found, wanted, where)
-    elif isinstance(wanted, (int, float)) and not (_kind(found) == _kind(wanted) and _is_count(found)):
+    elif isinstance(wanted, (int, float)) and not (_kind(found) == _kind(wanted) and _is_limit(found)):
         raise RecordJsonError(f"`{where}` is {found!r:.60}, and a number from 0 on was expected")
+
+
+def _is_limit(value: Any) -> bool:
+    """Whether it is a number from 0 on; a limit that nobody gave is infinite."""
+    return value == inf or _is_count(value)
 
 
 def _is_count(value: Any) -> bool:
