@@ -167,3 +167,14 @@ def test_artefacts_of_sources() -> None:
     one, two = compile_text(text)
     assert is_included(one, two)
     assert separating(two, one) == Trace((frozenset({"a", "b"}),))
+
+
+def test_the_edges_of_a_state_are_put_together_in_pairs() -> None:
+    def goals(count: int) -> Fspa:
+        signals = "".join(f"signal a{number}: bool\n" for number in range(8))
+        return compile_text(f"{signals}spec s = {' & '.join(f'F a{number}' for number in range(count))}\n")[0]
+
+    one, other = goals(7), goals(8)
+    # One after the other, each edge takes a step for all that was put together before, which takes 400,000 steps.
+    assert separating(other, one, work=250_000) is None
+    assert separating(one, other, work=250_000) is not None

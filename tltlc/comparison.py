@@ -82,13 +82,14 @@ class _Product:
         self._pair, self._work = (one, other), work
         impossible = tuple(impossible)
         self._names = _in_order((atom.name for fspa in self._pair for atom in fspa.atoms), impossible)
+        self._place = {name: index for index, name in enumerate(self._names)}
         self._letters: Letters[Any] = Letters(work)
         groups = [[fspa.atoms[each].name for each in group] for fspa in self._pair for group in fspa.exclusive]
-        places = [[self._names.index(name) for name in group] for group in groups]
+        places = [[self._place[name] for name in group] for group in groups]
         # Not True and False, which the table would take for indices of edges.
         self._allowed = at_most_one(self._letters, places, _ALLOWED, _RULED_OUT)
         for literals in impossible:
-            cube = self._cube([(self._names.index(name), holds) for name, holds in literals], _RULED_OUT, _ALLOWED)
+            cube = self._cube([(self._place[name], holds) for name, holds in literals], _RULED_OUT, _ALLOWED)
             self._allowed = self._letters.combined(_if_allowed_by, self._allowed, cube, {})
         self._steps: dict[tuple[int, int], int] = {}
         self._leaving = [_edges_by_source(fspa) for fspa in self._pair]
@@ -178,21 +179,29 @@ class _Product:
         """The index of the edge that a state takes, as a function of the letter."""
         found = self._steps.get((which, state))
         if found is None:
-            fspa, letters = self._pair[which], self._letters
-            place = [self._names.index(atom.name) for atom in fspa.atoms]
-            found = letters.leaf(_NO_EDGE)
-            for index in self._leaving[which][state]:
-                found = letters.combined(max, found, self._taken(index, fspa.edges[index].guard.primes, place), {})
-            self._steps[which, state] = found
+            fspa = self._pair[which]
+            place = [self._place[atom.name] for atom in fspa.atoms]
+            taken = [self._taken(index, fspa.edges[index].guard.primes, place) for index in self._leaving[which][state]]
+            found = self._steps[which, state] = self._greatest(taken)
         return found
 
     def _taken(self, index: int, primes: Iterable[Implicant], place: Sequence[int]) -> int:
         """The index of an edge on letters that meet one of its primes, whose atoms have these places."""
-        guard = self._letters.leaf(_NO_EDGE)
-        for prime in primes:
-            cube = self._cube([(place[atom], holds) for atom, holds in prime], index, _NO_EDGE)
-            guard = self._letters.combined(max, guard, cube, {})
-        return guard
+        return self._greatest(
+            [self._cube([(place[atom], holds) for atom, holds in prime], index, _NO_EDGE) for prime in primes]
+        )
+
+    def _greatest(self, steps: list[int]) -> int:
+        """The greatest value on each letter.
+
+        Neighbours are combined first: small ones with small ones, so that no large one is walked once for each other.
+        """
+        left = steps or [self._letters.leaf(_NO_EDGE)]
+        while len(left) > 1:
+            pairs = zip(left[::2], left[1::2], strict=False)
+            odd = left[-1:] if len(left) % 2 else []
+            left = [*(self._letters.combined(max, one, other, {}) for one, other in pairs), *odd]
+        return left[0]
 
     def _cube(self, literals: Iterable[tuple[int, bool]], inside: Any, outside: Any) -> int:
         """One value where all literals are true, another one elsewhere."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from itertools import combinations
 from typing import TYPE_CHECKING, Final, Literal, Union
 
 from tltlc.diff.values import Apart, apart, meaning
@@ -71,8 +70,13 @@ def named(
 
 def are_exclusive(names: Collection[str], groups: Iterable[Collection[str]]) -> bool:
     """Whether groups of ``exclusive`` say that no two of these atoms hold together, each two in one of them."""
-    pairs = {frozenset(pair) for group in groups for pair in combinations(group, 2)}
-    return all(frozenset(pair) in pairs for pair in combinations(names, 2))
+    wanted = frozenset(names)
+    of_name: dict[str, set[frozenset[str]]] = {name: set() for name in wanted}
+    for group in groups:
+        shared = wanted.intersection(group)
+        for name in shared:
+            of_name[name].add(shared)
+    return all(wanted == frozenset((name,)).union(*shared) for name, shared in of_name.items())
 
 
 def plain(value: Value) -> object:

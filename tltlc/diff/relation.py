@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import combinations
+from itertools import combinations, islice
 from typing import TYPE_CHECKING, Final, Literal
 
 from tltlc.comparison import Literals, Trace, separating
 from tltlc.diff.values import apart, meaning
-from tltlc.rabin.work import DEFAULT_WORK
+from tltlc.rabin.work import DEFAULT_WORK, OutOfWork
 from tltlc.record import record, replace
 
 if TYPE_CHECKING:
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from tltlc.resolve.spec import Vocabulary
 
 Relation = Literal["equivalent", "stricter", "looser", "incomparable"]
+
+_STEPS_OF_A_PAIR: Final = 100
+"""Steps of work that a pair of atoms takes at least of which one excludes the other."""
 
 OF_A: Final = " of A"
 OF_B: Final = " of B"
@@ -79,7 +82,9 @@ def compare(
     one, other = _renamed(a, split, OF_A), _renamed(b, split, OF_B)
     own = _own_groups(one, other)
     groups = _together((*own, *exclusive), {atom.name for fspa in (one, other) for atom in fspa.atoms})
-    never = tuple(_never(groups, own))
+    never = tuple(islice(_never(groups, own), work // _STEPS_OF_A_PAIR + 1))
+    if len(never) > work // _STEPS_OF_A_PAIR:
+        raise OutOfWork
     only_a, only_b = separating(one, other, work, never), separating(other, one, work, never)
     impossible: dict[Literals, None] = {}
     if real and (only_a or only_b):

@@ -80,6 +80,9 @@ def _sum(text: str, spelled: dict[str, Formula]) -> Formula | None:
 
 def _split(text: str, symbol: str) -> Iterator[str]:
     """The parts of a text between symbols that stand in no brackets."""
+    if "(" not in text:
+        yield from text.split(symbol)
+        return
     depth = start = 0
     for place, sign in enumerate(text):
         depth += (sign == "(") - (sign == ")")

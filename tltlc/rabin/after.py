@@ -15,6 +15,13 @@ from tltlc.logic.bounded import counted_down, counted_down_from
 from tltlc.logic.formula import Formula
 from tltlc.rabin.infinite import conjunction, disjunction
 from tltlc.rabin.letters import Letters
+from tltlc.rabin.work import OutOfWork
+
+STEPS_PER_OBLIGATION: Final = 100
+"""The steps of work that each obligation takes which letters lead to from another one.
+
+Where a budget has fewer, it does not suffice to follow them all, so it is of no use to list them first.
+"""
 
 _TEMPORAL: Final = ("U", "W", "X")
 
@@ -37,6 +44,7 @@ class After:
         self._of_formula: dict[Formula, int] = {}
         self._obligations: dict[Formula, int] = {}
         self._of_obligation: dict[int, int] = {FALSE: letters.leaf(FALSE), TRUE: letters.leaf(TRUE)}
+        self._most_reached = letters.work.left // STEPS_PER_OBLIGATION
         self._both: dict[tuple[int, int], int] = {}
         self._either: dict[tuple[int, int], int] = {}
         self._sources: dict[int, Formula] = {FALSE: build.FALSE, TRUE: build.TRUE}
@@ -119,11 +127,25 @@ class After:
 
     def both(self, x: int, y: int) -> int:
         """``and`` on every letter."""
-        return self.letters.combined(self.diagrams.both, x, y, self._both)
+        return self.letters.combined(self._counted(self.diagrams.both), x, y, self._both)
 
     def either(self, x: int, y: int) -> int:
         """``or`` on every letter."""
-        return self.letters.combined(self.diagrams.either, x, y, self._either)
+        return self.letters.combined(self._counted(self.diagrams.either), x, y, self._either)
+
+    def _counted(self, combine: Callable[[int, int], int]) -> Callable[[int, int], int]:
+        """``combine``, which raises OutOfWork where one function of the letter gets too many different values."""
+        reached: set[int] = set()
+        most = self._most_reached
+
+        def counted(one: int, other: int) -> int:
+            result = combine(one, other)
+            reached.add(result)
+            if len(reached) > most:
+                raise OutOfWork
+            return result
+
+        return counted
 
     def of_formula(self, formula: Formula) -> int:
         """What remains of a formula after each letter."""

@@ -1,0 +1,22 @@
+"""Goals in any order: their automaton is given up before all sets of goals that are left are listed."""
+
+from __future__ import annotations
+
+import pytest
+
+from tltlc.logic import formula as build
+from tltlc.rabin.after import STEPS_PER_OBLIGATION, After
+from tltlc.rabin.infinite import infinite_form
+from tltlc.rabin.letters import Letters
+from tltlc.rabin.work import OutOfWork, Work
+
+
+def test_what_letters_lead_to_is_limited_by_the_work_that_is_left() -> None:
+    goals = [build.eventually(build.atom(f"a{number}")) for number in range(40)]
+    formula = infinite_form(build.and_(*goals))
+    most = 1_000
+    work = Work(most * STEPS_PER_OBLIGATION)
+    after = After(formula.atoms(), Letters(work))
+    with pytest.raises(OutOfWork):
+        after.after(after.obligation(formula))
+    assert len(after.letters.atom) < 10 * most
