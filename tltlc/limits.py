@@ -121,7 +121,7 @@ RECORDING: Final = Limit(size=1 << 28, unpacked=1 << 28)
 
 RECORDED_TEXTS: Final[Mapping[str, Limit]] = {
     "meta": Limit(size=1 << 24, depth=100, values=200_000),
-    "artefact": Limit(size=1 << 26, depth=900, values=2_000_000),
+    "artefact": ARTEFACT,
 }
 """The JSON in a recorded episode, unpacked: a file may be a thousand times smaller than what is compressed in it."""
 

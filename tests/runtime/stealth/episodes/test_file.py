@@ -310,7 +310,7 @@ def test_a_bomb_is_not_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("array", ["meta", "artefact"])
-@pytest.mark.parametrize("text", [b"[" + 5_000_000 * b"[]," + b"[]]", b" " * (70 << 20)], ids=["values", "bytes"])
+@pytest.mark.parametrize("text", [b"[" + 10_000_001 * b"[]," + b"[]]", b" " * (130 << 20)], ids=["values", "bytes"])
 def test_a_small_file_that_holds_a_large_text_is_not_parsed(
     episode: Episode, array: str, text: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
