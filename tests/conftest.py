@@ -33,9 +33,15 @@ def pytest_configure() -> None:
     os.environ.update(GIT_CONFIG_GLOBAL=os.devnull, GIT_CONFIG_NOSYSTEM="1")
     # Not even the answers that earlier runs, and tests beside this one, remember.
     os.environ["TLTLC_CACHE_DIR"] = _answers
-    # The background of a shell ignores Ctrl-C, and every process that is started there does.
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Every process that is started in the background of a shell ignores Ctrl-C, and under `nohup` SIGHUP.
+    for name, handler in [
+        ("SIGINT", signal.default_int_handler),
+        ("SIGHUP", signal.SIG_DFL),
+        ("SIGTERM", signal.SIG_DFL),
+    ]:
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, handler)
 
 
 def pytest_unconfigure() -> None:
