@@ -6,7 +6,10 @@ import os
 import shutil
 import signal
 import tempfile
+from collections.abc import Iterator
+from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 # How long an example takes, or how long it takes to draw, says more of what else the machine does than of the code.
@@ -23,6 +26,17 @@ LEFT_OUT = (
 )
 """Variables by which the programs would behave otherwise than the tests expect."""
 
+HANDLERS: dict[signal.Signals, Any] = {
+    getattr(signal, name): handler
+    for name, handler in [
+        ("SIGINT", signal.default_int_handler),
+        ("SIGTERM", signal.SIG_DFL),
+        ("SIGHUP", signal.SIG_DFL),
+    ]
+    if hasattr(signal, name)
+}
+"""The handlers that Python has at its start; processes that tests start inherit them."""
+
 _answers = tempfile.mkdtemp(prefix="tltlc-tests-")
 
 
@@ -34,14 +48,19 @@ def pytest_configure() -> None:
     # Not even the answers that earlier runs, and tests beside this one, remember.
     os.environ["TLTLC_CACHE_DIR"] = _answers
     # Every process that is started in the background of a shell ignores Ctrl-C, and under `nohup` SIGHUP.
-    for name, handler in [
-        ("SIGINT", signal.default_int_handler),
-        ("SIGHUP", signal.SIG_DFL),
-        ("SIGTERM", signal.SIG_DFL),
-    ]:
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is signal.SIG_IGN:
+    for number, handler in HANDLERS.items():
+        if signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, handler)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown() -> Iterator[None]:
+    """Report a test, or an import, that leaves another handler behind: a later test would end the whole process."""
+    yield
+    changed = [number for number, handler in HANDLERS.items() if signal.getsignal(number) != handler]
+    for number in changed:
+        signal.signal(number, HANDLERS[number])
+    assert not changed, f"the handlers of these signals were changed: {', '.join(number.name for number in changed)}"
 
 
 def pytest_unconfigure() -> None:

@@ -30,6 +30,14 @@ def test_an_interrupted_child_is_an_interrupt(status: int) -> None:
         raise_if_interrupted(status)
 
 
+def test_importing_the_layout_process_changes_no_signal() -> None:
+    code = (
+        "import signal; before = signal.getsignal(signal.SIGINT)\n"
+        "import tltlc.backends.drawing.child; assert signal.getsignal(signal.SIGINT) is before"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=HANG_S)
+
+
 @needs_git
 @pytest.mark.parametrize("word", ["rev-parse", "ls-tree", "--batch-check", "--batch"])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import socket
 import sys
 
@@ -17,9 +18,11 @@ def test_where_there_is_no_cluster_one_of_this_machine_is_started_and_ended(monk
     import ray
 
     monkeypatch.setenv("RAY_ADDRESS", "local")
+    before = signal.getsignal(signal.SIGTERM)
     with start_alone(), cluster() as found:
         assert found is ray
         assert ray.is_initialized()
+        assert signal.getsignal(signal.SIGTERM) is before
     assert not ray.is_initialized()
 
 

@@ -8,13 +8,12 @@ from __future__ import annotations
 import signal
 import sys
 
-if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-    # Ctrl-C reaches the parent, too, which recognises this end.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
 
 def main() -> None:
     """Read a DOT text, write the picture."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        # Ctrl-C reaches the parent, too, which recognises this end.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
     import pygraphviz
 
     picture_format, engine = sys.argv[1:]
