@@ -15,6 +15,7 @@ from typing import Any, Final
 import pytest
 
 from tests.waiting import HANG_S, until
+from tltl_runtime.vector.cluster import sigterm_handler_kept
 
 needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed: pip install '.[ray]'")
 
@@ -46,7 +47,7 @@ def own_cluster() -> Iterator[None]:
         patch.setattr("tltl_runtime.vector.ray_workers.TO_START_S", HANG_S)
         patch.setattr("tltl_runtime.vector.cluster._AFTER_THE_FIRST_S", HANG_S)
         patch.setattr("tltl_runtime.evaluation.ray_pool.PATIENCE_S", HANG_S)
-        with start_alone():
+        with start_alone(), sigterm_handler_kept():
             ray.init(
                 address="local",
                 num_cpus=CORES,

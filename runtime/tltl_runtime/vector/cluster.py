@@ -46,7 +46,7 @@ def cluster() -> Iterator[Any]:
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     try:
         _call(os.environ.get("RAY_ADDRESS", ""))
-        with _sigterm_handler_kept():
+        with sigterm_handler_kept():
             ray.init(include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
     except (OSError, ValueError, RuntimeError) as error:
         place = os.environ.get("RAY_ADDRESS", "this machine")
@@ -59,7 +59,7 @@ def cluster() -> Iterator[Any]:
 
 
 @contextmanager
-def _sigterm_handler_kept() -> Iterator[None]:
+def sigterm_handler_kept() -> Iterator[None]:
     """Undo what Ray does to the handler of SIGTERM: the command would end with another status, and clean up nothing."""
     before = signal.getsignal(signal.SIGTERM)
     try:
