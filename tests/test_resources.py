@@ -60,7 +60,13 @@ def test_the_bounds_are_far_away(bounds: tuple[str, ...]) -> None:
     assert (ended.returncode, ended.stderr) == (0, "<stdin>: 6000 specs, nothing to report\n")
 
 
-@pytest.mark.parametrize(("option", "value"), [("--max-cpu", "-1"), ("--max-cpu", "1.5"), ("--max-memory", "nan")])
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [
+        *[("--max-cpu", value) for value in ("-1", "1.5", "9999999999", str(2**62))],
+        *[("--max-memory", value) for value in ("nan", "8589934592", "1e300")],
+    ],
+)
 def test_bounds_are_numbers(option: str, value: str) -> None:
     ended = _run(option, value, "list", "codes")
     assert ended.returncode == 2

@@ -197,7 +197,7 @@ Start here:
 )
 @click.option(
     "--max-cpu",
-    type=WholeRange(min=0),
+    type=WholeRange(min=0, max=10**9),
     metavar="SECONDS",
     default=COMMAND.work_s,
     show_default=True,
@@ -205,7 +205,7 @@ Start here:
 )
 @click.option(
     "--max-memory",
-    type=FiniteRange(min=0),
+    type=FiniteRange(min=0, max=2**20),
     metavar="GIB",
     default=COMMAND.memory / 2**30,
     show_default=True,
