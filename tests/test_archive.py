@@ -75,7 +75,12 @@ def test_plain_names_are_files_on_windows(name: str, tmp_path: Path, monkeypatch
 
 def test_a_name_that_the_system_refuses_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(TltlError, match="TLT0005"):
-        unpack(tmp_path, [("x" * 300, b"")], ARCHIVE)
+        unpack(tmp_path, [("/".join(["x" * 203] * 20), b"")], ARCHIVE)
+
+
+def test_a_name_that_is_too_long_for_file_systems_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(TltlError, match=r"TLT0009: .* a part of which is longer than 255 bytes"):
+        unpack(tmp_path, [("a/" + "x" * 256, b"")], ARCHIVE)
 
 
 def test_files_lie_at_their_paths(tmp_path: Path) -> None:

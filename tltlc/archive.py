@@ -10,7 +10,7 @@ from unicodedata import normalize
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
-from tltlc.limits import UNPACKED_PATH
+from tltlc.limits import UNPACKED_NAME, UNPACKED_PATH
 from tltlc.record import record
 
 _IS_WINDOWS: Final = os.name == "nt"
@@ -71,12 +71,18 @@ def inside(folder: Path, name: str, archive: Archive) -> Path:
 
 
 def check_extent(name: str, archive: Archive) -> None:
-    """Raise TltlError, TLT0009, if a path has more bytes or parts than :data:`tltlc.limits.UNPACKED_PATH` allows."""
+    """Raise TltlError, TLT0009, if a path has more bytes or parts than :data:`tltlc.limits.UNPACKED_PATH` allows.
+
+    So does a part that is longer than most file systems allow.
+    """
     depth = UNPACKED_PATH.depth or 0
     if len(name.encode(errors="surrogatepass")) > UNPACKED_PATH.size:
         what = f"which is longer than {UNPACKED_PATH.size:,} bytes"
     elif name.count("/") >= depth:
         what = f"which has more than {depth} parts"
+    elif any(len(part.encode(errors="surrogatepass")) > UNPACKED_NAME.size for part in name.split("/")):
+        title = f"{archive.name} holds the path `{name}`, a part of which is longer than {UNPACKED_NAME.size} bytes"
+        raise _refused(title, "use a version of it in which that part has a shorter name")
     else:
         return
     raise _refused(f"{archive.name} holds the path `{name}`, {what}", archive.damaged)

@@ -146,6 +146,9 @@ REVISION_PATH: Final = Limit(size=1 << 20)
 UNPACKED_PATH: Final = Limit(size=4096, depth=100)
 """A path in a git revision or another archive that is unpacked; ``depth`` counts its parts."""
 
+UNPACKED_NAME: Final = Limit(size=255)
+"""A part of such a path: no common file system allows longer ones."""
+
 PLAYGROUND: Final = Connections(most=64, idle_s=15.0, request_s=20.0, write_s=30.0, linger_s=2.0)
 """The connections to the playground's server."""
 

@@ -231,8 +231,8 @@ def test_no_repository(tmp_path: Path, tltlc: Run, monkeypatch: pytest.MonkeyPat
     done = tltlc("breaking", "leave.tltl", "--against", "v1")
     assert done.status == 3
     assert done.err == (
-        "error[TLT0751]: there is no folder `v1`, and this is no git repository in which it could be a revision\n"
-        "  help: name a folder that is there, or go into the repository\n"
+        f"error[TLT0751]: there is no folder `v1`, and `{tmp_path}` lies in no git repository in which it could be a "
+        "revision\n  help: name a folder that is there, or a file of the repository\n"
     )
 
 

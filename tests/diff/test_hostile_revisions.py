@@ -189,8 +189,12 @@ def test_paths_are_the_same_in_whichever_blocks_they_come() -> None:
 
 @pytest.mark.parametrize(
     ("name", "levels", "why"),
-    [(b"d", 1000, "which has more than 100 parts"), (b"d" * 200, 60, "which is longer than 4,096 bytes")],
-    ids=["deep", "long"],
+    [
+        (b"d", 1000, "which has more than 100 parts"),
+        (b"d" * 200, 60, "which is longer than 4,096 bytes"),
+        (b"d" * 400, 1, "a part of which is longer than 255 bytes"),
+    ],
+    ids=["deep", "long", "long part"],
 )
 def test_a_path_that_no_folder_can_hold_is_refused(
     inside: Path,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.cli.conftest import Outcome, tltlc  # noqa: F401
-from tests.diff.test_breaking import LIBRARY, SPEC, commit, needs_git, repository, write  # noqa: F401
+from tests.diff.test_breaking import LIBRARY, SPEC, commit, git, needs_git, repository, write  # noqa: F401
 
 Run = Callable[..., Outcome]
 
@@ -59,3 +60,70 @@ def test_what_is_not_there(repository: Path, tltlc: Run) -> None:  # noqa: F811
     broken = tltlc("diff", "v2:specs/leave.tltl", "v1:specs/leave.tltl")
     assert (broken.status, broken.out) == (1, "")
     assert "\n  v2:specs/leave.tltl:4:11\n" in broken.err
+
+
+def test_a_branch_that_is_called_like_a_file(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    git("branch", "same")
+    Path("same").write_text("a file")
+    assert tltlc("diff", "same:specs/leave.tltl", "specs/leave.tltl").status == 0
+    assert tltlc("breaking", "specs", "--against", "same").status == 0
+    Path("other").write_text("a file")
+    done = tltlc("breaking", "specs", "--against", "other")
+    assert "error[TLT0751]: `other` is a file, and neither a folder nor a revision\n" in done.err
+
+
+@pytest.mark.parametrize(
+    ("name", "title", "way_out"),
+    [
+        ("^HEAD", "there is no revision and no folder `^HEAD`", "`git log` and `git tag` list revisions"),
+        ("blob", "`blob` names something in git that is no commit", "name the commit that holds it"),
+        ("folder", "`folder` names something in git that is no commit", "name the commit that holds it"),
+    ],
+)
+def test_what_is_no_commit(repository: Path, tltlc: Run, name: str, title: str, way_out: str) -> None:  # noqa: F811
+    git("tag", "blob", "HEAD:specs/leave.tltl")
+    git("tag", "folder", "HEAD^{tree}")
+    done = tltlc("breaking", "specs", "--against", name)
+    assert (done.status, done.err) == (3, f"error[TLT0751]: {title}\n  help: {way_out}\n")
+
+
+@pytest.mark.parametrize("lost", [True, False])
+def test_a_file_that_git_cannot_give(repository: Path, tltlc: Run, lost: bool) -> None:  # noqa: F811
+    command = ["git", "rev-parse", "HEAD:specs/leave.tltl"]
+    name = subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+    place = Path(".git/objects", name[:2], name[2:])
+    place.unlink()
+    if not lost:
+        place.write_bytes(b"")
+    done = tltlc("diff", "HEAD:specs/leave.tltl", "specs/leave.tltl")
+    title = "git does not give `specs/leave.tltl` of the revision `HEAD`"
+    assert (done.status, f"error[TLT0751]: {title}\n  help: fetch it, or take it" in done.err) == (3, True)
+
+
+def test_a_file_outside_of_the_repository(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    done = tltlc("diff", "HEAD:../../x.tltl", "specs/leave.tltl")
+    outside = repository.absolute().parents[1]
+    assert f"`{outside}` lies in no git repository in which it could be a revision\n" in done.err
+
+
+def test_a_repository_that_git_cannot_use(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    Path(".git/HEAD").unlink()
+    done = tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl")
+    assert f"error[TLT0751]: git cannot use the repository of `{repository.absolute()}`\n" in done.err
+
+
+def test_a_repository_without_files_of_now(repository: Path, tltlc: Run, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: F811
+    monkeypatch.chdir(repository / ".git")
+    done = tltlc("breaking", ".", "--against", "HEAD")
+    assert "belongs to git itself, and holds no files of now" in done.err
+
+
+def test_a_repository_whose_name_ends_in_a_line_end(
+    repository: Path,  # noqa: F811
+    tltlc: Run,  # noqa: F811
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    odd = repository.with_name("odd\n")
+    repository.rename(odd)
+    monkeypatch.chdir(odd)
+    assert tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl").status == 0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.diff import git
-from tltlc.files import exists, is_dir, is_file
+from tltlc.files import is_dir, is_file
 from tltlc.record import record, replace
 from tltlc.source import SourceFile, Span
 from tltlc.temporary import temporary_folder
@@ -105,11 +105,7 @@ def earlier(against: str, paths: Collection[str]) -> Iterator[Tree]:
     if is_dir(against):
         yield Tree(Path(against), Path.cwd(), os.path.join(against, ""), is_revision=False)  # noqa: PTH118 (with a slash)
         return
-    if exists(against):
-        title = f"`{against}` is a file, and neither a folder nor a revision"
-        raise TltlError([Diagnostic("TLT0751", title, help="name the folder in which it lies")])
-    repository = git.repository(_folder(next(iter(paths))), against)
-    commit = git.commit(repository, against)
+    repository, commit = _revision(against, _folder(next(iter(paths))))
     named = {_inside_of(repository, path) for path in paths}
 
     def is_wanted(path: str) -> bool:
@@ -118,6 +114,23 @@ def earlier(against: str, paths: Collection[str]) -> Iterator[Tree]:
     with temporary_folder() as root:
         git.write_out(repository, commit, against, is_wanted, root)
         yield Tree(root, repository, f"{against}:", is_revision=True)
+
+
+def _revision(name: str, folder: Path) -> tuple[Path, str]:
+    """The repository of a folder, and the commit of a revision in it; error TLT0751 where there is none."""
+    repository = git.repository(folder)
+    if repository is not None:
+        try:
+            return repository, git.commit(repository, name)
+        except TltlError:
+            if not is_file(name):
+                raise
+    if is_file(name):
+        raise git.no_version(
+            f"`{name}` is a file, and neither a folder nor a revision", "name the folder in which it lies"
+        )
+    title = f"there is no folder `{name}`, and `{folder}` lies in no git repository in which it could be a revision"
+    raise git.no_version(title, "name a folder that is there, or a file of the repository")
 
 
 def _inside_of(repository: Path, path: str) -> str:
@@ -139,5 +152,5 @@ def _inside(path: str, folder: Path) -> Path | None:
 
 def _folder(path: str) -> Path:
     """The nearest folder above a path, or at it, that is there."""
-    place = Path(path).absolute()
+    place = Path(os.path.realpath(path))
     return next(each for each in (place, *place.parents) if each.is_dir())

@@ -1,14 +1,19 @@
-"""What a git repository held at a revision; nothing in the repository is changed."""
+"""What a git repository held at a revision.
+
+Nothing is written into the repository, save objects that a partial clone lacks: git fetches them where it is told to.
+"""
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 
 from tltlc.archive import Archive, check_extent, unpack
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import exists
 from tltlc.interrupted import raise_if_interrupted
 from tltlc.limits import REVISION, REVISION_PATH, REVISION_PATHS
 from tltlc.record import record
@@ -18,6 +23,7 @@ if TYPE_CHECKING:
 
 _OF_HOOKS: Final = {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX", "GIT_COMMON_DIR"}
 _PLAIN_FILES: Final = (b"100644", b"100755")
+_HASH: Final = re.compile("[0-9a-f]{40,64}")
 _MOST_NAMES: Final = 1000
 _LONGEST_NAME: Final = 200
 """Branches and tags that a misspelt revision is compared with: so many, and so many characters each."""
@@ -31,24 +37,40 @@ class _File:
     path: str
 
 
-def repository(folder: Path, revision: str) -> Path:
-    """The top folder of the repository that a folder lies in; errors TLT0751 and TLT0730."""
+def repository(folder: Path) -> Path | None:
+    """The top folder of the repository that a folder lies in; None where it lies in none.
+
+    Raises TltlError: TLT0751, git cannot use the repository, or it holds no files of now; TLT0730, there is no git.
+    """
     done = _git(folder, "rev-parse", "--show-toplevel")
     if done.returncode == 0:
-        return Path(os.fsdecode(done.stdout).rstrip("\n"))
+        return Path(os.fsdecode(done.stdout.removesuffix(b"\n")))
     if b"safe.directory" in done.stderr:
         title = f"git does not look into the repository of `{folder}`, which belongs to another user"
-        raise _no_version(title, "allow it: `git config --global --add safe.directory FOLDER`")
-    title = f"there is no folder `{revision}`, and this is no git repository in which it could be a revision"
-    raise _no_version(title, "name a folder that is there, or go into the repository")
+        raise no_version(title, "allow it: `git config --global --add safe.directory FOLDER`")
+    if b"work tree" in done.stderr:
+        raise no_version(f"`{folder}` belongs to git itself, and holds no files of now", "go into a clone with files")
+    marked = next((place for place in (folder, *folder.parents) if exists(place / ".git")), None)
+    if marked is not None:
+        title = f"git cannot use the repository of `{marked}`"
+        raise no_version(title, f"check that you may read `{marked / '.git'}`: `git status` there tells what is wrong")
+    return None
 
 
 def commit(repository: Path, revision: str) -> str:
     """The commit that a revision names; error TLT0751 where it names none."""
-    done = _run(repository, "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}")
-    if done is None:
-        raise _no_version(f"there is no revision and no folder `{revision}`", _way_out(repository, revision))
-    return done.decode().strip()
+    name = _object(repository, f"{revision}^{{commit}}")
+    if name is not None:
+        return name
+    if _object(repository, revision) is not None:
+        raise no_version(f"`{revision}` names something in git that is no commit", "name the commit that holds it")
+    raise no_version(f"there is no revision and no folder `{revision}`", _way_out(repository, revision))
+
+
+def _object(repository: Path, name: str) -> str | None:
+    """The hash of what a name stands for in git; None where it stands for nothing, like ``^HEAD``."""
+    done = (_run(repository, "rev-parse", "--verify", "--quiet", "--end-of-options", name) or b"").decode().strip()
+    return done if _HASH.fullmatch(done) else None
 
 
 def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[[str], bool], folder: Path) -> None:
@@ -104,7 +126,7 @@ def _files(repository: Path, commit: str, revision: str) -> Iterator[_File]:
             raise
         if git.wait() != 0:
             raise_if_interrupted(git.returncode)
-            raise _no_version(f"git cannot list the files of the revision `{revision}`", "repair it: `git fsck`")
+            raise no_version(f"git cannot list the files of the revision `{revision}`", "repair it: `git fsck`")
 
 
 def _listed(stream: IO[bytes], revision: str) -> Iterator[_File]:
@@ -166,7 +188,8 @@ def _contents(repository: Path, files: Sequence[_File], revision: str) -> Iterat
 
 
 def _not_given(file: _File, revision: str) -> TltlError:
-    return _no_version(f"git does not give `{file.path}` of the revision `{revision}`", "fetch it: `git fetch`")
+    title = f"git does not give `{file.path}` of the revision `{revision}`"
+    return no_version(title, "fetch it, or take it from another clone: `git fsck` tells if it is missing or damaged")
 
 
 def _run(folder: Path, *arguments: str, given: bytes = b"") -> bytes | None:
@@ -218,5 +241,6 @@ def _too_large(revision: str, what: str) -> TltlError:
     return TltlError([Diagnostic("TLT0764", f"the revision `{revision}` holds {what}", help=help_)])
 
 
-def _no_version(title: str, way_out: str) -> TltlError:
+def no_version(title: str, way_out: str) -> TltlError:
+    """TLT0751: there are no files as they were."""
     return TltlError([Diagnostic("TLT0751", title, help=way_out)])
