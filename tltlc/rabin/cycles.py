@@ -9,7 +9,7 @@ ever is.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Final
 
 from tltlc.rabin.graphs import components
 from tltlc.rabin.skeleton import Clause, Marks
@@ -20,6 +20,9 @@ Edge = tuple[Any, Any, Marks]
 """From a state, which is anything that can be hashed, to another one, with marks."""
 
 Edges = frozenset[Edge]
+
+LOOKS_PER_STEP: Final = 16
+"""How many edges are looked at in a step of work, where that is all that is done with them."""
 
 
 @record
@@ -36,7 +39,7 @@ class Node:
 def decomposition(edges: Iterable[Edge], clauses: Sequence[Clause], work: Work) -> Node:
     """The tree of a strongly connected set of edges, children in the order of their edges.
 
-    Here and below, looking at an edge is a step of work; raises :class:`~tltlc.rabin.work.OutOfWork`.
+    Here and below, work is counted by the edges that are looked at; raises :class:`~tltlc.rabin.work.OutOfWork`.
     """
     order = {edge: place for place, edge in enumerate(edges)}
     count = 0
@@ -60,14 +63,14 @@ def _greatest(sets: Sequence[Edges], work: Work) -> list[Edges]:
     distinct = sorted(dict.fromkeys(sets), key=len, reverse=True)
     found: list[Edges] = []
     for some in distinct:
-        work.spend(1 + len(found))
+        work.spend(1 + len(found) // LOOKS_PER_STEP)
         if not any(some < other for other in found):
             found.append(some)
     return found
 
 
 def _accepts(edges: Edges, clauses: Sequence[Clause], work: Work) -> bool:
-    work.spend(len(edges) + len(clauses))
+    work.spend((len(edges) + len(clauses)) // LOOKS_PER_STEP)
     marks = marks_of(edges)
     return any(clause.accepts(marks) for clause in clauses)
 
@@ -79,7 +82,7 @@ def marks_of(edges: Iterable[Edge]) -> Marks:
 
 def accepting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list[Edges]:
     """The accepted sets inside that are greatest for a clause."""
-    work.spend(len(edges) * len(clauses))
+    work.spend(len(edges) * len(clauses) // LOOKS_PER_STEP)
     return [
         part
         for clause in clauses
@@ -98,14 +101,14 @@ def rejecting_parts(edges: Edges, clauses: Sequence[Clause], work: Work) -> list
         if some in seen:
             continue
         seen.add(some)
-        work.spend(len(some) + len(clauses))
+        work.spend((len(some) + len(clauses)) // LOOKS_PER_STEP)
         marks = marks_of(some)
         met = next((clause for clause in clauses if clause.accepts(marks)), None)
         if met is None:
             found[some] = None
             continue
         for mark in met.infs:
-            work.spend(len(some))
+            work.spend(len(some) // LOOKS_PER_STEP)
             stack += parts((edge for edge in some if mark not in edge[2]), work)
     return list(found)
 
