@@ -11,6 +11,8 @@ import pytest
 
 from tests import pipes
 from tests.cli.conftest import HIDE, Outcome
+from tltlc.cli.folders import below
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.pipeline import load
 
 Command = Callable[..., Outcome]
@@ -163,3 +165,18 @@ def test_a_link_that_leads_nowhere_is_reported(tltlc: Command, inside: Path) -> 
     Path("gone.tltl").symlink_to("nowhere")
     done = tltlc("check", ".")
     assert (done.status, "it is a link: what it leads to is gone" in done.err) == (3, True)
+
+
+def test_a_folder_that_cannot_be_read_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a.tltl").write_text("spec a = true\n")
+    (tmp_path / "inside").mkdir()
+    scandir = os.scandir
+
+    def refused(path: str) -> object:
+        if Path(path).name == "inside":
+            raise PermissionError(13, "Permission denied", path)
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", refused)
+    with pytest.raises(TltlError, match=r"TLT0001: cannot read `.*inside`: permission denied"):
+        below(tmp_path)

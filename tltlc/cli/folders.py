@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import may_be_file
+from tltlc.files import may_be_file, reading_error
 
 if TYPE_CHECKING:
     from tltlc.cli.report import Report
@@ -33,7 +33,7 @@ def in_folders(arguments: Iterable[str]) -> list[str]:
 def sources(argument: str) -> list[str]:
     """The argument itself, or the ``.tltl`` files in a folder and below it, hidden ones left out, in order.
 
-    Error: TLT0722 where a folder has none.
+    Errors: TLT0722 where a folder has none, TLT0001 where it cannot be read.
     """
     if not _is_folder(argument):
         return [argument]
@@ -46,15 +46,22 @@ def sources(argument: str) -> list[str]:
 def below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
     """The files with these endings in a folder and below it, relative to it, in order.
 
-    Hidden files are left out, and so are pipes and devices: reading one could take for ever.
+    Hidden files are left out, and so are pipes and devices: reading one could take for ever.  Raises TltlError,
+    TLT0001, for a folder that the system does not let us read: without its files an answer could be wrong.
     """
     found: list[Path] = []
-    for place, folders, files in os.walk(folder):
+    for place, folders, files in os.walk(folder, onerror=_unreadable):
         folders[:] = [name for name in folders if not name.startswith(".")]
         inside = Path(place).relative_to(folder)
         named = [name for name in files if name.endswith(endings) and not name.startswith(".")]
         found += [inside / name for name in named if may_be_file(os.path.join(place, name))]  # noqa: PTH118
     return sorted(found)
+
+
+def _unreadable(error: OSError) -> None:
+    # A folder may be removed meanwhile.
+    if not isinstance(error, FileNotFoundError):
+        raise reading_error(str(error.filename), error)
 
 
 def _inside(folder: str) -> list[str]:

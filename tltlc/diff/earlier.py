@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.diff import git
-from tltlc.files import is_dir, is_file
+from tltlc.files import is_dir, is_file, reading_error
 from tltlc.record import record, replace
 from tltlc.source import SourceFile, Span
 from tltlc.temporary import temporary_folder
@@ -35,6 +35,7 @@ class Tree:
         """Where the old file, or folder, of a path of now is; None where there is none.
 
         In a folder it lies at the same place or higher: ``OLD/specs/x.tltl`` or ``OLD/x.tltl`` for ``specs/x.tltl``.
+        Raises TltlError, TLT0001, where the system does not tell whether it is there.
         """
         inside = _inside(path, self.here)
         if inside is None and self.is_revision:
@@ -42,7 +43,7 @@ class Tree:
         parts = inside.parts if inside is not None else Path(path).absolute().parts[1:]
         is_there = is_dir if is_dir(path) else is_file
         candidates = (self.root.joinpath(*parts[first:]) for first in range(1 if self.is_revision else len(parts) + 1))
-        return next((str(each) for each in candidates if is_there(each)), None)
+        return next((str(each) for each in candidates if _is_told(each) and is_there(each)), None)
 
     def libraries(self, folders: Iterable[Path]) -> tuple[Path, ...]:
         """Folders of libraries as they were; where they were not, as they are."""
@@ -131,6 +132,17 @@ def _revision(name: str, folder: Path) -> tuple[Path, str]:
         )
     title = f"there is no folder `{name}`, and `{folder}` lies in no git repository in which it could be a revision"
     raise git.no_version(title, "name a folder that is there, or a file of the repository")
+
+
+def _is_told(path: Path) -> bool:
+    """True; raises TltlError, TLT0001, where we may not even know if there is something at a path."""
+    try:
+        os.stat(path)  # noqa: PTH116
+    except PermissionError as error:
+        raise reading_error(str(path), error) from None
+    except (OSError, ValueError):
+        pass
+    return True
 
 
 def _inside_of(repository: Path, path: str) -> str:

@@ -191,13 +191,13 @@ def _files(arguments: Sequence[str]) -> list[TraceFile]:
 
 def _of_folder(folder: str) -> list[str]:
     """The traces in a folder and those in it; error TLT0001 where there is none."""
-    place = Path(folder)
-    paths = sorted(path for path in place.rglob("*") if path.suffix in ENDINGS and path.is_file())
-    seen = [path for path in paths if not any(part.startswith(".") for part in path.relative_to(place).parts)]
+    from tltlc.cli.folders import below
+
+    seen = below(Path(folder), ENDINGS)
     if not seen:
         title = f"the folder `{folder}` holds no trace"
         raise TltlError([Diagnostic("TLT0001", title, help=f"traces in it end in {' or '.join(ENDINGS)}")])
-    return [str(path) for path in seen]
+    return [str(Path(folder, path)) for path in seen]
 
 
 def _library(predicates: str) -> SourceFile:
