@@ -127,3 +127,36 @@ def test_a_repository_whose_name_ends_in_a_line_end(
     repository.rename(odd)
     monkeypatch.chdir(odd)
     assert tltlc("diff", "v1:specs/leave.tltl", "specs/leave.tltl").status == 0
+
+
+def test_links_lead_where_they_led_in_the_revision(repository: Path, tltlc: Run) -> None:  # noqa: F811
+    Path("specs/link.tltl").symlink_to("leave.tltl")
+    Path("specs/chain.tltl").symlink_to("link.tltl")
+    Path("shortcut").symlink_to("specs")
+    # Of these, git prints no file, and the lines below must not be taken for another link's.
+    Path("specs/dangling.tltl").symlink_to("nowhere.tltl")
+    Path("specs/loop.tltl").symlink_to("loop.tltl")
+    Path("specs/outside.tltl").symlink_to("/nowhere\nblob 0123456789")
+    write(
+        specs__user='import "./chain.tltl"\nspec user = F true\n', specs__stricter=SPEC.replace("    keep alive\n", "")
+    )
+    commit("v2")
+    Path("specs/link.tltl").unlink()
+    Path("specs/link.tltl").symlink_to("stricter.tltl")
+    for old in ("link", "chain"):
+        for folder in ("specs", "shortcut"):
+            done = tltlc("diff", f"v2:{folder}/{old}.tltl", f"specs/{old}.tltl", "--format", "json")
+            assert relation(done) == "looser"
+    assert relation(tltlc("diff", "v2:specs/user.tltl", "specs/user.tltl", "--format", "json")) == "equivalent"
+    for other in ("dangling", "loop", "outside"):
+        assert "TLT0751" in tltlc("diff", f"v2:specs/{other}.tltl", "specs/leave.tltl").err
+
+
+def test_a_link_from_outside_stands_for_the_file_in_the_repository(
+    repository: Path,  # noqa: F811
+    tltlc: Run,  # noqa: F811
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    link = tmp_path_factory.mktemp("outside") / "leave.tltl"
+    link.symlink_to(Path("specs/leave.tltl").absolute())
+    assert tltlc("diff", f"v1:{link}", "specs/leave.tltl").status == 0

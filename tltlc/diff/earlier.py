@@ -155,11 +155,17 @@ def _inside_of(repository: Path, path: str) -> str:
 
 
 def _inside(path: str, folder: Path) -> Path | None:
-    """A path, relative to a folder; None where it lies outside."""
-    try:
-        return Path(os.path.realpath(path)).relative_to(os.path.realpath(folder))
-    except ValueError:
-        return None
+    """A path, relative to a folder; None if it lies outside.
+
+    A link to a file stands for itself: in another revision it may lead elsewhere.  A link from outside stands for what
+    it leads to, and so does a link to a folder, which revisions are read without.
+    """
+    parent, name = os.path.split(os.path.abspath(path))  # noqa: PTH100
+    places = [os.path.realpath(path)]
+    if not is_dir(path):
+        places.insert(0, os.path.join(os.path.realpath(parent), name))  # noqa: PTH118
+    top = os.path.realpath(folder)
+    return next((Path(place).relative_to(top) for place in places if Path(place).is_relative_to(top)), None)
 
 
 def _folder(path: str) -> Path:

@@ -5,6 +5,7 @@ Nothing is written into the repository, save objects that a partial clone lacks:
 
 from __future__ import annotations
 
+import io
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
 
 _OF_HOOKS: Final = {"GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX", "GIT_COMMON_DIR"}
 _PLAIN_FILES: Final = (b"100644", b"100755")
+_LINK: Final = b"120000"
+_NO_TARGET: Final = (b"symlink", b"dangling", b"loop", b"notdir")
+"""What git prints for a path that leads nowhere, or out of the repository; a size and a text of that size follow."""
+
 _HASH: Final = re.compile("[0-9a-f]{40,64}")
 _MOST_NAMES: Final = 1000
 _LONGEST_NAME: Final = 200
@@ -31,10 +36,11 @@ _LONGEST_NAME: Final = 200
 
 @record
 class _File:
-    """A plain file of a revision: the name of its content in git, and its path."""
+    """A file of a revision: the name of its content in git, and its path.  A link's content is where it leads."""
 
     name: str
     path: str
+    is_link: bool = False
 
 
 def repository(folder: Path) -> Path | None:
@@ -74,16 +80,19 @@ def _object(repository: Path, name: str) -> str | None:
 
 
 def write_out(repository: Path, commit: str, revision: str, is_wanted: Callable[[str], bool], folder: Path) -> None:
-    """Write the plain files of a commit that are wanted into a folder, each at its path; links are left out.
+    """Write the files of a commit that are wanted into a folder, each at its path.
 
-    ``revision`` is what messages call the commit.
+    A link to a file becomes a copy of that file as it was in the commit.  Links to folders, to nothing, and out of the
+    repository are left out.  ``revision`` is what messages call the commit.
 
     Raises:
         TltlError: TLT0751, git does not give the files; TLT0764, they are more than :data:`tltlc.limits.REVISION` and
             the rows below it allow; TLT0009, a path cannot be a file below the folder; TLT0005, the system refuses to
             write.
     """
-    files = _wanted(_files(repository, commit, revision), is_wanted, revision)
+    listed = _wanted(_files(repository, commit, revision), is_wanted, revision)
+    files = [file for file in listed if not file.is_link]
+    files += _followed(repository, commit, [file.path for file in listed if file.is_link])
     _check_sizes(repository, files, revision)
     unpack(folder, _contents(repository, files, revision), _archive(revision))
 
@@ -109,7 +118,7 @@ def _wanted(files: Iterable[_File], is_wanted: Callable[[str], bool], revision: 
 
 
 def _files(repository: Path, commit: str, revision: str) -> Iterator[_File]:
-    """The plain files of a commit, as git lists them; the caller may stop before the end.
+    """The plain files and the links of a commit, as git lists them; the caller may stop before the end.
 
     Raises TltlError: TLT0751, git cannot list them all; TLT0764, they are too many.
     """
@@ -130,12 +139,12 @@ def _files(repository: Path, commit: str, revision: str) -> Iterator[_File]:
 
 
 def _listed(stream: IO[bytes], revision: str) -> Iterator[_File]:
-    """The plain files in what ``git ls-tree -r -t -z`` prints; error TLT0764 if that is too much."""
+    """The plain files and the links in what ``git ls-tree -r -t -z`` prints; error TLT0764 if that is too much."""
     for line in _lines(stream, revision):
         about, _, path = line.partition(b"\t")
         mode, kind, name = about.split()
-        if mode in _PLAIN_FILES and kind == b"blob":
-            yield _File(name.decode(), os.fsdecode(path))
+        if (mode in _PLAIN_FILES or mode == _LINK) and kind == b"blob":
+            yield _File(name.decode(), os.fsdecode(path), is_link=mode == _LINK)
 
 
 def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
@@ -157,6 +166,25 @@ def _lines(stream: IO[bytes], revision: str) -> Iterator[bytes]:
             if count > (REVISION_PATHS.values or 0):
                 raise _too_large(revision, f"more than {REVISION_PATHS.values:,} paths")
             yield from lines
+
+
+def _followed(repository: Path, commit: str, links: Iterable[str]) -> Iterator[_File]:
+    """The files that links of a commit lead to within it, each at the path of its link."""
+    # git reads one path a line.
+    named = [path for path in links if "\n" not in path]
+    if not named:
+        return
+    given = b"".join(os.fsencode(f"{commit}:{path}\n") for path in named)
+    printed = _run(
+        repository, "cat-file", "--batch-check=%(objecttype) %(objectname)", "--follow-symlinks", given=given
+    )
+    stream = io.BytesIO(printed or b"")
+    for path in named:
+        kind, _, name = stream.readline().removesuffix(b"\n").partition(b" ")
+        if kind == b"blob":
+            yield _File(name.decode(), path)
+        elif kind in _NO_TARGET:
+            stream.read(int(name) + 1)
 
 
 def _check_sizes(repository: Path, files: Sequence[_File], revision: str) -> None:
