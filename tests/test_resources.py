@@ -153,3 +153,25 @@ def test_each_has_the_same_code(error: BaseException) -> None:
 
 def test_other_errors_are_not_meant() -> None:
     assert exhausted(ValueError()) is None
+
+
+def test_what_a_destructor_runs_out_of_is_not_printed() -> None:
+    done = _script("""
+class Thing:
+    def __init__(self, error):
+        self.error = error
+
+    def __del__(self):
+        raise self.error
+
+permit(Process(memory=0, work_s=100))
+with bounded():
+    Thing(MemoryError())
+    Thing(OutOfTimeError())
+    Thing(ValueError("inside"))
+Thing(MemoryError("outside"))
+""")
+    assert done.returncode == 0
+    assert "ValueError: inside" in done.stderr
+    assert "MemoryError: outside" in done.stderr
+    assert done.stderr.count("Traceback") == 2

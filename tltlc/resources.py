@@ -49,7 +49,7 @@ def bounded() -> Iterator[None]:
         return
     _holding.append(True)
     try:
-        with _memory(_permitted[0].memory), _time(_permitted[0].work_s):
+        with _memory(_permitted[0].memory), _time(_permitted[0].work_s), _quiet_destructors():
             yield
     finally:
         _holding.clear()
@@ -65,6 +65,25 @@ def limit(name: str, most: int) -> None:
         hard = resource.getrlimit(kind)[1]
         least = most if hard == resource.RLIM_INFINITY else min(most, hard)
         resource.setrlimit(kind, (least, least))
+
+
+@contextmanager
+def _quiet_destructors() -> Iterator[None]:
+    """Keep Python from printing that a destructor ran out of memory or time: the command itself soon does, and says so.
+
+    A generator that is thrown away is ended by such a destructor.
+    """
+    before = sys.unraisablehook
+
+    def hook(unraisable: sys.UnraisableHookArgs) -> None:
+        if not issubclass(unraisable.exc_type, (MemoryError, OutOfTimeError)):
+            before(unraisable)
+
+    sys.unraisablehook = hook
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
 
 
 @contextmanager
