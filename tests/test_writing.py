@@ -113,3 +113,28 @@ def test_a_source_file_that_could_not_be_read_again_stays(tmp_path: Path) -> Non
         rewrite(path, "// ◇\n" * 200_000)
     assert [each.code for each in caught.value.diagnostics] == ["TLT0004"]
     assert path.read_text() == "spec a = true\n"
+
+
+def test_a_rename_that_fails_restores_the_files_before_it(tmp_path: Path) -> None:
+    (tmp_path / "a").write_text("old")
+    (tmp_path / "c").write_text("old c")
+    replace = Path.replace
+
+    def refuse(self: Path, target: Path) -> Path:
+        # Like a system on which `c` must not change.
+        if target.name == "c":
+            raise PermissionError(1, "Operation not permitted")
+        return replace(self, target)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Path, "replace", refuse)
+        with pytest.raises(TltlError, match="cannot write"):
+            write_files(tmp_path, {"a": "new", "new/b": "new", "c": "new"})
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "old", "c": "old c"}
+
+
+def test_folders_that_were_made_go_where_a_file_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "z").mkdir()
+    with pytest.raises(TltlError, match="it is a folder"):
+        write_files(tmp_path, {"x/y/a": "new", "z": "new"})
+    assert [path.name for path in tmp_path.iterdir()] == ["z"]

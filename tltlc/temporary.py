@@ -14,7 +14,7 @@ from __future__ import annotations
 import os
 import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Final
@@ -36,6 +36,8 @@ class Temporaries:
         self._owned: dict[Path, tuple[str, IO[bytes] | None]] = {}
         """By folder: how names of temporary files begin there, and the lock file."""
         self._made: list[Path] = []
+        self._kept: list[tuple[Path, Path | None]] = []
+        """Places, each with another name of the file that was there, None where there was none."""
 
     def path(self, place: Path, ending: str = ".tmp") -> Path:
         """A path for a new temporary file in the folder of ``place``.
@@ -51,6 +53,30 @@ class Temporaries:
         self._made.append(folder / f"{beginning}-{len(self._made)}{ending}")
         return self._made[-1]
 
+    def keep(self, place: Path) -> None:
+        """Keep the file at a place, or that there is none, so that :meth:`restore` can undo its replacement.
+
+        Raises:
+            OSError: the system refuses.
+        """
+        kept = self.path(place)
+        try:
+            kept.hardlink_to(place)
+        except FileNotFoundError:
+            self._kept.append((place, None))
+            return
+        except OSError:
+            # Some file systems have no hard links, and some files may have none.
+            import shutil
+
+            shutil.copy2(place, kept)
+        self._kept.append((place, kept))
+
+    def restore(self) -> list[Path]:
+        """Put the files back that were kept, the last one first; the places where the system refuses that."""
+        kept, self._kept = self._kept, []
+        return [place for place, older in reversed(kept) if not _is_restored(place, older)]
+
     def close(self) -> None:
         """Remove what is left, the lock files last: files without a lock file would stay for ever."""
         for path in self._made:
@@ -64,12 +90,56 @@ class Temporaries:
 
 @contextmanager
 def temporaries() -> Iterator[Temporaries]:
-    """Within, there are temporary files; at the end, those that were not renamed are removed."""
+    """Within, there are temporary files; at the end, those that were not renamed are removed.
+
+    If the body fails, files that were kept are put back first.
+    """
     made = Temporaries()
     try:
         yield made
+    except BaseException:
+        made.restore()
+        raise
     finally:
         made.close()
+
+
+@contextmanager
+def new_folders(folders: Iterable[Path]) -> Iterator[None]:
+    """Make folders and those above them where they are missing; if the body fails, remove them where they are empty.
+
+    Raises:
+        OSError, ValueError: the system refuses to make one.
+    """
+    made: list[Path] = []
+    try:
+        for folder in folders:
+            _make_folder(folder, made)
+        yield
+    except BaseException:
+        for folder in reversed(made):
+            with suppress(OSError):
+                folder.rmdir()
+        raise
+
+
+def _make_folder(folder: Path, made: list[Path]) -> None:
+    """Make a folder and those above it; those that were missing join ``made``."""
+    missing = []
+    while not folder.exists():
+        missing.append(folder)
+        folder = folder.parent
+    if not folder.is_dir():
+        # Raises what fits.
+        folder.mkdir()
+    for place in reversed(missing):
+        try:
+            place.mkdir()
+        except FileExistsError:
+            if not place.is_dir():
+                raise
+        else:
+            made.append(place)
 
 
 @contextmanager
@@ -92,9 +162,8 @@ def temporary_folder() -> Iterator[Path]:
 
 def _no_folder(error: OSError) -> TltlError:
     title = f"cannot make a temporary folder: {(error.strerror or str(error)).lower()}"
-    return TltlError(
-        [Diagnostic("TLT0005", title, help="make room, or set TMPDIR to a folder that you may write into")]
-    )
+    help_ = "make room, or set TMPDIR to a folder that you may write into"
+    return TltlError([Diagnostic("TLT0005", title, help=help_)])
 
 
 def remove_abandoned(folder: Path) -> None:
@@ -145,6 +214,17 @@ def _is_own_folder(path: Path) -> bool:
     # Folders are made without an ending.
     found = path.lstat()
     return stat.S_ISDIR(found.st_mode) and not path.suffix and (os.name == "nt" or found.st_uid == os.getuid())
+
+
+def _is_restored(place: Path, older: Path | None) -> bool:
+    try:
+        if older is None:
+            place.unlink(missing_ok=True)
+        else:
+            older.replace(place)
+    except OSError:
+        return False
+    return True
 
 
 def _open_lock(path: Path) -> IO[bytes] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from collections.abc import Iterator, Mapping
@@ -12,7 +13,7 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import reason
 from tltlc.limits import SOURCE
-from tltlc.temporary import temporaries
+from tltlc.temporary import new_folders, temporaries
 
 _OPTION: Final = "name another place with -o"
 _WRITABLE: Final = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
@@ -23,9 +24,11 @@ def write_files(
 ) -> tuple[Path, ...]:
     """Write all of the files into the folder, or none of them.  Folders are made where missing.
 
-    Those that hold this already stay untouched, so that nothing is made again of them; the paths of the others in
-    order.  Every file is first written under a temporary name beside its place, and only when all of them are there are
-    they renamed.  Text is UTF-8 with line feeds.  Error: TLT0005, with ``advice`` on where else to write.
+    Files that hold this already stay untouched, so that nothing is made again from them; the result is the paths of
+    the others, in order.  Every file is first written under a temporary name beside its place, and only when all of
+    them are there are they renamed.  If the system refuses a rename, the files that were renamed before it get their
+    older content back, and folders that were made are removed.  Text is UTF-8 with line feeds.  Error: TLT0005, with
+    ``advice`` on where else to write.
 
     Each ``durable`` file is a whole one after a loss of power, too, and is not lost once this has returned, as long as
     its folder is not.
@@ -34,11 +37,10 @@ def write_files(
     Between two renames, it leaves some files new and some as they were, and none of them half written.
     """
     try:
-        for place in {(folder / name).parent: None for name in files}:
-            place.mkdir(parents=True, exist_ok=True)
+        with new_folders({(folder / name).parent: None for name in files}):
+            return _write({folder / name: content for name, content in files.items()}, advice, durable)
     except (OSError, ValueError) as error:
         raise _error(folder, error, advice) from None
-    return _write({folder / name: content for name, content in files.items()}, advice, durable)
 
 
 def write_file(path: Path, content: str | bytes, advice: str = _OPTION, *, durable: bool = False) -> None:
@@ -58,7 +60,8 @@ def rewrite(path: Path, content: str) -> None:
     mode = _mode(path)
     # To be renamed over, a file need not be writable.
     if mode is not None and not (mode & _WRITABLE and os.access(path, os.W_OK)):
-        raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: it is read-only", help="make it writable")])
+        help_ = "check its owner and its attributes" if mode & _WRITABLE else "make it writable"
+        raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: it is read-only", help=help_)])
     write_file(path, content, "make it and its folder writable")
 
 
@@ -111,6 +114,9 @@ def _write(files: Mapping[Path, str | bytes], advice: str, durable: bool) -> tup
                 _fill(temporary, data, mode, durable)
                 waiting.append((temporary, place))
             for temporary, shown in waiting:
+                # A single file needs no way back: no rename comes after it.
+                if len(waiting) > 1:
+                    made.keep(shown)
                 temporary.replace(shown)
             for shown in {place.parent for _, place in waiting} if durable else ():
                 _sync_folder(shown)
@@ -160,4 +166,6 @@ def _error(path: Path, error: OSError | ValueError, advice: str) -> TltlError:
     # A file that we are to make is never missing itself.
     why = "there is no such folder" if isinstance(error, FileNotFoundError) else reason(error)
     title = f"cannot write `{path}`: {why}"
+    if isinstance(error, OSError) and error.errno == errno.EMFILE:
+        advice = "let this process open more files: `ulimit -n 1024`"
     return TltlError([Diagnostic("TLT0005", title, help=advice)])
