@@ -13,6 +13,7 @@ allow = ["TLT0419"]                   # what nothing is said of; note, warning a
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import lru_cache
@@ -21,7 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
-from tltlc.files import is_dir, is_file, may_read, outside, read_source
+from tltlc.files import is_dir, is_file, may_be_file, may_read, outside, read_source
 from tltlc.record import EMPTY, record, replace
 from tltlc.source import SourceFile, Span
 
@@ -83,7 +84,9 @@ def project_for(path: str) -> Project:
 
 def project_file(folder: Path) -> Path | None:
     """The nearest project file in an absolute folder or above it; None where there is none."""
-    return next((place / FILE_NAME for place in (folder, *folder.parents) if is_file(place / FILE_NAME)), None)
+    files = (place / FILE_NAME for place in (folder, *folder.parents))
+    # A link that leads nowhere counts: whoever reads it reports it.
+    return next((file for file in files if is_file(file) or (os.path.lexists(file) and may_read(file))), None)
 
 
 def read_project(path: Path) -> Project:
@@ -94,6 +97,9 @@ def read_project(path: Path) -> Project:
     """
     from tltlc.toml_text import parse
 
+    if not may_be_file(path):
+        title, help_ = f"`{_shown(path)}` is no file", "remove it, or give it another name"
+        raise TltlError([Diagnostic("TLT0001", title, help=help_)])
     source = read_source(path, _shown(path))
     table = parse(source, "TLT0701", 'values are written as in `targets = ["json", "dot"]`')
     style = table.get("style", {})

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import os
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -106,3 +107,15 @@ def test_a_deleted_current_folder_is_no_bug(
     done = tltlc("check", "../main.tltl")
     assert done.status == 1
     assert "the current folder has been deleted: start tltlc in another one" in done.err
+
+
+@pytest.mark.parametrize("kind", ["link", "folder", "pipe"])
+def test_a_project_file_that_is_no_file_is_reported(inside: Path, tltlc: Callable[..., Outcome], kind: str) -> None:
+    if kind == "link":
+        Path("tltl.toml").symlink_to("nowhere")
+    elif kind == "folder":
+        Path("tltl.toml").mkdir()
+    else:
+        os.mkfifo("tltl.toml")
+    done = tltlc("check", "hide.tltl")
+    assert (done.status, "error[TLT0001]" in done.err, "tltl.toml" in done.err) == (3, True, True)
