@@ -166,3 +166,15 @@ def test_it_takes_less_than_three_times_the_calls_of_compiling(text: str) -> Non
     source = SourceFile("example.tltl", text)
     lint(source)  # the libraries are read
     assert calls(lambda: lint(source)) < 3 * calls(lambda: compile_source(source))
+
+
+def test_a_comment_in_a_list_of_entities_speaks_of_its_line(inside: Path, tltlc: Callable[..., Outcome]) -> None:
+    Path("list.tltl").write_text(
+        "signal p: bool\nentity e,\n  // tltlc: allow TLT0421\n  f,\n  g,\n  h // tltlc: allow TLT0421\nspec a = F p\n"
+    )
+    done = tltlc("lint", "list.tltl")
+    places = [line.strip() for line in done.err.splitlines() if "list.tltl:" in line]
+    assert places == [
+        "list.tltl:2:8",
+        "list.tltl:5:3",
+    ]

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.tree import Comment, Module, SpecDecl
+from tltlc.grammar.tree import Comment, EntityDecl, Module, SpecDecl
 from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
@@ -102,9 +102,16 @@ def _by_line(module: Module) -> dict[int, dict[Span, None]]:
 
 
 def _parts(module: Module) -> Iterator[tuple[Span, Span]]:
-    """Each clause and declaration, and the part of it that counts: of a block its head, and its closing brace."""
+    """Each clause and declaration, and the part of it that counts: of a block its head, and its closing brace.
+
+    Of a list of entities the first stands for the whole declaration, and each other one for itself.
+    """
     for declaration in module.declarations:
         span = declaration.span
+        if isinstance(declaration, EntityDecl):
+            yield span, Span(span.start, declaration.names[0].span.end)
+            yield from ((name.span, name.span) for name in declaration.names[1:])
+            continue
         if not isinstance(declaration, SpecDecl) or not declaration.block:
             yield span, span
             continue
