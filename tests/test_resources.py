@@ -48,10 +48,12 @@ def test_a_command_ends_after_its_processor_time(tmp_path: Path) -> None:
 def test_a_command_ends_where_it_takes_too_much_memory() -> None:
     ended = _run("--max-memory", "0.05", "check", "-", given=MANY)
     assert ended.returncode == 1
-    assert ended.stderr == (
+    # Python prints a line of its own where there is no room to call a hook.
+    assert ended.stderr.endswith(
         "error[TLT0007]: the command ran out of memory (it may use 0.05 GiB)\n"
         "  help: make its input smaller, or permit more: `tltlc --max-memory GIB COMMAND …`\n"
     )
+    assert "Traceback" not in ended.stderr
 
 
 @pytest.mark.parametrize("bounds", [(), ("--max-cpu", "0", "--max-memory", "0")])

@@ -71,7 +71,8 @@ def limit(name: str, most: int) -> None:
 def _quiet_destructors() -> Iterator[None]:
     """Keep Python from printing that a destructor ran out of memory or time: the command itself soon does, and says so.
 
-    A generator that is thrown away is ended by such a destructor.
+    A generator that is thrown away is ended by such a destructor.  Where there is not even room to call the hook,
+    Python prints one line.
     """
     before = sys.unraisablehook
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import click
 import pytest
 
+from tests.cli.conftest import Outcome
 from tests.cli.test_paths import commands
 from tltlc.cli.numbers import LARGEST, FiniteRange, WholeRange
 
@@ -43,3 +46,7 @@ def test_a_completion_without_a_shell_is_wrong_usage(variables: dict[str, str], 
     found = process(_TLTLC_COMPLETE="bash_complete", **variables)
     assert (found.status, found.out) == (2, "")
     assert "_TLTLC_COMPLETE is for the scripts that `tltlc completion` prints" in found.err
+
+
+def test_a_usage_error_names_the_command(tltlc: Callable[..., Outcome]) -> None:
+    assert "`tltlc compile --help` shows how to use it" in tltlc("compile", "a.tltl", "-t").err

@@ -102,6 +102,13 @@ class CommandLine(click.Group):
         """Run the command; click would answer these two with a status of its own."""
         try:
             return super().invoke(ctx)
+        except click.UsageError as error:
+            if error.ctx is None and ctx.invoked_subcommand is not None:
+                # click's parser of options does not know which command it serves.
+                command = self.get_command(ctx, ctx.invoked_subcommand)
+                if command is not None:
+                    error.ctx = click.Context(command, parent=ctx, info_name=ctx.invoked_subcommand)
+            raise
         except BrokenPipeError:
             raise exits.StopQuietlyError(exits.CLOSED_PIPE) from None
         except KeyboardInterrupt:

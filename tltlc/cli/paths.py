@@ -24,6 +24,8 @@ class OutputPath(click.Path):
         super().__init__(
             path_type=Path,
             allow_dash=stdout,
+            # One may write into a folder that one must not list.
+            readable=False,
             file_okay=not checked or kind != "folder",
             dir_okay=not checked or kind != "file",
         )

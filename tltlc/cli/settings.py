@@ -52,7 +52,7 @@ def compile_options(command: Function) -> Function:
                 "--library",
                 "-L",
                 metavar="DIR",
-                type=click.Path(path_type=Path),
+                type=click.Path(path_type=Path, readable=False),
                 multiple=True,
                 help="Look for imports in this folder, too (repeatable).",
             ),

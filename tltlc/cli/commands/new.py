@@ -41,7 +41,7 @@ def command(folder: Path, level: str | None) -> int:
     with Report() as report:
         if not _is_free(folder):
             title = f"`{folder}` is there already, and not empty"
-            raise TltlError([Diagnostic("TLT0722", title, help="choose another name, or remove it first")])
+            raise TltlError([Diagnostic("TLT0722", title, help="choose another name, or an empty folder")])
         files, next_ = _FILES, f"test {shlex.quote(str(folder))}"
         if level is not None:
             files = plugins.of_levels("new", "`tltlc new --level`")(level)
