@@ -98,6 +98,12 @@ MESSAGE: Final = Limit(size=1 << 22, depth=100, values=1_000_000)
 ANSWER: Final = Limit(size=1 << 25)
 """An answer of the playground; a browser takes far more, but nobody looks at it."""
 
+WORKSPACE: Final = Limit(size=1 << 26, values=200_000)
+"""The source texts in the folders that an editor shows; ``values`` counts files and folders of any kind."""
+
+WORKSPACE_PARSED: Final = Limit(size=1 << 22)
+"""Those source texts that one request of the editor needs parsed."""
+
 REQUEST_LINE: Final = Limit(size=1 << 13)
 """The first line of a request to the playground, with its line end."""
 

@@ -82,11 +82,18 @@ class Client:
         return self._number
 
     def ask(self, method: str, params: Any) -> Any:
-        number = self.start(method, params)
-        answer = self._next(lambda message: message.get("id") == number and "method" not in message)
+        answer = self.answer(self.start(method, params))
         if "error" in answer:
             raise Refused(answer["error"]["message"])
         return answer["result"]
+
+    def answer(self, number: int) -> dict[str, Any]:
+        """The answer to a request, which came already or comes."""
+
+        def is_it(message: dict[str, Any]) -> bool:
+            return message.get("id") == number and "method" not in message
+
+        return next(filter(is_it, self.said), None) or self._next(is_it)
 
     def diagnostics(self, uri: str, wanted: Callable[[list[Any]], bool] = lambda _: True) -> list[dict[str, Any]]:
         """The next diagnostics of a document that are as wanted."""

@@ -25,7 +25,7 @@ from tltlc.lsp import (
 )
 from tltlc.lsp.document import Document
 from tltlc.lsp.edits import text_edit
-from tltlc.lsp.names import Occurrence
+from tltlc.lsp.names import Occurrence, Symbol
 from tltlc.lsp.paths import name_of
 from tltlc.lsp.positions import offset, range_of
 from tltlc.lsp.session import Server
@@ -66,8 +66,8 @@ def _links(server: Server, params: types.DocumentLinkParams) -> list[types.Docum
     return imports.links(document, server.encoding, server.texts.uri) if document else None
 
 
-def _references(server: Server, params: types.ReferenceParams) -> list[types.Location] | None:
-    found = _name(server, params)
+async def _references(server: Server, params: types.ReferenceParams) -> list[types.Location] | None:
+    found = await _name_everywhere(server, params, references.may_have_references)
     if found is None:
         return None
     return [
@@ -93,23 +93,24 @@ def _highlight(server: Server, params: types.DocumentHighlightParams) -> list[ty
     ]
 
 
-def _prepare_rename(server: Server, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
-    document, at = _place(server, params)
-    found = document.name_at(at) if document else None
+async def _prepare_rename(server: Server, params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
+    found = await _name_everywhere(server, params, references.may_have_references)
+    document = server.texts.document(params.text_document.uri)
     if document is None or found is None:
         return None
     references.check_renamable(found.symbol, server.texts)
     return types.PrepareRenamePlaceholder(range_of(document.source, found.span, server.encoding), found.symbol.name)
 
 
-def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit | None:
-    found = _name(server, params)
+async def _rename(server: Server, params: types.RenameParams) -> types.WorkspaceEdit | None:
+    found = await _name_everywhere(server, params, references.may_refuse_rename)
     if found is None:
         return None
     return _workspace_edit(server, references.rename(found.symbol, params.new_name, server.texts))
 
 
-def _move_files(server: Server, params: types.RenameFilesParams) -> types.WorkspaceEdit:
+async def _move_files(server: Server, params: types.RenameFilesParams) -> types.WorkspaceEdit:
+    await server.texts.parse(moves.may_import)
     moved = [(name_of(each.old_uri), name_of(each.new_uri)) for each in params.files]
     return _workspace_edit(server, moves.edits_of_moves(moved, server.texts))
 
@@ -158,7 +159,8 @@ def _symbols(server: Server, params: types.DocumentSymbolParams) -> list[types.D
     return symbols.symbols(document, server.encoding) if document else None
 
 
-def _find_symbols(server: Server, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+async def _find_symbols(server: Server, params: types.WorkspaceSymbolParams) -> list[types.WorkspaceSymbol]:
+    await server.texts.parse(lambda text: True)
     return [
         each
         for document in server.texts.all()
@@ -207,6 +209,15 @@ def _span(server: Server, document: Document, asked: types.Range) -> Span:
 def _name(server: Server, params: Any) -> Occurrence | None:
     document, at = _place(server, params)
     return document.name_at(at) if document else None
+
+
+async def _name_everywhere(server: Server, params: Any, is_needed: Callable[[Symbol, str], bool]) -> Occurrence | None:
+    """The name at the place that a request is about, once the workspace is parsed as far as is needed for it."""
+    name = _name(server, params)
+    if name is not None:
+        await server.texts.parse(lambda text: is_needed(name.symbol, text))
+    # The text may have changed meanwhile.
+    return _name(server, params)
 
 
 FILES_AND_FOLDERS: Final = types.FileOperationRegistrationOptions(

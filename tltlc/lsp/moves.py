@@ -21,8 +21,15 @@ Moves = Sequence[tuple[str, str]]
 
 def edits_of_moves(moves: Moves, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
     """What is to be written in place of the imports that would lead nowhere, document by document."""
-    found = [(document, list(_edits(document, moves))) for document in workspace.all()]
+    found = [
+        (document, list(_edits(document, moves))) for document in workspace.all() if may_import(document.source.text)
+    ]
     return [(document, edits) for document, edits in found if edits]
+
+
+def may_import(text: str) -> bool:
+    """Whether a source text may import others."""
+    return "import" in text
 
 
 def _edits(document: Document, moves: Moves) -> Iterator[Edit]:

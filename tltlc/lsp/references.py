@@ -14,6 +14,7 @@ from tltlc.grammar.tables import load
 from tltlc.lint.rule import Edit
 from tltlc.lsp.document import Document
 from tltlc.lsp.edits import applied
+from tltlc.lsp.moves import may_import
 from tltlc.lsp.names import MERGED, Occurrence, Symbol
 from tltlc.lsp.paths import path_of
 from tltlc.lsp.workspace import Workspace
@@ -21,6 +22,8 @@ from tltlc.resolve.scope import FUNCTIONS
 from tltlc.source import SourceFile
 
 _LOCAL: Final = ("parameter", "variable")
+_OF_ONE_FILE: Final = ("variable", "spec")
+"""What is local to a formula, and specs, stand in one file."""
 _NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)*\Z")
 _PLAIN: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
@@ -39,6 +42,19 @@ def references(symbol: Symbol, workspace: Workspace) -> Found:
             if places:
                 found.append((document, places))
     return found
+
+
+def may_have_references(symbol: Symbol, text: str) -> bool:
+    """Whether places for a symbol may depend on what a source text declares and imports; its own file aside."""
+    if symbol.kind in _OF_ONE_FILE:
+        return False
+    # A signal that two files declare is one where a third one imports both.
+    return symbol.name in text or (symbol.kind in MERGED and may_import(text))
+
+
+def may_refuse_rename(symbol: Symbol, text: str) -> bool:
+    """Whether a new name for a symbol may depend on what a source text declares and imports; its own file aside."""
+    return may_have_references(symbol, text) or (symbol.kind not in _LOCAL and may_import(text))
 
 
 def rename(symbol: Symbol, name: str, workspace: Workspace) -> list[tuple[Document, list[Edit]]]:
@@ -88,11 +104,8 @@ def _declares(document: Document, symbol: Symbol, source: SourceFile) -> bool:
 def _documents(symbol: Symbol, workspace: Workspace) -> list[Document]:
     """The documents in which a symbol may stand, its own first."""
     own = workspace.named(path_of(symbol.source.name))
-    # What is local to a formula, and specs, stand in one file.
-    others = [] if symbol.kind in ("variable", "spec") else [*workspace.all()]
-    if symbol.kind not in MERGED:
-        # Which files are parts of one program with it is seen only in those that say its name.
-        others = [each for each in others if symbol.name in each.source.text]
+    others = [] if symbol.kind in _OF_ONE_FILE else [*workspace.all()]
+    others = [each for each in others if may_have_references(symbol, each.source.text)]
     found = {each.source.name: each for each in others}
     if own is not None:
         found = {own.source.name: own, **found}
@@ -141,7 +154,7 @@ def _check_free(symbol: Symbol, name: str, changed: list[tuple[Document, list[Ed
         if _shape(document, edits) != _shape(after, edits, shift=True) or _errors(after) > _errors(document):
             where = document.source.name
             raise _refused(f"`{name}` means something else in `{where}` already", "choose a name that is not taken")
-    importing = [each for each in workspace.all() if symbol.kind not in _LOCAL]
+    importing = [] if symbol.kind in _LOCAL else [each for each in workspace.all() if may_import(each.source.text)]
     for document in importing:
         if any(path_of(other.source.name) in document.reads for other, _ in changed) and not any(
             other.source.name == document.source.name for other, _ in changed

@@ -6,9 +6,10 @@ import asyncio
 import logging
 import os
 import signal
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import partial
+from inspect import iscoroutinefunction
 from io import BufferedReader
 from typing import Any, BinaryIO, Final, cast
 
@@ -109,21 +110,34 @@ def create() -> Server:
 
 def _guarded(server: Server, handler: Callable[[Server, Any], Any]) -> Callable[[Any], Any]:
     """A handler that turns what it refuses into the protocol's answer; the user looks at what it is asked about."""
+    if iscoroutinefunction(handler):
+
+        async def answer_in_steps(params: Any) -> Any:
+            with _refusals(server, params):
+                return await handler(server, params)
+
+        return answer_in_steps
 
     def answer(params: Any) -> Any:
-        try:
+        with _refusals(server, params):
             return handler(server, params)
-        except TltlError as error:
-            found = shortened(error.diagnostics[0])
-            text = f"{found.title}; {found.help}" if found.help else found.title
-            raise JsonRpcException(f"{text} ({found.code})", _REFUSED) from None
-        finally:
-            # Only now: what is closed or changed waits no more, so that nothing gives way to it.
-            document = getattr(params, "text_document", None)
-            if document is not None:
-                server.queue.looked_at(document.uri)
 
     return answer
+
+
+@contextmanager
+def _refusals(server: Server, params: Any) -> Iterator[None]:
+    try:
+        yield
+    except TltlError as error:
+        found = shortened(error.diagnostics[0])
+        text = f"{found.title}; {found.help}" if found.help else found.title
+        raise JsonRpcException(f"{text} ({found.code})", _REFUSED) from None
+    finally:
+        # Only now: what is closed or changed waits no more, so that nothing gives way to it.
+        document = getattr(params, "text_document", None)
+        if document is not None:
+            server.queue.looked_at(document.uri)
 
 
 # --- what editors tell --------------------------------------------------------------------------

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import is_file, may_be_file, noted, read_source, unsaved
+from tltlc.limits import WORKSPACE, WORKSPACE_PARSED
 from tltlc.lsp.document import Document
 from tltlc.lsp.paths import is_below, name_of, path_of, uri_of
 from tltlc.project import Project, project_for
@@ -111,16 +113,45 @@ class Workspace:
         return path in self._open or self._shows(path)
 
     def all(self) -> Iterator[Document]:
-        """The documents of the workspace: open ones, and the files of its folders."""
+        """The documents of the workspace: open ones, and the files of its folders.
+
+        Raises:
+            TltlError: TLT0004, the folders are too large to look through.
+        """
+        size = 0
         for name in self._names():
-            found = self.named(name)
-            if found is not None:
-                yield found
+            document = self.named(name)
+            if document is not None:
+                size += len(document.source.text)
+                if size > WORKSPACE.size:
+                    raise _too_large(f"{WORKSPACE.size >> 20} MiB of sources")
+                yield document
+
+    async def parse(self, is_needed: Callable[[str], bool]) -> None:
+        """Parse the texts of the workspace that are needed, so that :meth:`all` soon gives what is made of them.
+
+        Other requests are answered between two files.
+
+        Raises:
+            TltlError: TLT0004, there is too much to look through, or to parse.
+        """
+        size = 0
+        for document in self.all():
+            await asyncio.sleep(0)
+            if is_needed(document.source.text):
+                size += len(document.source.text)
+                if size > WORKSPACE_PARSED.size:
+                    raise _too_large(f"{WORKSPACE_PARSED.size >> 20} MiB of sources that may matter here")
+                _ = document.names
 
     def _names(self) -> list[str]:
         names = dict.fromkeys(self._open)
+        count = 0
         for folder in self.folders:
             for place, folders, files in os.walk(folder):
+                count += len(folders) + len(files)
+                if count > (WORKSPACE.values or 0):
+                    raise _too_large(f"{WORKSPACE.values:,} files and folders")
                 folders[:] = sorted(each for each in folders if not each.startswith(".") and each != "node_modules")
                 paths = [os.path.join(place, file) for file in sorted(files) if _is_source(file)]  # noqa: PTH118
                 names.update(dict.fromkeys(filter(may_be_file, paths)))
@@ -144,6 +175,11 @@ class Workspace:
 
 def _is_source(file: str) -> bool:
     return file.endswith(".tltl") and not file.startswith(".")
+
+
+def _too_large(what: str) -> TltlError:
+    title = f"the folders in the editor hold more than {what}"
+    return TltlError([Diagnostic("TLT0004", title, help="open a smaller folder in the editor")])
 
 
 def _is_project(name: str) -> bool:
