@@ -105,6 +105,17 @@ def note(path: str | os.PathLike[str]) -> None:
             notes[name] = stamp(name)
 
 
+def read_as(path: str | os.PathLike[str]) -> str | None:
+    """The path by which the file at ``path`` was read since the outermost :func:`noted` began; None if it was not."""
+    if not _noted:
+        return None
+    now = stamp(os.fspath(path))
+    if now is None or len(now) < 3:
+        return None
+    notes = _noted[0].items()
+    return next((name for name, was in notes if was and was[2:] == now[2:] and is_same(name, path)), None)
+
+
 def stamp(path: str) -> Stamp:
     """The state of what is at a path now."""
     try:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reason
+from tltlc.files import read_as, reason
 from tltlc.limits import SOURCE
 from tltlc.temporary import new_folders, temporaries
 
@@ -20,15 +20,21 @@ _WRITABLE: Final = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 
 def write_files(
-    folder: Path, files: Mapping[str, str | bytes], advice: str = _OPTION, *, durable: bool = False
+    folder: Path,
+    files: Mapping[str, str | bytes],
+    advice: str = _OPTION,
+    *,
+    durable: bool = False,
+    over_inputs: bool = False,
 ) -> tuple[Path, ...]:
     """Write all of the files into the folder, or none of them.  Folders are made where missing.
 
     Files that hold this already stay untouched, so that nothing is made again from them; the result is the paths of
     the others, in order.  Every file is first written under a temporary name beside its place, and only when all of
     them are there are they renamed.  If the system refuses a rename, the files that were renamed before it get their
-    older content back, and folders that were made are removed.  Text is UTF-8 with line feeds.  Error: TLT0005, with
-    ``advice`` on where else to write.
+    older content back, and folders that were made are removed.  Text is UTF-8 with line feeds.  Errors, with
+    ``advice`` on where else to write: TLT0005; TLT0700 if a file would change that the command has read, unless
+    ``over_inputs``.
 
     Each ``durable`` file is a whole one after a loss of power, too, and is not lost once this has returned, as long as
     its folder is not.
@@ -38,14 +44,24 @@ def write_files(
     """
     try:
         with new_folders({(folder / name).parent: None for name in files}):
-            return _write({folder / name: content for name, content in files.items()}, advice, durable)
+            placed = {folder / name: content for name, content in files.items()}
+            return _write(placed, advice, durable=durable, over_inputs=over_inputs)
     except (OSError, ValueError) as error:
         raise _error(folder, error, advice) from None
 
 
-def write_file(path: Path, content: str | bytes, advice: str = _OPTION, *, durable: bool = False) -> None:
+def write_file(
+    path: Path, content: str | bytes, advice: str = _OPTION, *, durable: bool = False, over_inputs: bool = False
+) -> None:
     """Write one file into a folder that exists, in the same way; a device or a pipe is written to directly."""
-    _write({path: content}, advice, durable)
+    _write({path: content}, advice, durable=durable, over_inputs=over_inputs)
+
+
+def check_not_read(path: Path, advice: str = _OPTION) -> None:
+    """Raise TLT0700 if the command has read the file at this path: no output takes the place of an input."""
+    name = read_as(path)
+    if name is not None:
+        raise TltlError([Diagnostic("TLT0700", f"`{name}` would be written over: it is an input", help=advice)])
 
 
 def rewrite(path: Path, content: str) -> None:
@@ -62,7 +78,7 @@ def rewrite(path: Path, content: str) -> None:
     if mode is not None and not (mode & _WRITABLE and os.access(path, os.W_OK)):
         help_ = "check its owner and its attributes" if mode & _WRITABLE else "make it writable"
         raise TltlError([Diagnostic("TLT0005", f"cannot write `{path}`: it is read-only", help=help_)])
-    write_file(path, content, "make it and its folder writable")
+    write_file(path, content, "make it and its folder writable", over_inputs=True)
 
 
 def remove_file(path: Path, advice: str) -> None:
@@ -91,7 +107,7 @@ def replaced(path: Path, advice: str = _OPTION) -> Iterator[Path]:
             raise _error(path, error, advice) from None
 
 
-def _write(files: Mapping[Path, str | bytes], advice: str, durable: bool) -> tuple[Path, ...]:
+def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, over_inputs: bool) -> tuple[Path, ...]:
     waiting: list[tuple[Path, Path]] = []
     written: list[Path] = []
     shown = Path()
@@ -103,6 +119,8 @@ def _write(files: Mapping[Path, str | bytes], advice: str, durable: bool) -> tup
                 # Nobody knows whether what is there would outlast a loss of power.
                 if not durable and mode is not None and _holds(shown, mode, data):
                     continue
+                if not over_inputs:
+                    check_not_read(shown, advice)
                 written.append(shown)
                 if mode is not None and not stat.S_ISREG(mode):
                     # A device or a pipe keeps its place, which a link of `/dev/fd` alone may name; a folder refuses.

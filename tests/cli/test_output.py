@@ -80,3 +80,47 @@ def test_pictures(tltlc, process, inside: Path) -> None:  # type: ignore[no-unty
     assert tltlc("render", EXAMPLE, "-t", "mermaid").out.startswith("stateDiagram-v2")
     assert "G alive" in tltlc("render", EXAMPLE, "-t", "dot", "--notation", "ascii").out
     assert "□alive" in tltlc("render", EXAMPLE, "-t", "dot").out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "input_"),
+    [
+        (("render", "a.tltl", "-o", "a.tltl", "-t", "dot"), "a.tltl"),
+        (("render", "uses.tltl", "-o", "a.tltl", "-t", "dot"), "a.tltl"),
+        (("compile", "a.fspa.json", "-p", "most=3", "-t", "json"), "a.fspa.json"),
+        (("mine", "good", "--against", "bad.csv", "-o", "good/good.csv"), "good/good.csv"),
+        (("mine", "good", "--against", "bad.csv", "-o", "bad.csv"), "bad.csv"),
+        (("mine", "good", "--predicates", "uses.tltl", "-o", "a.tltl"), "a.tltl"),
+    ],
+)
+def test_no_output_takes_the_place_of_an_input(
+    tltlc: Callable[..., Outcome], inside: Path, arguments: tuple[str, ...], input_: str
+) -> None:
+    (inside / "a.tltl").write_text("param most in [0, 5] = 1\nsignal x in [0, 9]\nspec a = F x > most\n")
+    (inside / "uses.tltl").write_text('import "a.tltl"\nspec uses = F x > 2\n')
+    tltlc("compile", "a.tltl", "-t", "json,hoa")
+    (inside / "good").mkdir()
+    (inside / "good" / "good.csv").write_text("x,seen\n1,0\n3,1\n")
+    (inside / "bad.csv").write_text("x,seen\n1,0\n1,0\n")
+    before = {path: path.read_bytes() for path in inside.rglob("*") if path.is_file()}
+    done = tltlc(*arguments)
+    assert done.status == 2
+    assert f"`{input_}` would be written over: it is an input" in done.err
+    assert before == {path: path.read_bytes() for path in inside.rglob("*") if path.is_file()}
+
+
+def test_an_input_that_would_not_change_may_be_written(tltlc: Callable[..., Outcome], inside: Path) -> None:
+    tltlc("compile", "hide.tltl", "-t", "json")
+    done = tltlc("compile", "hide.fspa.json", "-t", "json,dot")
+    assert done.status == 0
+    assert "1 file has not changed" in done.err
+
+
+def test_conformance_writes_into_no_folder_of_others(tltlc: Callable[..., Outcome], inside: Path) -> None:
+    done = tltlc("conformance", "-o", ".")
+    assert done.status == 2 and "TLT0722" in done.err
+    assert [path.name for path in inside.iterdir()] == ["hide.tltl"]
+    assert tltlc("conformance", "-o", "corpus").status == 0
+    (inside / "corpus" / "check.py").write_text("changed")
+    assert tltlc("conformance", "-o", "corpus").status == 0
+    assert (inside / "corpus" / "check.py").read_text() != "changed"

@@ -99,9 +99,15 @@ class CommandLine(click.Group):
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; click would answer these two with a status of its own."""
+        """Run the command; click would answer these two with a status of its own.
+
+        What the command reads is noted, so that none of it is written over.
+        """
+        from tltlc.files import noted
+
         try:
-            return super().invoke(ctx)
+            with noted():
+                return super().invoke(ctx)
         except click.UsageError as error:
             if error.ctx is None and ctx.invoked_subcommand is not None:
                 # click's parser of options does not know which command it serves.

@@ -58,6 +58,19 @@ def below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
     return sorted(found)
 
 
+def is_free(folder: Path) -> bool:
+    """Whether there is nothing of that name, or an empty folder."""
+    try:
+        return not os.path.lexists(folder) or not os.listdir(folder)  # noqa: PTH208
+    except OSError:
+        return False
+
+
+def in_the_way(folder: Path, advice: str) -> TltlError:
+    """TLT0722: a folder holds something, and a command makes whole folders only."""
+    return TltlError([Diagnostic("TLT0722", f"`{folder}` is there already, and not empty", help=advice)])
+
+
 def _unreadable(error: OSError) -> None:
     # A folder may be removed meanwhile.
     if not isinstance(error, FileNotFoundError):

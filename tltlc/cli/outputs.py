@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,19 +64,14 @@ def files_of(automata: Iterable[Fspa], asked: Sequence[str], project: Project, r
     return files
 
 
-def write_and_tell(folder: Path, files: Files, report: Report, read: Collection[str] = ()) -> None:
+def write_and_tell(folder: Path, files: Files, report: Report, advice: str = "name another folder with -o") -> None:
     """Write all of the files or none, and tell of each that has changed.
 
-    Raises click.UsageError where one of the files that were ``read`` would be written over.
+    Raises TltlError: TLT0005 or TLT0700, with ``advice``, as :func:`tltlc.writing.write_files` does.
     """
-    from tltlc.files import is_same
     from tltlc.writing import write_files
 
-    for name in files:
-        for input_ in read:
-            if is_same(folder / name, input_):
-                raise click.UsageError(f"`{input_}` would be written over: give another folder, with -o, or a --name")
-    written = write_files(folder, files)
+    written = write_files(folder, files, advice)
     for path in written:
         report.say(f"wrote {path}")
     unchanged = len(files) - len(written)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Final
 
 from tltlc import backends
@@ -12,8 +13,10 @@ from tltlc.automaton.fspa import Fspa
 from tltlc.conformance import arithmetic, borders, odd_traces, operators, random_cases, shapes, written
 from tltlc.conformance.case import Case, Makers
 from tltlc.conformance.expected import COLUMNS, Expected, Refusal, expected
+from tltlc.diagnostics.diagnostic import TltlError
 from tltlc.expression import Const, Op, nodes
 from tltlc.expression_eval import MULTIPLIED_EXPONENTS
+from tltlc.files import MAX_ARTEFACT_BYTES, read_source
 
 CASES: Final[Makers] = {
     **written.CASES,
@@ -49,6 +52,15 @@ def files() -> backends.Files:
         "index.json": json.dumps(document, indent=1, ensure_ascii=False) + "\n",
         **found,
     }
+
+
+def is_corpus(folder: Path) -> bool:
+    """Whether an earlier run has written into this folder: its index is there, of any version."""
+    try:
+        document = json.loads(read_source(folder / "index.json", max_bytes=MAX_ARTEFACT_BYTES).text)
+    except (TltlError, ValueError, RecursionError):
+        return False
+    return isinstance(document, dict) and document.keys() >= {"version", "columns", "tolerance", "cases"}
 
 
 def is_exact(fspa: Fspa) -> bool:

@@ -56,7 +56,7 @@ def write_policy(path: str | os.PathLike[str], policy: Policy, advice: str = "na
         TltlError: TLT0005 where the system refuses; TLT0862, it is larger than :data:`MAX_BYTES`.
         ValueError: the record of the training is not JSON data.
     """
-    write_file(Path(path), to_bytes(policy), advice, durable=True)
+    write_file(Path(path), to_bytes(policy), advice, durable=True, over_inputs=True)
 
 
 @bounded()

@@ -77,7 +77,7 @@ def write_baseline(path: Path, references: tuple[Reference, ...]) -> None:
     episodes = document.removesuffix("}").replace('{"index":', '\n{"index":')
     texts = {text_sha256(text): text.split("\n") for each in references for _, text in each.texts}
     lines = ",\n".join(_lines(sha256, each) for sha256, each in texts.items())
-    write_file(path, f'{episodes},\n"texts":{{{lines}}}}}\n', "name another place with --output")
+    write_file(path, f'{episodes},\n"texts":{{{lines}}}}}\n', "name another place with --output", over_inputs=True)
 
 
 @bounded()

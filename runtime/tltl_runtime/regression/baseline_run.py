@@ -145,4 +145,4 @@ def _played(one: Ready, pool: Pool, told: Told) -> Reference:
 
 def _keep(path: Path | None, inputs: str, references: tuple[Reference, ...]) -> None:
     if path:
-        write_file(path, kept_text(inputs, references), _ADVICE)
+        write_file(path, kept_text(inputs, references), _ADVICE, over_inputs=True)

@@ -171,7 +171,7 @@ def retrained(suite: Suite, done: Done, run: Run, pool: Pool, told: Callable[[in
         episode=f"{place}/{EPISODE}" if recording else None,
     )
     files: dict[str, str | bytes] = {EPISODE: recording} if recording else {}
-    write_files(run.folder, {**files, _RESULT: kept_text(inputs, found)}, WRITABLE)
+    write_files(run.folder, {**files, _RESULT: kept_text(inputs, found)}, WRITABLE, over_inputs=True)
     return found
 
 

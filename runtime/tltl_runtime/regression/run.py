@@ -210,7 +210,7 @@ def _write(place: Path, inputs: str, result: Result) -> CaseReport:
     named = {index: f"{index}{SUFFIX}" for index in sorted({*spoken_of, *successes[:1]})}
     report = replace(report, recordings=tuple(named.items()))
     recordings = {name: by_index[index] for index, name in named.items()}
-    write_files(place, {**recordings, _REPORT: kept_text(inputs, report)}, WRITABLE)
+    write_files(place, {**recordings, _REPORT: kept_text(inputs, report)}, WRITABLE, over_inputs=True)
     for path in place.glob(f"*{SUFFIX}"):
         # Of an earlier run, on another level perhaps.
         if path.name not in recordings:

@@ -64,7 +64,7 @@ def measured(folder: Path, model: Model, level: str, variant: str, policy: Path 
     if (kept := read_kept(tuple[Went, ...], path, inputs)) is not None:
         return kept
     episodes = tuple(_by_policy(policy, level, variant, pool) if policy else _by_expert(level, variant, pool))
-    write_file(path, kept_text(inputs, episodes))
+    write_file(path, kept_text(inputs, episodes), over_inputs=True)
     return episodes
 
 

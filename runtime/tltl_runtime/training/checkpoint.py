@@ -91,7 +91,7 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
             content[name] = {field: getattr(made, field) for field in kind.__match_args__}
     data = BytesIO()
     torch.save({"format": FORMAT, "version": VERSION, **content}, data)
-    write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True)
+    write_file(path, data.getvalue(), "make room there, and go on with --resume", durable=True, over_inputs=True)
 
 
 @bounded()

@@ -124,7 +124,7 @@ def read_metrics(path: Path) -> list[dict[str, Any]]:
 def truncate(path: Path, iteration: int) -> None:
     """Leave of ``metrics.jsonl`` the lines up to an iteration; raises TltlError, TLT0001 and TLT0005."""
     kept = [measured for measured in read_metrics(path) if measured["iteration"] <= iteration]
-    write_file(path, "".join(map(_line, kept)), _ADVICE)
+    write_file(path, "".join(map(_line, kept)), _ADVICE, over_inputs=True)
 
 
 def _line(measured: Mapping[str, Any]) -> str:

@@ -44,7 +44,9 @@ def write_record(run: Run, last: Report) -> dict[str, Any]:
     write_policy(run.folder / POLICY, Policy(replace(policy.card, training=made), policy.weights()), WRITABLE)
     text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
     title = f"{run.fspa.name} on {made['level']} {run.variant}, seed {run.seed}"
-    write_files(run.folder, {CURVE: draw_curve(title, made["curve"]), RECORD: text}, WRITABLE, durable=True)
+    write_files(
+        run.folder, {CURVE: draw_curve(title, made["curve"]), RECORD: text}, WRITABLE, durable=True, over_inputs=True
+    )
     return made
 
 

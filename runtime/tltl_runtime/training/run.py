@@ -119,7 +119,7 @@ def write_run(run: Run) -> None:
         "artefact": json.loads(artefact),
     }
     text = json.dumps(document, indent=1, ensure_ascii=False) + "\n"
-    write_files(run.folder, {RUN: text}, WRITABLE, durable=True)
+    write_files(run.folder, {RUN: text}, WRITABLE, durable=True, over_inputs=True)
 
 
 def read_run(folder: Path) -> Run:

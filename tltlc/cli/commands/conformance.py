@@ -30,14 +30,18 @@ Examples:
 def command(folder: Path) -> int:
     """Write specs and traces with what a monitor must say of them, to check an engine's build.
 
-    DIR/README.md says how; DIR/index.json is for programs.  The files are the same at each run.
+    DIR/README.md says how; DIR/index.json is for programs.  The files are the same at each run.  DIR must be new, empty
+    or made by an earlier run.
     """
+    from tltlc.cli.folders import in_the_way, is_free
     from tltlc.cli.report import Report
-    from tltlc.conformance.corpus import CASES, files
+    from tltlc.conformance.corpus import CASES, files, is_corpus
     from tltlc.writing import write_files
 
     with Report() as report:
+        if not is_free(folder) and not is_corpus(folder):
+            raise in_the_way(folder, "name another folder with -o, or an empty one")
         made = files()
-        write_files(folder, made)
+        write_files(folder, made, over_inputs=True)
         report.say(f"wrote {len(CASES)} cases, {len(made)} files, to {folder}: see {folder / 'README.md'}")
     return report.status

@@ -99,5 +99,6 @@ def command(
         found = project.levelled(found)
         stop_at_errors(found)
         report.add(found)
-        write_and_tell(folder, files_of([fspa], asked, project, report), report, (file, predicates))
+        advice = "name another folder with -o, or another spec with --name"
+        write_and_tell(folder, files_of([fspa], asked, project, report), report, advice)
     return report.status

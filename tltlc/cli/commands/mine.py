@@ -118,6 +118,7 @@ def command(
     from tltlc.mine.search import Options, Search
     from tltlc.mine.shown import shown
     from tltlc.resolve.options import ResolveOptions
+    from tltlc.writing import check_not_read
 
     if (*traces, *counterexamples).count(STDIN) > 1:
         raise click.UsageError("standard input can be one trace", click.get_current_context())
@@ -132,6 +133,8 @@ def command(
         words, evidence, found = gathered(
             _files(traces), _files(counterexamples), library, resolve, _every_second(report)
         )
+        if output is not None and not is_stdout(output):
+            check_not_read(output)
         for line in _left_out(words, predicates):
             report.say(line)
         report.add(found)
@@ -311,17 +314,14 @@ def _write(
 def _import(library: SourceFile, predicates: str, path: Path) -> str:
     """The line that imports a library, or the file of that path, into a file that is to be at ``path``.
 
-    Raises click.UsageError where there can be no such line, or the file would be written over.
+    Raises click.UsageError where there can be no such line.
     """
     import os
 
-    from tltlc.files import is_same
     from tltlc.grammar.quoted import quoted
 
     if library.name != predicates:
         return f"import {predicates}\n"
-    if is_same(path, predicates):
-        raise click.UsageError(f"`{predicates}` would be written over: give -o another name")
     try:
         relative = os.path.relpath(predicates, path.parent)
     except ValueError:

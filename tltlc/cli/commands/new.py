@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 from pathlib import Path
 from typing import Final
@@ -11,7 +10,6 @@ import click
 
 from tltlc.cli import plugins
 from tltlc.cli.paths import OutputPath
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 
 @click.command(
@@ -35,13 +33,13 @@ def command(folder: Path, level: str | None) -> int:
 
     With --level, create it with a level to be changed instead.
     """
+    from tltlc.cli.folders import in_the_way, is_free
     from tltlc.cli.report import Report
     from tltlc.writing import write_files
 
     with Report() as report:
-        if not _is_free(folder):
-            title = f"`{folder}` is there already, and not empty"
-            raise TltlError([Diagnostic("TLT0722", title, help="choose another name, or an empty folder")])
+        if not is_free(folder):
+            raise in_the_way(folder, "choose another name, or an empty folder")
         files, next_ = _FILES, f"test {shlex.quote(str(folder))}"
         if level is not None:
             files = plugins.of_levels("new", "`tltlc new --level`")(level)
@@ -50,14 +48,6 @@ def command(folder: Path, level: str | None) -> int:
             report.say(f"wrote {path}")
         report.say(f"Next: tltlc {next_}")
     return report.status
-
-
-def _is_free(folder: Path) -> bool:
-    """Whether there is nothing of that name, or an empty folder."""
-    try:
-        return not os.path.lexists(folder) or not os.listdir(folder)  # noqa: PTH208
-    except OSError:
-        return False
 
 
 _SPEC: Final = """\
