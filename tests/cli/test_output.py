@@ -5,11 +5,12 @@ import os
 import pty
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import EXAMPLE, ROOT
+from tests.cli.conftest import EXAMPLE, ROOT, Outcome
 from tests.waiting import HANG_S
 
 

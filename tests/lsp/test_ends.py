@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -107,3 +111,24 @@ def test_a_text_that_does_not_fit_into_a_pipe_stops_nobody(client: Client, tmp_p
     uri = client.open(tmp_path / "long.tltl", "signal a: bool\nspec s = G (a or not a)\n" + f"// {'a' * 900_000}\n")
     assert client.diagnostics(uri) == []
     assert [each["code"] for each in client.diagnostics(uri, bool)] == ["TLT0411"]
+
+
+def test_what_is_still_asked_at_the_end_is_dropped_without_a_word(tmp_path: Path) -> None:
+    uri = (tmp_path / "a.tltl").as_uri()
+    document = {"uri": uri, "languageId": "tltl", "version": 1, "text": "signal a: bool\nspec s = F a\n"}
+    asked = {"textDocument": {"uri": uri}, "position": {"line": 0, "character": 7}, "newName": "b"}
+    messages: list[dict[str, Any]] = [
+        {"id": 1, "method": "initialize", "params": {"processId": None, "rootUri": None, "capabilities": {}}},
+        {"method": "initialized", "params": {}},
+        {"method": "textDocument/didOpen", "params": {"textDocument": document}},
+        {"id": 2, "method": "textDocument/rename", "params": asked},
+        {"id": 3, "method": "workspace/symbol", "params": {"query": ""}},
+        {"id": 4, "method": "shutdown"},
+        {"method": "exit"},
+    ]
+    bodies = [json.dumps({"jsonrpc": "2.0", **message}).encode() for message in messages]
+    said = b"".join(b"Content-Length: %d\r\n\r\n%s" % (len(body), body) for body in bodies)
+    done = subprocess.run(
+        [sys.executable, "-m", "tltlc", "lsp"], input=said, capture_output=True, timeout=HANG_S, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, b"")

@@ -76,13 +76,21 @@ async def _listen(server: Server, file: BufferedReader) -> None:
 
 
 class _Line:
-    """What is said to the editor; once nobody reads it, there is nothing left to do."""
+    """Output to the editor.  The process ends when the editor has stopped reading.
+
+    After ``exit`` the file is closed; answers that were still being made are dropped.
+    """
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
-        self.write = file.write
+
+    def write(self, data: bytes) -> None:
+        if not self._file.closed:
+            self._file.write(data)
 
     def flush(self) -> None:
+        if self._file.closed:
+            return
         try:
             self._file.flush()
         except OSError:

@@ -90,7 +90,7 @@ def _write(folder: Path, episode: Episode, film: str | None, notation: Notation)
     from tltlc.writing import write_files
 
     recording = to_bytes(episode)
-    path = new_path(folder, file_stem(episode), recording)
+    path = new_path(folder, file_stem(episode), recording, [".png", *([f".{film}"] if film else [])])
     name = path.name.removesuffix(SUFFIX)
     write_files(folder, {f"{name}.png": draw_episode(episode, notation=notation), path.name: recording})
     if film:

@@ -84,7 +84,7 @@ class EvaluationFiles:
             self._trajectories[sampled].append(result.trajectory)
         if result.recording and self._folder is not None:
             stem = f"{self._name}-{self._setup.seed}-{result.task.index}-{CHOICES[sampled]}"
-            path = new_path(self._folder, stem, result.recording)
+            path = new_path(self._folder, stem, result.recording, [".png"])
             plan = draw_episode(from_bytes(result.recording, path.name))
             files = {path.name: result.recording, f"{path.name.removesuffix(SUFFIX)}.png": plan}
             write_files(self._folder, files)

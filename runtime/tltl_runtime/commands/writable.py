@@ -10,18 +10,21 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 from tltlc.files import exists, is_file, reason
+from tltlc.writing import check_not_read
 
 _OUTPUT: Final = ("-", "/dev/stdout")
 
 
 def check_writable(files: Mapping[str, Path | None]) -> None:
-    """Raise TltlError, TLT0005, where a file cannot be written; ``files`` are named by their options.
+    """Check, before minutes of play, that files can be written; ``files`` are named by their options.
 
-    Better to know before minutes of play.
+    Raises:
+        TltlError: TLT0005 if one cannot be written, TLT0700 if one is an input of the command.
     """
     for option, path in files.items():
         if path is None or not _takes_a_place(path):
             continue
+        check_not_read(path, f"name another place with {option}")
         try:
             # Its name may be one that the system does not allow.
             with suppress(FileNotFoundError):

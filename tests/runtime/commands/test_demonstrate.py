@@ -40,6 +40,15 @@ def test_it_writes_the_same_again_and_over_nothing_else(tltlc, tmp_path: Path) -
     assert sorted(path.name for path in tmp_path.glob("*.png")) == sorted(f"{name}.png" for name in names)
 
 
+def test_it_writes_over_no_picture_of_another(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
+    mine = tmp_path / "cover_and_hide-v0-0.png"
+    mine.write_text("mine")
+    tltlc("demonstrate", "cover_and_hide", "-o", str(tmp_path))
+    assert mine.read_text() == "mine"
+    stem = "cover_and_hide-v0-0-2"
+    assert {path.name for path in tmp_path.iterdir()} == {mine.name, f"{stem}.png", f"{stem}.episode.npz"}
+
+
 def test_failing_is_a_finding(tltlc, tmp_path: Path) -> None:  # type: ignore[no-untyped-def] # noqa: F811
     (tmp_path / "never.tltl").write_text("import stealth\nspec never { limit 5 steps\n reach seen }")
     spec = f"{tmp_path / 'never.tltl'}"

@@ -87,6 +87,16 @@ def test_the_report_for_programs(tltlc: Run, policy: Path) -> None:  # noqa: F81
     assert again["episodes"] == said["episodes"][2:]
 
 
+def test_the_report_takes_the_place_of_no_input(tltlc: Run, policy: Path, tmp_path: Path) -> None:  # noqa: F811
+    mine = tmp_path / "mine.safetensors"
+    shutil.copy(policy, mine)
+    found = tltlc("evaluate", mine, "--episodes", "1", "--json", mine)
+    assert found.status == 2
+    assert f"`{mine}` would be written over: it is an input" in found.err
+    assert "played" not in found.err
+    assert mine.read_bytes() == policy.read_bytes()
+
+
 def test_a_policy_that_is_replaced_meanwhile(
     tltlc: Run,  # noqa: F811
     policy: Path,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -80,16 +80,24 @@ def file_stem(episode: Episode) -> str:
     return f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
 
 
-def new_path(folder: Path, stem: str, content: bytes | None = None) -> Path:
-    """Where an episode can be written without harm to an older one: ``STEM.episode.npz``, or ``STEM-2`` and so on.
+def new_path(folder: Path, stem: str, content: bytes | None = None, pictures: Iterable[str] = ()) -> Path:
+    """Return a path for an episode that overwrites nothing: ``STEM.episode.npz``, else ``STEM-2`` and so on.
 
-    A file that holds just this ``content`` already is no harm to write again.
+    ``pictures`` are the endings of files that are written beside the episode, such as ``.png``.  A file that holds
+    exactly this ``content`` may be written again, and so may its pictures.
     """
-    path, number = folder / f"{stem}{SUFFIX}", 1
-    while path.exists() and not (path.is_file() and path.read_bytes() == content):
+    name, number = stem, 1
+    while not _is_free(folder, name, content, pictures):
         number += 1
-        path = folder / f"{stem}-{number}{SUFFIX}"
-    return path
+        name = f"{stem}-{number}"
+    return folder / f"{name}{SUFFIX}"
+
+
+def _is_free(folder: Path, name: str, content: bytes | None, pictures: Iterable[str]) -> bool:
+    path = folder / f"{name}{SUFFIX}"
+    if os.path.lexists(path):
+        return path.is_file() and path.read_bytes() == content
+    return not any(os.path.lexists(folder / f"{name}{ending}") for ending in pictures)
 
 
 def write_episode(path: str | os.PathLike[str], episode: Episode) -> None:
