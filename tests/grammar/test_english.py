@@ -14,10 +14,9 @@ import pytest
 
 import tltlc
 from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar import english
 from tltlc.grammar.parser import parse
-from tltlc.lint.ways_out import of_messages
+from tltlc.lint.scopes import after
 from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
 from tltlc.source import SourceFile
@@ -254,16 +253,9 @@ CASES = {
 def mended(clause: str) -> str | None:
     """The clause after the edit that its help offers, None where it offers none."""
     text = f"spec s {{ {clause}\n}}\n"
-    module, said = parse(SourceFile("a.tltl", text))
-    ways = list(of_messages(said, module, _errors))
-    if not ways:
-        return None
-    (edit,) = ways[0].edits
-    return f"{text[: edit.span.start]}{edit.text}{text[edit.span.end :]}"
-
-
-def _errors(source: SourceFile) -> tuple[Diagnostic, ...]:
-    return parse(source)[1]
+    source = SourceFile("a.tltl", text)
+    fixes = [fix for each in parse(source)[1] for fix in each.fixes]
+    return after(source, fixes[0].edits).text if fixes else None
 
 
 def compiled(text: str) -> Fspa:

@@ -33,7 +33,7 @@ def unknown_keyword(place: Place) -> Diagnostic | None:
         near = closest(token.text, tuple(keywords))
     message = f"did you mean `{near}`?" if near else ""
     listed = ", ".join(f"`{word}`" for word in keywords)
-    return place.error("TLT0107", title, None if near else f"one of {listed}", message)
+    return place.error("TLT0107", title, None if near else f"one of {listed}", message, write=near)
 
 
 def clause_outside(place: Place) -> Diagnostic | None:
@@ -83,9 +83,8 @@ def joined_clauses(place: Place) -> Diagnostic | None:
     if place.start != "clause" or word not in CLAUSES or before is None or before.type != "AND" or place.open_brackets:
         return None
     span = span_of([before, place.found])
-    return place.error(
-        "TLT0101", f"clauses are not joined by {shown(before)}", f"write `{word}` alone: all clauses count", span=span
-    )
+    title = f"clauses are not joined by {shown(before)}"
+    return place.error("TLT0101", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 
 
 def limit_in_other_words(place: Place) -> Diagnostic | None:
@@ -97,7 +96,8 @@ def judge(place: Place) -> Diagnostic | None:
     """``judge goal``."""
     if place.before is None or place.before.type != "JUDGE" or place.found.text not in JUDGE:
         return None
-    return place.error("TLT0101", place.expectation(), f"write `at {place.found.text}`")
+    text = f"at {place.found.text}"
+    return place.error("TLT0101", place.expectation(), f"write `{text}`", write=text)
 
 
 def without_braces(place: Place) -> Diagnostic | None:
@@ -107,7 +107,8 @@ def without_braces(place: Place) -> Diagnostic | None:
         return None
     title = "the clauses of a spec stand in braces"
     if before.type == "EQUAL" and found.type == "LBRACE":
-        return place.error("TLT0101", f"{title}, without `=`", "write `{` alone", span=span_of([before, found]))
+        span = span_of([before, found])
+        return place.error("TLT0101", f"{title}, without `=`", "write `{` alone", span=span, write="{")
     if "LBRACE" not in place.allowed or not (found.text in CLAUSES or found.text in (":", "(", "[")):
         return None
     return place.error("TLT0101", title, "put `{` before the first one and `}` behind the last")
@@ -119,7 +120,7 @@ def sign_behind_keyword(place: Place) -> Diagnostic | None:
         return None
     word = place.tokens[0].text
     title = f"no {shown(place.found)} stands behind `{word}`"
-    return place.error("TLT0104", title, f"write `{word}` alone", span=span_of(place.tokens[:2]))
+    return place.error("TLT0104", title, f"write `{word}` alone", span=span_of(place.tokens[:2]), write=word)
 
 
 def _outside(place: Place) -> Diagnostic:
@@ -138,10 +139,9 @@ def _no_clause(place: Place, title: str) -> Diagnostic | None:
         return found
     mark = next((index for index in (1, 2) if tokens[index:] and tokens[index].text in CLAUSES), None)
     if mark and not any(_is_word(each) for each in tokens[:mark]):
-        word, signs = tokens[mark].text, written(place, 0, mark)
-        return place.error(
-            "TLT0107", f"no clause begins with `{signs}`", f"write `{word}` alone", span=span_of(tokens[: mark + 1])
-        )
+        word, signs, span = tokens[mark].text, written(place, 0, mark), span_of(tokens[: mark + 1])
+        title = f"no clause begins with `{signs}`"
+        return place.error("TLT0107", title, f"write `{word}` alone", span=span, write=word)
     if not any(_is_word(each) for each in tokens[:-1]):
         return place.error("TLT0107", title, "leave it out: a clause begins with its keyword")
     found = conditional(place)
@@ -151,7 +151,7 @@ def _no_clause(place: Place, title: str) -> Diagnostic | None:
         # A clause has no bound of its own.
         bound = len(tokens) > 2 and tokens[1].text in ("within", "for", "[")
         meant = f"require {token.text}" if bound else _OF_OPERATOR[token.type]
-        return place.error("TLT0107", title, None, f"did you mean `{meant}`?")
+        return place.error("TLT0107", title, None, f"did you mean `{meant}`?", write=meant)
     if token.type in INFIX:
         return place.error("TLT0107", title, f"it stands between two formulas, and there is none before `{token.text}`")
     if token.text.lower() in ("allow", "permit", "may", "can"):

@@ -125,7 +125,7 @@ def compared(place: Place) -> Diagnostic | None:
         value = place.tokens[at + length].type
         if value == "NUMBER" or (value == "NAME" and phrase[0] != "at"):
             title, span = f"{shown(place.found)} is no operator", span_of(place.tokens[at : at + length])
-            return place.error("TLT0101", title, f"write `{sign}`", span=span)
+            return place.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
     return None
 
 
@@ -156,7 +156,8 @@ def _without(place: Place) -> Diagnostic:
     alone = not _has(place, at + 1, formula_stop(place), INFIX) and not _has(
         place, _goals(place, at)[-1], at, _AMBIGUOUS
     )
-    return place.error("TLT0101", "`without` is no operator", f"{'write' if alone else 'use'} {help_}")
+    write = "avoid" if alone else None
+    return place.error("TLT0101", "`without` is no operator", f"{'write' if alone else 'use'} {help_}", write=write)
 
 
 def _untimed(place: Place, forms: Forms) -> Diagnostic:

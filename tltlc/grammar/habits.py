@@ -72,8 +72,10 @@ def arrow(place: Place) -> Diagnostic | None:
     if sign not in ("=>", "=<"):
         return None
     number = len(after) > 1 and after[1].type == "NUMBER"
-    help_ = "write `<=`" if sign == "=<" else "write `>=`" if number else "write `implies` or `->`"
-    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span_of(place.tokens[at : at + 2]))
+    meant = "<=" if sign == "=<" else ">=" if number else "implies"
+    help_ = f"write `{meant}`" + (" or `->`" if meant == "implies" else "")
+    span = span_of(place.tokens[at : at + 2])
+    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span, write=meant)
 
 
 def comment(place: Place) -> Diagnostic | None:
@@ -81,9 +83,8 @@ def comment(place: Place) -> Diagnostic | None:
     after = place.tokens[place.stop.index + 1 :][:1]
     if place.found.text != "-" or not after or after[0].text != "-" or not touch(place.found, after[0]):
         return None
-    return place.error(
-        "TLT0104", "`--` means nothing here", "write `//` before a comment", span=span_of([place.found, after[0]])
-    )
+    span = span_of([place.found, after[0]])
+    return place.error("TLT0104", "`--` means nothing here", "write `//` before a comment", span=span, write="//")
 
 
 def unit(place: Place) -> Diagnostic | None:
@@ -94,7 +95,8 @@ def unit(place: Place) -> Diagnostic | None:
     title = f"there is no unit {shown(found)}"
     known = UNITS_ELSEWHERE.get(found.text.lower())
     if known:
-        return place.error("TLT0111", title, None, f"write `{number.text} {known}`", span_of([number, found]))
+        text = f"{number.text} {known}"
+        return place.error("TLT0111", title, None, f"write `{text}`", span_of([number, found]), write=text)
     is_call = place.tokens[place.stop.index + 1].type == "LPAR"
     if is_call or place.allowed == {"UNIT"} or is_first_on_line(place.source, place.tokens, place.stop.index):
         return None
@@ -110,8 +112,9 @@ def doubled(place: Place) -> Diagnostic | None:
         return None
     title = f"{shown(before)} and {shown(found)} stand side by side"
     word = found.text if (before.type, found.type) == ("AND", "THEN") else before.text
-    help_ = f"write `{word}` alone" if found.type in ("THEN", before.type) else "leave one of the two out"
-    return place.error("TLT0101", title, help_, span=span_of([before, found]))
+    write = word if found.type in ("THEN", before.type) else None
+    help_ = f"write `{write}` alone" if write else "leave one of the two out"
+    return place.error("TLT0101", title, help_, span=span_of([before, found]), write=write)
 
 
 def prefix_between(place: Place) -> Diagnostic | None:
@@ -124,8 +127,9 @@ def prefix_between(place: Place) -> Diagnostic | None:
     if last or found.type not in {*BEFORE_ONE, "ALL", "ANY"} or not place.wants_operator:
         return None
     goal = keyword == "reach" and found.type in ("NEXT", "EVENTUALLY")
-    help_ = "write `then`" if goal else f"write `and {found.text}`"
-    return place.error("TLT0101", f"{shown(found)} stands before one formula, not between two", help_)
+    write = "then" if goal else f"and {found.text}"
+    title = f"{shown(found)} stands before one formula, not between two"
+    return place.error("TLT0101", title, f"write `{write}`", write=write)
 
 
 def side(tokens: Sequence[Token], at: int, step: int) -> int:

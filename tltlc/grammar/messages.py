@@ -68,7 +68,8 @@ def _bounds(place: Place) -> Diagnostic | None:
         return _no_number(place)
     if place.allowed == {"UNIT"} and before:
         help_ = f"write `{before.text} steps` or, with a clock, `{before.text} s`"
-        return place.error("TLT0111", f"expected a unit after {shown(before)}", help_, span=before.span)
+        title = f"expected a unit after {shown(before)}"
+        return place.error("TLT0111", title, help_, span=before.span, write=f"{before.text} steps")
     if place.found.type == "RSQB" and before and "COMMA" in place.allowed and _is_bound(place):
         return _one_end(place, before.text)
     if place.found.type == "LSQB" and before and before.type in UNTILS:
@@ -154,11 +155,12 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
         return None
     if re.fullmatch("[FGXN]{2,}", before.text):
         letters = " ".join(before.text)
-        return place.error("TLT0101", f"`{before.text}` is read as one name", f"write `{letters}`", span=before.span)
+        title = f"`{before.text}` is read as one name"
+        return place.error("TLT0101", title, f"write `{letters}`", span=before.span, write=letters)
     words = tuple(word for word, terminal in load().words.items() if terminal in INFIX and len(word) > 1)
     near = closest(token.text, words) if token.type == "NAME" else None
     if near and _is_before_operand(place):
-        return place.error("TLT0101", place.expectation(), None, f"did you mean `{near}`?")
+        return place.error("TLT0101", place.expectation(), None, f"did you mean `{near}`?", write=near)
     meant = before.text.lower()
     if meant not in load().words and meant != "no":
         prefixes = (word for word, terminal in load().words.items() if terminal in {*BEFORE_ONE, "WHEN"})
@@ -166,8 +168,9 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
         meant = closest(before.text, known) or ""
     if not meant or before.type != "NAME":
         return None
-    message = f"did you mean `{'not' if meant == 'no' else meant}`?"
-    return place.error("TLT0101", f"`{before.text}` is no operator", None, message, before.span)
+    meant = "not" if meant == "no" else meant
+    title = f"`{before.text}` is no operator"
+    return place.error("TLT0101", title, None, f"did you mean `{meant}`?", before.span, write=meant)
 
 
 def _is_before_operand(place: Place) -> bool:
@@ -198,7 +201,7 @@ def _otherwise(place: Place) -> Diagnostic | None:
     """``when a: 1 else: 0``."""
     if place.found.text not in ("else", "default") or "OTHERWISE" not in place.allowed:
         return None
-    return place.error("TLT0101", f"{shown(place.found)} begins no case", "write `otherwise`")
+    return place.error("TLT0101", f"{shown(place.found)} begins no case", "write `otherwise`", write="otherwise")
 
 
 def _cases(place: Place) -> Diagnostic | None:
@@ -220,9 +223,10 @@ def _side_by_side(place: Place) -> Diagnostic | None:
         return place.error("TLT0101", title, "formulas are joined by `and`, `or` or `then`")
     if _is_before_operand(place):
         return place.error("TLT0101", f"{shown(found)} is no operator", "formulas are joined by `and`, `or` or `then`")
-    help_ = f"write `{before.text}({found.text})` where the one is said of the other; else join them by `and` or `then`"
+    text = f"{before.text}({found.text})"
+    help_ = f"write `{text}` where the one is said of the other; else join them by `and` or `then`"
     title = f"{shown(before)} and {shown(found)} are not joined"
-    return place.error("TLT0101", title, help_, span=span_of([before, found]))
+    return place.error("TLT0101", title, help_, span=span_of([before, found]), write=text)
 
 
 def _operator_for_name(place: Place) -> Diagnostic | None:

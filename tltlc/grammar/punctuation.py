@@ -27,11 +27,10 @@ def comma(place: Place) -> Diagnostic | None:
     if place.found.type != "COMMA" or before is None or not place.wants_operator or place.open_brackets:
         return None
     after = place.tokens[at + 1]
-    if before.type == after.type == "NUMBER" and touch(before, place.found) and touch(place.found, after):
+    if before.type == after.type == "NUMBER" and _touch(place, at):
         text = f"{before.text}.{after.text}"
-        return place.error(
-            "TLT0104", "a number has a point, no comma", f"write `{text}`", span=span_of([before, after])
-        )
+        span = span_of([before, after])
+        return place.error("TLT0104", "a number has a point, no comma", f"write `{text}`", span=span, write=text)
     if after.type == END:
         return place.error("TLT0104", "`,` means nothing here", left_out(place))
     word, reason = _COMMA.get(place.tokens[0].text, ("and", ""))
@@ -39,6 +38,12 @@ def comma(place: Place) -> Diagnostic | None:
     start, stop = formula_start(place), formula_stop(place)
     found = reworded(place, start, stop, _joined(place, start, stop, word), title, reason, "TLT0104")
     return found or place.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
+
+
+def _touch(place: Place, at: int) -> bool:
+    """Whether a token touches both the one before it and the one behind it."""
+    before, found, behind = place.tokens[at - 1 : at + 2]
+    return touch(before, found) and touch(found, behind)
 
 
 def _joined(place: Place, start: int, stop: int, word: str) -> str:
@@ -71,7 +76,7 @@ def missing_comma(place: Place) -> Diagnostic | None:
     number = before.type == "UNIT"
     text = f"{written(place, place.stop.index - 1 - number, place.stop.index)}, {found.text}"
     span = span_of(place.tokens[place.stop.index - 1 - number : place.stop.index + 1])
-    return place.error("TLT0101", place.expectation(), f"write `{text}`", span=span)
+    return place.error("TLT0101", place.expectation(), f"write `{text}`", span=span, write=text)
 
 
 def argument(place: Place) -> Diagnostic | None:
@@ -81,12 +86,12 @@ def argument(place: Place) -> Diagnostic | None:
         return None
     title = "an argument by name has `=` before its value"
     if place.found.type == "COLON":
-        return place.error("TLT0101", title, f"write `{before.text} =`", span=span_of([before, place.found]))
-    if place.found.type != "NUMBER":
+        text = f"{before.text} ="
+    elif place.found.type == "NUMBER":
+        text = f"{before.text} = {place.found.text}"
+    else:
         return None
-    return place.error(
-        "TLT0101", title, f"write `{before.text} = {place.found.text}`", span=span_of([before, place.found])
-    )
+    return place.error("TLT0101", title, f"write `{text}`", span=span_of([before, place.found]), write=text)
 
 
 def no_arguments(place: Place) -> Diagnostic | None:
@@ -98,7 +103,7 @@ def no_arguments(place: Place) -> Diagnostic | None:
     name = place.tokens[at - 2].text
     title = "there is nothing in these brackets"
     help_ = f"write `{name}` alone, or what it is said of between them"
-    return place.error("TLT0101", title, help_, span=span_of(place.tokens[at - 2 : at + 1]))
+    return place.error("TLT0101", title, help_, span=span_of(place.tokens[at - 2 : at + 1]), write=name)
 
 
 def brackets(place: Place) -> Diagnostic | None:
@@ -145,7 +150,8 @@ def no_name(place: Place) -> Diagnostic | None:
         span, text = span_of([before, after[0]]), f"{before.text}_{after[0].text}"
     else:
         return None
-    return place.error("TLT0104", f"`{place.source.slice(span)}` is no name", f"{rule}: write `{text}`", span=span)
+    title = f"`{place.source.slice(span)}` is no name"
+    return place.error("TLT0104", title, f"{rule}: write `{text}`", span=span, write=text)
 
 
 def value_of_signal(place: Place) -> Diagnostic | None:
@@ -159,7 +165,7 @@ def type_alone(place: Place) -> Diagnostic | None:
     """``signal at(entity): bool``."""
     if place.found.type != "ENTITY" or "NAME" not in place.allowed or not place.open_brackets:
         return None
-    return place.error("TLT0101", "a parameter has a name", "write `x: entity`")
+    return place.error("TLT0101", "a parameter has a name", "write `x: entity`", write="x: entity")
 
 
 def several(place: Place) -> Diagnostic | None:
@@ -174,7 +180,7 @@ def range_word(place: Place) -> Diagnostic | None:
     """``signal coins [0, 50]``."""
     if place.found.type != "LSQB" or "IN" not in place.allowed or place.before is None or place.before.text == "in":
         return None
-    return place.error("TLT0101", place.expectation(), "write `in [`")
+    return place.error("TLT0101", place.expectation(), "write `in [`", write="in [")
 
 
 def left_out(place: Place) -> str:

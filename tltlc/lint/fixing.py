@@ -5,12 +5,12 @@ from __future__ import annotations
 from bisect import bisect, insort
 from collections.abc import Container, Iterable, Mapping, Sequence
 
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
 from tltlc.grammar.allowed import spoken_of
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
 from tltlc.limits import WORK
-from tltlc.lint.rule import Edit, Finding
+from tltlc.lint.rule import Finding
 from tltlc.lint.run import levelled, lint
 from tltlc.lint.scopes import after, keeping_scopes
 from tltlc.pipeline import CompileOptions

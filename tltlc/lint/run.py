@@ -71,8 +71,8 @@ def _at(finding: Finding, severity: str) -> Finding:
 
 def _found(rule: Rule, view: View) -> Iterator[Finding]:
     for remark in rule.check(view):
-        diagnostic = Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity)
-        yield Finding(diagnostic, remark.fix)
+        fixes = (remark.fix,) if remark.fix else ()
+        yield Finding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
 
 
 def _is_superseded(said: Diagnostic, of_rules: Iterable[tuple[Rule, Finding]]) -> bool:

@@ -4,24 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.parser import parse
-from tltlc.lint.ways_out import of_messages
+from tltlc.lint.scopes import after
 from tltlc.source import SourceFile
 
 
 def mended(text: str) -> str:
-    """A text after the first way out that its one message names."""
+    """A text after the first fix of its one message."""
     source = SourceFile("a.tltl", text)
-    module, (diagnostic,) = parse(source)
-    way_out = next(iter(of_messages([diagnostic], module, errors)))
-    for edit in sorted(way_out.edits, key=lambda edit: -edit.span.start):
-        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
-    return text
-
-
-def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
-    return parse(source)[1]
+    _, (diagnostic,) = parse(source)
+    fixed = after(source, diagnostic.fixes[0].edits)
+    assert not parse(fixed)[1]
+    return fixed.text
 
 
 @pytest.mark.parametrize(
