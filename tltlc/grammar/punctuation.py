@@ -19,6 +19,9 @@ _COMMA: Final = {
     "avoid": ("or", ""),
 }
 """What joins the formulas of a clause, where it is not `and`."""
+_NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
+_IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
+_QUANTIFIERS: Final = frozenset(("ALL", "ANY"))
 
 
 def comma(place: Place) -> Diagnostic | None:
@@ -28,9 +31,7 @@ def comma(place: Place) -> Diagnostic | None:
         return None
     after = place.tokens[at + 1]
     if before.type == after.type == "NUMBER" and _touch(place, at):
-        text = f"{before.text}.{after.text}"
-        span = span_of([before, after])
-        return place.error("TLT0104", "a number has a point, no comma", f"write `{text}`", span=span, write=text)
+        return _comma_in_number(place)
     if after.type == END:
         return place.error("TLT0104", "`,` means nothing here", left_out(place))
     word, reason = _COMMA.get(place.tokens[0].text, ("and", ""))
@@ -38,6 +39,25 @@ def comma(place: Place) -> Diagnostic | None:
     start, stop = formula_start(place), formula_stop(place)
     found = reworded(place, start, stop, _joined(place, start, stop, word), title, reason, "TLT0104")
     return found or place.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
+
+
+def _comma_in_number(place: Place) -> Diagnostic:
+    """``2,5``, and ``1,000``, which is a thousand in one country and one in another."""
+    at = place.stop.index
+    stop = at + 2
+    while place.tokens[stop].type == "COMMA" and place.tokens[stop + 1].type == "NUMBER" and _touch(place, stop):
+        stop += 2
+    text = place.source.slice(span_of(place.tokens[at - 1 : stop]))
+    span, title = span_of(place.tokens[at - 1 : stop]), "a number has a point, no comma"
+    thousands, fraction = text.replace(",", ""), text.replace(",", ".")
+    is_fraction, in_thousands = _NUMBER.fullmatch(fraction), _IN_THOUSANDS.fullmatch(text)
+    if in_thousands:
+        help_ = f"write `{thousands}` where a comma parts the thousands"
+        help_ += f", `{fraction}` where it stands for a point" if is_fraction else ""
+        return place.error("TLT0104", title, help_, span=span)
+    if is_fraction:
+        return place.error("TLT0104", title, f"write `{fraction}`", span=span, write=fraction)
+    return place.error("TLT0104", title, "write it without commas", span=span)
 
 
 def _touch(place: Place, at: int) -> bool:
@@ -50,7 +70,7 @@ def _joined(place: Place, start: int, stop: int, word: str) -> str:
     """Tokens with a word in place of each comma outside brackets, or with none where an operator follows anyway."""
     text = ""
     for end in [*(index for index in outside(place.tokens, start, stop) if place.tokens[index].type == "COMMA"), stop]:
-        part = written(place, start, end) if word == "then" else operand(place, start, end)
+        part = _goal(place, start, end) if word == "then" else operand(place, start, end)
         if start == end:
             continue
         if text and place.tokens[start].type in INFIX:
@@ -59,6 +79,15 @@ def _joined(place: Place, start: int, stop: int, word: str) -> str:
             text += f" {word} {part}" if text else part
         start = end + 1
     return text
+
+
+def _goal(place: Place, start: int, stop: int) -> str:
+    """Tokens before `then`: a quantifier in brackets, as it reaches as far as it can, over the `then` too."""
+    quantifiers = (index for index in outside(place.tokens, start, stop) if place.tokens[index].type in _QUANTIFIERS)
+    at = next(quantifiers, None)
+    if at is None:
+        return written(place, start, stop)
+    return f"{written(place, start, at)} ({written(place, at, stop)})".strip()
 
 
 def missing_comma(place: Place) -> Diagnostic | None:
