@@ -17,6 +17,7 @@ from tltlc.source import Span
 _QUOTES: Final = frozenset("\"'`´‘’‚“”„«»")
 _SIGNS: Final = {"−": "-", "×": "*", "÷": "/", "≔": "=", "°": "deg"}
 """What stands for a sign from elsewhere, beside what Unicode knows of its form."""
+_SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 _HELPS: Final = {
     "#": "comments begin with `//`",
     "%": "a percentage follows a number, as in `50%`",
@@ -66,10 +67,15 @@ def strange(place: Place) -> Diagnostic | None:
 
 
 def _name(place: Place) -> Diagnostic:
-    """``café``."""
+    """``café`` and ``coins²``."""
     from unicodedata import normalize
 
     text = place.found.text
+    base = text.rstrip(_SUPERSCRIPTS)
+    if base != text and (not base or (base.isascii() and base.isidentifier())):
+        power = f"{base}^{normalize('NFKC', text[len(base) :])}"
+        title = f"{shown(place.found)} is no name" if base else f"`{text}` means nothing here"
+        return place.error("TLT0104", title, f"for a power write `{power}`", write=power)
     plain = "".join(sign for sign in normalize("NFKD", text) if sign.isascii())
     write = plain if plain.isidentifier() and len(plain) == len(text) else None
     help_ = "names are ASCII letters, digits and `_`" + (f": write `{write}`" if write else "")
