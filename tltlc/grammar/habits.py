@@ -79,12 +79,21 @@ def arrow(place: Place) -> Diagnostic | None:
 
 
 def comment(place: Place) -> Diagnostic | None:
-    """``-- a comment``."""
-    after = place.tokens[place.stop.index + 1 :][:1]
-    if place.found.text != "-" or not after or after[0].text != "-" or not touch(place.found, after[0]):
-        return None
-    span = span_of([place.found, after[0]])
-    return place.error("TLT0104", "`--` means nothing here", "write `//` before a comment", span=span, write="//")
+    """``-- a comment``, whose words may be read as far as they make a formula."""
+    tokens, at = place.tokens, place.stop.index
+    for index in range(min(at, len(tokens) - 2), -1, -1):
+        first, second, behind = tokens[index], tokens[index + 1], tokens[index + 2 : index + 3]
+        if first.text == second.text == "-" and touch(first, second):
+            # `--3` is a number.
+            if index < at and behind and touch(second, behind[0]):
+                return None
+            span = span_of([first, second])
+            return place.error(
+                "TLT0104", "`--` means nothing here", "write `//` before a comment", span=span, write="//"
+            )
+        if is_first_on_line(place.source, tokens, index):
+            return None
+    return None
 
 
 def unit(place: Place) -> Diagnostic | None:
@@ -148,7 +157,6 @@ HABITS: Final[tuple[Callable[[Place], Diagnostic | None], ...]] = (
     arrow,
     equality,
     chained,
-    comment,
     unit,
     doubled,
     prefix_between,

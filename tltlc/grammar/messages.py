@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr
 from tltlc.grammar.clauses import CLAUSE_RULES
 from tltlc.grammar.english import compared, filler, plain_english
-from tltlc.grammar.habits import HABITS, side
+from tltlc.grammar.habits import HABITS, comment, side
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
 from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, OPERAND, UNTILS, Place, shown
@@ -244,6 +244,7 @@ def _operator_for_name(place: Place) -> Diagnostic | None:
 
 
 _RULES: Final = (
+    comment,
     strange,
     plain_english,
     compared,
