@@ -18,6 +18,8 @@ from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
 _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
 
+_MOST_LETTERS = 4
+"""So many operators may stand in front of a name."""
 _MOST_NAMES = 5
 """So many entities are named in a message."""
 _MOST_HINTS = 50
@@ -51,6 +53,9 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
         )
     title, source = f"no {what} `{use.name}` here", env.scope.source
     is_helped = len(env.context.log) < _MOST_HINTS
+    meant = _in_two_words(use.name, env, wanted) if is_helped and what == "predicate" else None
+    if meant:
+        raise problem("TLT0201", title, source, span, f"did you mean `{meant}`?", fixes=(instead(source, span, meant),))
     near = closest_name(use.name, env.scope, wanted, env.local) if is_helped else None
     if near:
         binding = env.scope.names.get(near)
@@ -71,6 +76,18 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
 
 
 _OTHERWISE = "declare it, e.g. `{}`, or import the library that has it"
+
+
+def _in_two_words(name: str, env: Env, wanted: tuple[Kind, ...]) -> str | None:
+    """``F a`` for ``Fa``, where `a` is a name of one of these kinds; None for all else."""
+    for letters in range(1, min(len(name), _MOST_LETTERS + 1)):
+        if name[letters - 1] not in "FGXN":
+            break
+        rest = name[letters:]
+        binding = env.scope.names.get(rest)
+        if rest in env.local or (binding is not None and binding.kind in wanted):
+            return " ".join((*name[:letters], rest))
+    return None
 
 
 def entity(expr: Expr, env: Env) -> Entity:
