@@ -123,7 +123,12 @@ MEANT = {
     "reach alive(key)": [],
     "reach at": [],
     "reach a and then b": ["reach a then b"],
+    "keep a and then b": [],
     "keep a not b": ["keep a and not b"],
+    "keep a and b not c": ["keep a and b and not c"],
+    "keep a or b not c": [],
+    "keep a not b or c": [],
+    "reach a or b next c": ["reach a or b then c"],
     "keep a and keep b": ["keep a keep b"],
     "keep coins is more than 3": ["keep coins > 3"],
 }  # fmt: skip

@@ -8,7 +8,18 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
-from tltlc.grammar.place import ARITHMETIC, BEFORE_ONE, CLOSING, COMPARISONS, INFIX, OPENING, Place, shown, touch
+from tltlc.grammar.place import (
+    ARITHMETIC,
+    BEFORE_ONE,
+    CLOSING,
+    COMPARISONS,
+    INFIX,
+    OPENING,
+    Place,
+    outside,
+    shown,
+    touch,
+)
 from tltlc.grammar.punctuation import NAME
 from tltlc.grammar.rewording import formula_start, formula_stop, reworded, span_of, written
 from tltlc.grammar.tables import load
@@ -121,7 +132,9 @@ def doubled(place: Place) -> Diagnostic | None:
         return None
     title = f"{shown(before)} and {shown(found)} stand side by side"
     word = found.text if (before.type, found.type) == ("AND", "THEN") else before.text
-    write = word if found.type in ("THEN", before.type) else None
+    # `keep a then b` asks for `b` after the last step.
+    is_order = found.type == "THEN" and place.tokens[0].text != "keep"
+    write = word if found.type == before.type or is_order else None
     help_ = f"write `{write}` alone" if write else "leave one of the two out"
     return place.error("TLT0101", title, help_, span=span_of([before, found]), write=write)
 
@@ -136,9 +149,12 @@ def prefix_between(place: Place) -> Diagnostic | None:
     if last or found.type not in {*BEFORE_ONE, "ALL", "ANY"} or not place.wants_operator:
         return None
     goal = keyword == "reach" and found.type in ("NEXT", "EVENTUALLY")
-    write = "then" if goal else f"and {found.text}"
+    meant = "then" if goal else f"and {found.text}"
     title = f"{shown(found)} stands before one formula, not between two"
-    return place.error("TLT0101", title, f"write `{write}`", write=write)
+    # Beside another operator, `and` may take too little.
+    stops = outside(place.tokens, formula_start(place), formula_stop(place))
+    is_clear = goal or all(place.tokens[index].type not in INFIX - {"AND"} for index in stops)
+    return place.error("TLT0101", title, f"write `{meant}`", write=meant if is_clear else None)
 
 
 def side(tokens: Sequence[Token], at: int, step: int) -> int:

@@ -83,7 +83,7 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
         if x.is_constant:
             message, advice = "both sides are constant", f"compare a signal, or write `{constant}`"
         elif _is_percentage(x, c, op, expr):
-            text, end = f"{source.slice(expr.span)} %", expr.span.end
+            text, end = f"{' '.join(source.slice(expr.span).split())} %", expr.span.end
             advice = f"write `{text}`: a ratio is a number in [0, 1]"
             fix = Fix(f"Write `{text}`", (Edit(Span(end, end), " %"),))
         title = f"this comparison {'always' if holds else 'never'} holds"

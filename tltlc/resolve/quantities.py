@@ -188,7 +188,7 @@ def _check_speed(expr: tree.Binary, env: Env) -> None:
     speed = replace(expr, left=inner.right)
     if per.name not in env.scope.names and _is_per_time(speed, env):
         span = inner.right.span.to(per.span)
-        text = f"({env.scope.source.slice(span)})"
+        text = f"({' '.join(env.scope.source.slice(span).split())})"
         raise problem(
             "TLT0304",
             "a speed needs brackets here",
