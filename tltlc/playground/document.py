@@ -14,7 +14,7 @@ from tltlc.explain.document import failure_texts
 from tltlc.explain.explanation import Explanation, explain
 from tltlc.explain.values import values
 from tltlc.lint.fixes import Offer, of_findings
-from tltlc.lint.run import findings, levelled, view_of
+from tltlc.lint.run import findings, view_of
 from tltlc.monitor.tests import run_tests
 from tltlc.pipeline import CompileOptions
 from tltlc.playground.mending import of_errors
@@ -64,7 +64,7 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     except TltlError as error:
         offers = of_errors(source, error.diagnostics, libraries)
         return {**found, **_told(error.diagnostics, source, offers)}
-    remarks = levelled(findings(seen), project.lint)
+    remarks = findings(seen, project.lint)
     results = run_tests(seen.program, (each.fspa for each in seen.specs))
     said = [*(each.diagnostic for each in remarks), *(result.failure for result in results if result.failure)]
     found.update(_told(said, source, list(of_findings(remarks[:MOST_MESSAGES], seen.module))))
