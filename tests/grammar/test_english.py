@@ -37,7 +37,8 @@ TIME = f"{STEPS} steps"
 CLAUSES = ("reach", "keep", "avoid", "require")
 PREFIXES = ("", "c then ", "c and ", "c or ", "c implies ", "not ")
 CONDITIONS = ("if", "when", "whenever", "while", "during")
-INFIX = (*CONDITIONS, "before", "after", "followed by", "unless", "without", "but", "xor")
+ORDER = ("before", "after", "followed by")
+INFIX = (*CONDITIONS, *ORDER, "unless", "without", "but", "xor", "xnor", "nor", "nand")
 TIMES = ("within", "in", "before", "by", "for", "after")
 
 
@@ -116,7 +117,7 @@ def prefixed_by(prefix: str, formula: Here) -> Here:
 
 def of_infix(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX a WORD b`."""
-    if prefix == "c implies " or (prefix == "c then " and clause != "reach"):
+    if prefix == "c implies " or (prefix == "c then " and clause != "reach") or _is_open(clause, prefix, word):
         return None
     first = prefix if prefix != "c then " else ""
     left = prefixed_by(first, a)
@@ -129,6 +130,23 @@ def of_infix(clause: str, prefix: str, word: str) -> Whole | None:
     return whole(clause, prefixed_by("c then ", goal) if prefix == "c then " else goal)
 
 
+def _is_open(clause: str, prefix: str, word: str) -> bool:
+    """Whether it is open what the word belongs to, and that is not the same either way."""
+    if clause == "require" and word in CONDITIONS[1:]:
+        return True
+    if prefix == "not ":
+        same = {"keep": (*CONDITIONS, "before", "after", "unless"), "require": CONDITIONS}.get(clause, ())
+        return word not in (*same, "but", "xor", "xnor")
+    if word in CONDITIONS:
+        return prefix == ("c or " if clause in ("reach", "avoid") else "c and ")
+    joined = {
+        "unless": ("c and ", "c then ", *(() if clause in ("reach", "keep") else ("c or ",))),
+        "without": ("c and ", "c or ", "c then ") if clause == "reach" else ("c or ",),
+        "but": ("c or ",),
+    }
+    return prefix in (("c and ", "c or ") if word in ORDER else joined.get(word, ()))
+
+
 def _joined(clause: str, word: str, left: Here, *, is_alone: bool, is_negated: bool) -> Here | tuple[Here] | None:
     """What is asked for in a clause; in a tuple where it is asked for at the first sample."""
     if word in CONDITIONS:
@@ -138,10 +156,11 @@ def _joined(clause: str, word: str, left: Here, *, is_alone: bool, is_negated: b
     if word == "unless":
         met = {"reach": either(left, b), "keep": either(left, b), "avoid": both(left, negated(b))}
         return met.get(clause, until(left, b))
-    if word == "xor" and not is_alone:
+    if word in ("xor", "xnor", "nor", "nand") and not is_alone:
         return None
     different = both(either(left, b), negated(both(left, b)))
-    return {"without": both(left, negated(b)), "but": both(left, b), "xor": different}[word]
+    states = {"without": both(left, negated(b)), "but": both(left, b), "xor": different, "xnor": negated(different)}
+    return {**states, "nor": negated(either(left, b)), "nand": negated(both(left, b))}[word]
 
 
 def _ordered(clause: str, word: str, left: Here, *, is_negated: bool) -> Here | tuple[Here] | None:
@@ -196,6 +215,8 @@ def before_clause(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX WORD b, a`."""
     allowed = {"reach": ("", "c and ", "c or ", "c then "), "avoid": ("", "c and ", "c or ")}
     if prefix not in allowed.get(clause, ("", "c and ", "c or ", "c implies ")):
+        return None
+    if clause == "require" and word != "if":
         return None
     condition = both(a, b) if clause in ("reach", "avoid") else either(a, negated(b))
     return whole(clause, prefixed_by(prefix, condition))

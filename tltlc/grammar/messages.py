@@ -9,13 +9,14 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr
 from tltlc.grammar.clauses import CLAUSE_RULES
+from tltlc.grammar.clear import has
 from tltlc.grammar.english import compared, filler, plain_english
 from tltlc.grammar.habits import HABITS, comment, side
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
 from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, OPERAND, UNTILS, Place, shown
 from tltlc.grammar.punctuation import PUNCTUATION, missing_comma
-from tltlc.grammar.rewording import reworded, span_of, written
+from tltlc.grammar.rewording import formula_stop, reworded, span_of, written
 from tltlc.grammar.strange import strange
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CASES, CLAUSES, DECLARATIONS, closest
@@ -157,6 +158,9 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
         letters = " ".join(before.text)
         title = f"`{before.text}` is read as one name"
         return place.error("TLT0101", title, f"write `{letters}`", span=before.span, write=letters)
+    if token.text.lower() == "else":
+        help_ = "`a or b` asks for one of both; of conditions, one follows the other in `when x > 3: 1 otherwise: -1`"
+        return place.error("TLT0101", "`else` is no operator", help_)
     words = tuple(word for word, terminal in load().words.items() if terminal in INFIX and len(word) > 1)
     near = closest(token.text, words) if token.type == "NAME" else None
     if near and _is_before_operand(place):
@@ -168,8 +172,10 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
         meant = closest(before.text, known) or ""
     if not meant or before.type != "NAME":
         return None
-    meant = "not" if meant == "no" else meant
     title = f"`{before.text}` is no operator"
+    if meant == "no" and has(place, place.stop.index, formula_stop(place), INFIX):
+        return place.error("TLT0101", title, "`(not a) or b` is about one, `not (a or b)` about both")
+    meant = "not" if meant == "no" else meant
     return place.error("TLT0101", title, None, f"did you mean `{meant}`?", before.span, write=meant)
 
 
