@@ -10,7 +10,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
 from tltlc.grammar.allowed import Allowed, allowed, codes, is_allowing
 from tltlc.grammar.tree import Comment
 from tltlc.lint.removal import without
-from tltlc.lint.rule import Edit, Finding
+from tltlc.lint.rule import Finding, removal
 from tltlc.lint.view import View
 from tltlc.source import SourceFile, Span
 
@@ -56,8 +56,8 @@ def _in_vain(each: Allowed, is_kept: bool) -> Finding:
     where = "in this file" if each.places is None else "here"
     title = f"this allows {each.code}, which is not found {where}"
     label = Label(each.source, each.span)
-    fix = () if is_kept else (Edit(without(each.source, each.comment.span), ""),)
-    return Finding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY), fix)
+    fixes = () if is_kept else (removal("Remove it", (without(each.source, each.comment.span),)),)
+    return Finding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY, fixes))
 
 
 def _without_code(comment: Comment, source: SourceFile) -> Finding:

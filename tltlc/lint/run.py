@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
+from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, stop_at_errors
 from tltlc.grammar.allowed import unsilenced
@@ -13,31 +14,41 @@ from tltlc.lint.rule import Finding, Rule
 from tltlc.lint.rules import rules
 from tltlc.lint.view import SpecView, View
 from tltlc.pipeline import CompileOptions, build_spec
-from tltlc.record import replace
+from tltlc.record import EMPTY, replace
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolution
 from tltlc.source import SourceFile
 
+_COUNTS: Final = {"note": 0, "warning": 1, "error": 2}
+
 
 def lint(
-    source: SourceFile, options: CompileOptions | None = None, elsewhere: Container[str] = frozenset()
+    source: SourceFile,
+    options: CompileOptions | None = None,
+    elsewhere: Container[str] = frozenset(),
+    levels: Mapping[str, str] = EMPTY,
 ) -> tuple[Finding, ...]:
     """What is to be said of a file that compiles, in the order of its text; the compiler's own warnings are among it.
 
     All specs of the file are looked at, whatever the options name; ``elsewhere`` are names that other files may use
-    of it.
+    of it, and ``levels`` are as of :func:`levelled`.
     Errors: :class:`TltlError` with everything that was found, as of :func:`tltlc.pipeline.compile_source`.
     """
-    return findings(replace(view_of(source, options or CompileOptions()), elsewhere=elsewhere))
+    return findings(replace(view_of(source, options or CompileOptions()), elsewhere=elsewhere), levels)
 
 
-def findings(view: View) -> tuple[Finding, ...]:
-    """What the compiler and the rules have to say of a file, less what its comments silence."""
-    # The body of a quantifier is looked at once for each entity, and says the same of all.
-    of_rules = [(rule, finding) for rule in rules() for finding in dict.fromkeys(_found(rule, view))]
-    found = [Finding(said) for said in view.said if not _is_superseded(said, of_rules)]
-    found += [finding for _, finding in of_rules if not _is_superseded(finding.diagnostic, of_rules)]
-    return tuple(sorted(silenced(view, found), key=lambda finding: _place(finding, view.source)))
+def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[Finding, ...]:
+    """What the compiler and the rules have to say of a file, less what its comments and ``levels`` silence.
+
+    Only what is shown supersedes anything, and nothing of a higher severity than its own.
+    """
+    found = [Finding(said) for said in view.said]
+    for rule in rules():
+        # The body of a quantifier is looked at once for each entity, and says the same of all.
+        found += dict.fromkeys(_found(rule, view))
+    shown = levelled(silenced(view, found), levels)
+    left = (finding for finding in shown if not _is_superseded(finding.diagnostic, shown))
+    return tuple(sorted(left, key=lambda finding: _place(finding, view.source)))
 
 
 def levelled(found: Iterable[Finding], levels: Mapping[str, str]) -> tuple[Finding, ...]:
@@ -71,13 +82,15 @@ def _at(finding: Finding, severity: str) -> Finding:
 
 def _found(rule: Rule, view: View) -> Iterator[Finding]:
     for remark in rule.check(view):
-        diagnostic = Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity)
-        yield Finding(diagnostic, remark.fix)
+        fixes = (remark.fix,) if remark.fix else ()
+        yield Finding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
 
 
-def _is_superseded(said: Diagnostic, of_rules: Iterable[tuple[Rule, Finding]]) -> bool:
-    """Whether a rule says more of one of the places that a diagnostic points at."""
-    places = [finding.diagnostic.labels[0] for rule, finding in of_rules if said.code in rule.supersedes]
+def _is_superseded(said: Diagnostic, shown: Iterable[Finding]) -> bool:
+    """Whether a rule says more of one of the places that a diagnostic points at, and counts as much."""
+    codes = {rule.code for rule in rules() if said.code in rule.supersedes}
+    more = (finding.diagnostic for finding in shown if finding.diagnostic.code in codes)
+    places = [each.labels[0] for each in more if _COUNTS[each.severity] >= _COUNTS[said.severity]]
     return any(
         label.source == place.source and label.span.covers(place.span) for label in said.labels for place in places
     )

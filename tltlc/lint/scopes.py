@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.allowed import spoken_of
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
 from tltlc.lint.removal import without
-from tltlc.lint.rule import Edit
 from tltlc.source import SourceFile, Span
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal, Union
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.record import record, replace
 from tltlc.resolve.imports import Loaded
@@ -67,19 +67,15 @@ def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
     return tuple(scopes.values())
 
 
-def suggestion(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str:
-    """``did you mean `near` (from stealth)?`` for the closest visible name, or an empty text."""
+def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str | None:
+    """The visible name of one of these kinds that is most like a name that is not known, if any is."""
     from difflib import get_close_matches
 
     wanted = set(kinds)
     known = [n for n, binding in scope.names.items() if binding.kind in wanted]
     names = [*local, *known]
     close = [n for n in names if n.lower() == name.lower()] or get_close_matches(name, names, n=1, cutoff=0.6)
-    if not close:
-        return ""
-    binding = scope.names.get(close[0])
-    via = f" (from {binding.via})" if binding and binding.via else ""
-    return f"did you mean `{close[0]}`{via}?"
+    return close[0] if close else None
 
 
 def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, log: Log) -> None:
@@ -171,7 +167,9 @@ def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str,
 
     close = get_close_matches(wanted.name, list(offered), n=1)
     hint = f"did you mean `{close[0]}`?" if close else ""
-    return problem("TLT0205", f"{library} offers no `{wanted.name}`", scope.source, wanted.span, hint).diagnostic
+    fixes = tuple(instead(scope.source, wanted.span, name) for name in close)
+    title = f"{library} offers no `{wanted.name}`"
+    return problem("TLT0205", title, scope.source, wanted.span, hint, fixes=fixes).diagnostic
 
 
 def _prefixed(target: str | None) -> str:

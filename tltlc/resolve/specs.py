@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Literal, cast
 
-from tltlc.diagnostics.diagnostic import Label
+from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.expression import Expression, nodes
 from tltlc.expression import Param as ParamNode
 from tltlc.expression import Signal as SignalNode
@@ -157,7 +157,9 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
     if clause.value.unit is None:
         digits = env.scope.source.slice(clause.value.span)
         advice = f"write `{digits} steps` or, with a clock, `{digits} s`"
-        raise problem("TLT0312", "a limit needs a unit", env.scope.source, clause.value.span, advice=advice)
+        fixes = (instead(env.scope.source, clause.value.span, f"{digits} steps"),)
+        title, place = "a limit needs a unit", clause.value.span
+        raise problem("TLT0312", title, env.scope.source, place, advice=advice, fixes=fixes)
     steps = samples(clause.value, env)
     if steps < 1:
         title, advice = "a limit is at least one step", "write e.g. `limit 400 steps`"

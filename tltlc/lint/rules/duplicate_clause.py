@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tltlc.diagnostics.diagnostic import Fix
 from tltlc.lint.removal import without
-from tltlc.lint.rule import Edit, Fix, Remark, Rule
+from tltlc.lint.rule import Remark, Rule, removal
 from tltlc.lint.view import SpecView, View
 from tltlc.logic.formula import Formula
 from tltlc.resolve.spec import Part
@@ -22,13 +23,13 @@ def check(view: View) -> Iterator[Remark]:
                 yield Remark("this clause stands here twice", labels, "remove one of them", _fix(part, spec, view))
 
 
-def _fix(part: Part, spec: SpecView, view: View) -> Fix:
+def _fix(part: Part, spec: SpecView, view: View) -> Fix | None:
     """Without the clause, where the part is all that it says."""
     for clause in spec.declaration.clauses:
         alone = [each for each in spec.spec.parts if clause.span.covers(each.span)]
         if alone == [part]:
-            return (Edit(without(view.source, clause.span, view.module.comments), ""),)
-    return ()
+            return removal("Remove one of them", (without(view.source, clause.span, view.module.comments),))
+    return None
 
 
 RULE = Rule("TLT0425", "warning", check)

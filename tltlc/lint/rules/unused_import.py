@@ -6,7 +6,7 @@ from collections.abc import Container, Iterator
 
 from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import
 from tltlc.lint.removal import item, without
-from tltlc.lint.rule import Edit, Remark, Rule
+from tltlc.lint.rule import Remark, Rule, removal
 from tltlc.lint.view import View
 from tltlc.resolve.imports import Loaded
 
@@ -23,7 +23,7 @@ def check(view: View) -> Iterator[Remark]:
             gone = without(view.source, declaration.span, view.module.comments)
             title = f"nothing of `{declaration.target}` is used"
             remark = view.label(declaration.target_span)
-            yield Remark(title, (remark,), "remove the import, or use it", (Edit(gone, ""),))
+            yield Remark(title, (remark,), "remove the import, or use it", removal("Remove the import", (gone,)))
         else:
             yield from _names(declaration, used, view)
 
@@ -34,7 +34,7 @@ def _names(declaration: Import, used: Container[str], view: View) -> Iterator[Re
         if f"{_prefix(declaration)}{name.name}" not in used:
             gone = item([each.span for each in names], index, view.module.comments)
             title = f"`{name.name}` of `{declaration.target}` is not used"
-            fix = tuple(Edit(span, "") for span in gone)
+            fix = removal("Remove it from the import", gone)
             yield Remark(title, (view.label(name.span),), "remove it from the import, or use it", fix)
 
 

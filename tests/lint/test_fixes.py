@@ -1,4 +1,4 @@
-"""Ways out that can be taken at once, as editors and the playground offer them."""
+"""Fixes that can be taken at once, as editors and the playground offer them."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import pytest
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.parser import parse
+from tltlc.lint.fixes import Offer, of_errors, of_findings
 from tltlc.lint.run import lint
-from tltlc.lint.ways_out import WayOut, of_findings, of_messages
+from tltlc.lint.scopes import after
 from tltlc.resolve.program import resolve
 from tltlc.source import SourceFile
 
@@ -17,15 +18,9 @@ def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
     return (*found, *resolve(module)[1])
 
 
-def ways_out(text: str) -> list[WayOut]:
+def offers(text: str) -> list[Offer]:
     source = SourceFile("x.tltl", text)
-    return list(of_messages(errors(source), parse(source)[0], errors))
-
-
-def after(text: str, way_out: WayOut) -> str:
-    for edit in sorted(way_out.edits, key=lambda edit: edit.span.start, reverse=True):
-        text = text[: edit.span.start] + edit.text + text[edit.span.end :]
-    return text
+    return list(of_errors(errors(source), source, errors))
 
 
 @pytest.mark.parametrize(
@@ -40,24 +35,29 @@ def after(text: str, way_out: WayOut) -> str:
         ("signal a: bool\nspec x = F a &", {}),
     ],
 )
-def test_what_messages_name_is_tried(text: str, expected: dict[str, str]) -> None:
-    assert {each.title: after(text, each) for each in ways_out(text)} == expected
+def test_fixes_of_errors(text: str, expected: dict[str, str]) -> None:
+    source = SourceFile("x.tltl", text)
+    assert {each.fix.title: after(source, each.fix.edits).text for each in offers(text)} == expected
 
 
-def test_what_leaves_as_much_to_be_mended_is_no_way_out() -> None:
+def test_what_leaves_as_much_to_be_mended_is_not_offered() -> None:
     # Its import would not have it either.
-    module = parse(SourceFile("x.tltl", "spec x = F alive"))[0]
-    told = errors(module.source)
-    assert list(of_messages(told, module, lambda _: told)) == []
+    source = SourceFile("x.tltl", "spec x = F alive")
+    told = errors(source)
+    assert told[0].fixes
+    assert list(of_errors(told, source, lambda _: told)) == []
 
 
 def test_a_fix_is_named_by_what_it_does() -> None:
     source = SourceFile("x.tltl", "import core\nsignal a: bool\nentity e\nspec x = F a")
-    assert [each.title for each in of_findings(lint(source), parse(source)[0])] == ["Remove the import", "Remove it"]
+    assert [each.fix.title for each in of_findings(lint(source), parse(source)[0])] == [
+        "Remove the import",
+        "Remove it",
+    ]
 
 
 def test_a_fix_keeps_the_comments_that_allow_something() -> None:
     allow = "// tltlc: allow TLT0419\n"
     source = SourceFile("x.tltl", f"/// Old.\n{allow}import core\nsignal a: bool\nspec x {{\n    reach a\n}}\n")
-    (way_out,) = of_findings(lint(source), parse(source)[0])
-    assert after(source.text, way_out) == f"{allow}signal a: bool\nspec x {{\n    reach a\n}}\n"
+    (offer,) = of_findings(lint(source), parse(source)[0])
+    assert after(source, offer.fix.edits).text == f"{allow}signal a: bool\nspec x {{\n    reach a\n}}\n"
