@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from tltlc.automaton.build import default_judge
 from tltlc.automaton.contradiction import contradiction
+from tltlc.automaton.judge import judge_of
 from tltlc.diagnostics.diagnostic import Label
 from tltlc.lint.relations import is_impossible, relations
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.rules import recurrence
 from tltlc.lint.view import SpecView, View
-from tltlc.logic.formula import Formula, and_, not_
+from tltlc.logic.formula import Formula, not_
 from tltlc.record import replace
 from tltlc.resolve.spec import Part, Spec
 
@@ -62,8 +62,8 @@ def _decides_judge(part: Part, spec: Spec) -> bool:
     """Whether the spec would be judged at another moment without this part of its formula."""
     if spec.judge is not None or spec.semantics == "infinite":
         return False
-    left = and_(*(each.formula for each in spec.parts if each.formula is not part.formula))
-    return default_judge(left) != default_judge(spec.formula)
+    left = [each for each in spec.parts if each.formula is not part.formula]
+    return judge_of(left) != judge_of(spec.parts)
 
 
 def _known(part: Part, spec: SpecView) -> list[Part]:
