@@ -39,10 +39,7 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
     for clause in declaration.clauses:
         try:
             if clause.kind in _READERS:
-                before = len(env.context.bounds)
-                found = _READERS[clause.kind](clause, env)
-                bounds = tuple(env.context.bounds[before:])
-                parts.extend(replace(part, bounds=bounds) for part in found)
+                parts.extend(_parts(clause, env))
             elif clause.kind == "tag":
                 tags.extend(tag.name for tag in cast("tuple[Name, ...]", clause.value) if tag.name not in tags)
             else:
@@ -94,6 +91,21 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
         exclusive=tuple(tuple(sorted(names.index(name) for name in group)) for group in exclusive),
         clock_s=context.clock_s,
     )
+
+
+def _parts(clause: Clause, env: Env) -> list[Part]:
+    """What a clause asks for, with its bounds, and without them where the program has any."""
+    read = _READERS[clause.kind]
+    before = len(env.context.bounds)
+    parts = read(clause, env)
+    if not env.context.bounds:
+        return parts
+    bounds = tuple(env.context.bounds[before:])
+    unbounded = [part.formula for part in read(clause, replace(env, unbounded=True))]
+    return [
+        replace(part, bounds=bounds, unbounded=other if other is not part.formula else None)
+        for part, other in zip(parts, unbounded, strict=True)
+    ]
 
 
 def _reach(clause: Clause, env: Env) -> list[Part]:
