@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping
 
 from tltlc.diagnostics.diagnostic import Diagnostic, stop_at_errors
-from tltlc.grammar.allowed import unsilenced
 from tltlc.grammar.parser import parse
+from tltlc.grammar.silencing import unsilenced
 from tltlc.grammar.tree import SpecDecl
 from tltlc.lint.allow import silenced
 from tltlc.lint.rule import Finding, Rule
