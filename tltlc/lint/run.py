@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
 
-from tltlc.diagnostics.diagnostic import Diagnostic, stop_at_errors
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, stop_at_errors
 from tltlc.grammar.parser import parse
 from tltlc.grammar.silencing import unsilenced
 from tltlc.grammar.tree import SpecDecl
@@ -35,8 +35,12 @@ def findings(view: View) -> tuple[Finding, ...]:
     """What the compiler and the rules have to say of a file, less what its comments silence."""
     # The body of a quantifier is looked at once for each entity, and says the same of all.
     of_rules = [(rule, finding) for rule in rules() for finding in dict.fromkeys(_found(rule, view))]
-    found = [Finding(said) for said in view.said if not _is_superseded(said, of_rules)]
-    found += [finding for _, finding in of_rules if not _is_superseded(finding.diagnostic, of_rules)]
+    better: dict[str, list[Label]] = {}
+    for rule, finding in of_rules:
+        for code in rule.supersedes:
+            better.setdefault(code, []).append(finding.diagnostic.labels[0])
+    found = [Finding(said) for said in view.said] + [finding for _, finding in of_rules]
+    found = [each for each in found if not _is_superseded(each.diagnostic, better.get(each.diagnostic.code, ()))]
     return tuple(sorted(silenced(view, found), key=lambda finding: _place(finding, view.source)))
 
 
@@ -75,9 +79,8 @@ def _found(rule: Rule, view: View) -> Iterator[Finding]:
         yield Finding(diagnostic, remark.fix)
 
 
-def _is_superseded(said: Diagnostic, of_rules: Iterable[tuple[Rule, Finding]]) -> bool:
-    """Whether a rule says more of one of the places that a diagnostic points at."""
-    places = [finding.diagnostic.labels[0] for rule, finding in of_rules if said.code in rule.supersedes]
+def _is_superseded(said: Diagnostic, places: Iterable[Label]) -> bool:
+    """Whether a diagnostic points at one of the places of which a rule says more."""
     return any(
         label.source == place.source and label.span.covers(place.span) for label in said.labels for place in places
     )

@@ -12,6 +12,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.allowed import spoken_of
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Import, Module
+from tltlc.limits import WORK
 from tltlc.lint.rule import Edit, Finding
 from tltlc.lint.scopes import keeping_scopes
 from tltlc.record import record
@@ -37,10 +38,18 @@ class WayOut:
 
 
 def of_findings(found: Iterable[Finding], module: Module) -> Iterator[WayOut]:
-    """The fixes of rules in a module, as ``tltlc lint --fix`` applies them: comments keep what they allow."""
+    """The fixes of rules in a module, as ``tltlc lint --fix`` applies them: comments keep what they allow.
+
+    Where there are comments, each fix is tried once, and only so many are tried at all.
+    """
     has_comments = bool(spoken_of(module))
+    tried: dict[tuple[Edit, ...], tuple[Edit, ...] | None] = {}
     for finding in found:
-        edits = keeping_scopes(module, finding.fix) if finding.fix and has_comments else finding.fix
+        edits: tuple[Edit, ...] | None = finding.fix
+        if has_comments and finding.fix:
+            if finding.fix not in tried and len(tried) < WORK["fixes tried"]:
+                tried[finding.fix] = keeping_scopes(module, finding.fix)
+            edits = tried.get(finding.fix)
         if edits:
             # "remove it, or use it": the second is left to whoever writes.
             way_out = (finding.diagnostic.help or "mend it").splitlines()[0].partition(", or ")[0]
