@@ -6,8 +6,10 @@ from collections.abc import Mapping
 
 import pytest
 
-from tests.lint.helpers import APART, block, codes
+from tests.lint.helpers import APART, block, codes, found
+from tltlc.lint.rule import Remark
 from tltlc.lint.run import lint
+from tltlc.lint.view import View
 from tltlc.source import SourceFile
 
 NO_TRACE, NO_GOAL = "TLT0410", "TLT0414"
@@ -56,3 +58,25 @@ def test_an_error_stays_where_a_warning_says_more() -> None:
 )
 def test_long_formulas_are_linted(formula: str) -> None:
     assert set(codes(f"signal a: bool signal b: bool let both = a & b spec x = {formula}")) >= {"TLT0421"}
+
+
+class _Rule:
+    """A rule that says something of each declaration, and counts how often it is asked what it supersedes."""
+
+    code, severity = "TLT0432", "warning"
+    asked = 0
+
+    def check(self, view: View) -> list[Remark]:
+        return [Remark("odd", (view.label(each.span),), "mend it") for each in view.module.declarations]
+
+    @property
+    def supersedes(self) -> tuple[str, ...]:
+        self.asked += 1
+        return ("TLT0410",)
+
+
+def test_a_rule_is_asked_once_what_it_supersedes(monkeypatch: pytest.MonkeyPatch) -> None:
+    rule = _Rule()
+    monkeypatch.setattr("tltlc.lint.run.rules", lambda: (rule,))
+    assert len(found("".join(f"signal a{number}: bool\n" for number in range(100)))) == 100
+    assert rule.asked == 1

@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Fix
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix
 from tltlc.grammar.allowed import spoken_of
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
+from tltlc.limits import WORK
 from tltlc.lint.rule import Finding
 from tltlc.lint.scopes import after, keeping_scopes
 from tltlc.record import record, replace
@@ -32,11 +33,19 @@ class Offer:
 
 
 def of_findings(found: Iterable[Finding], module: Module) -> Iterator[Offer]:
-    """The fixes of rules in a module, as ``tltlc lint --fix`` applies them: comments keep what they allow."""
+    """The fixes of rules in a module, as ``tltlc lint --fix`` applies them: comments keep what they allow.
+
+    Where there are comments, each fix is tried once, and only so many are tried at all.
+    """
     has_comments = bool(spoken_of(module))
+    tried: dict[tuple[Edit, ...], tuple[Edit, ...] | None] = {}
     for finding in found:
         for fix in finding.diagnostic.fixes:
-            edits = keeping_scopes(module, fix.edits) if has_comments else fix.edits
+            edits: tuple[Edit, ...] | None = fix.edits
+            if has_comments:
+                if fix.edits not in tried and len(tried) < WORK["fixes tried"]:
+                    tried[fix.edits] = keeping_scopes(module, fix.edits)
+                edits = tried.get(fix.edits)
             if edits:
                 yield Offer(finding.diagnostic, replace(fix, edits=edits))
 

@@ -6,8 +6,8 @@ from collections.abc import Container, Iterable, Iterator, Mapping
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, stop_at_errors
-from tltlc.grammar.allowed import unsilenced
 from tltlc.grammar.parser import parse
+from tltlc.grammar.silencing import unsilenced
 from tltlc.grammar.tree import SpecDecl
 from tltlc.lint.allow import silenced
 from tltlc.lint.rule import Finding, Rule
@@ -43,11 +43,17 @@ def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[Finding, ..
     Only what is shown supersedes anything, and nothing of a higher severity than its own.
     """
     found = [Finding(said) for said in view.said]
+    supersedes: dict[str, tuple[str, ...]] = {}
     for rule in rules():
         # The body of a quantifier is looked at once for each entity, and says the same of all.
         found += dict.fromkeys(_found(rule, view))
+        supersedes[rule.code] = rule.supersedes
     shown = levelled(silenced(view, found), levels)
-    left = (finding for finding in shown if not _is_superseded(finding.diagnostic, shown))
+    more: dict[str, list[Diagnostic]] = {}
+    for finding in shown:
+        for code in supersedes.get(finding.diagnostic.code, ()):
+            more.setdefault(code, []).append(finding.diagnostic)
+    left = [each for each in shown if not _is_superseded(each.diagnostic, more.get(each.diagnostic.code, ()))]
     return tuple(sorted(left, key=lambda finding: _place(finding, view.source)))
 
 
@@ -86,14 +92,11 @@ def _found(rule: Rule, view: View) -> Iterator[Finding]:
         yield Finding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
 
 
-def _is_superseded(said: Diagnostic, shown: Iterable[Finding]) -> bool:
+def _is_superseded(diagnostic: Diagnostic, more: Iterable[Diagnostic]) -> bool:
     """Whether a rule says more of one of the places that a diagnostic points at, and counts as much."""
-    codes = {rule.code for rule in rules() if said.code in rule.supersedes}
-    more = (finding.diagnostic for finding in shown if finding.diagnostic.code in codes)
-    places = [each.labels[0] for each in more if _COUNTS[each.severity] >= _COUNTS[said.severity]]
-    return any(
-        label.source == place.source and label.span.covers(place.span) for label in said.labels for place in places
-    )
+    places = [other.labels[0] for other in more if _COUNTS[other.severity] >= _COUNTS[diagnostic.severity]]
+    labels = diagnostic.labels
+    return any(label.source == place.source and label.span.covers(place.span) for label in labels for place in places)
 
 
 def _place(finding: Finding, source: SourceFile) -> tuple[bool, int, str]:
