@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Final, Union
@@ -161,6 +161,38 @@ def is_dir(path: str | os.PathLike[str]) -> bool:
         return False
     note(path)
     return os.path.isdir(path)  # noqa: PTH112
+
+
+def walk(
+    folder: str | os.PathLike[str], onerror: Callable[[OSError], object] | None = None
+) -> Iterator[tuple[str, list[str], list[str]]]:
+    """Yield what :func:`os.walk` yields from the top down, for folders of any depth.
+
+    Before Python 3.12 that one calls itself for each level, and ends in a RecursionError.
+    """
+    waiting = [os.fspath(folder)]
+    while waiting:
+        place = waiting.pop()
+        folders: list[str] = []
+        files: list[str] = []
+        try:
+            with os.scandir(place) as entries:
+                for entry in entries:
+                    (folders if _leads_to_folder(entry) else files).append(entry.name)
+        except OSError as error:
+            if onerror is not None:
+                onerror(error)
+            continue
+        yield place, folders, files
+        paths = (os.path.join(place, name) for name in reversed(folders))  # noqa: PTH118
+        waiting += [path for path in paths if not os.path.islink(path)]  # noqa: PTH114
+
+
+def _leads_to_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:
+        return False
 
 
 def is_same(one: str | os.PathLike[str], other: str | os.PathLike[str]) -> bool:
