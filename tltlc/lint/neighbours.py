@@ -41,6 +41,8 @@ def _root(folder: Path) -> Path:
 
 
 def _below(root: Path) -> Iterator[Path]:
+    from tltlc.files import walk
+
     for folder, folders, _ in walk(root):
         folders[:] = [name for name in folders if not name.startswith(".") and name != "node_modules"]
         yield from _in(Path(folder))
