@@ -30,6 +30,11 @@ def test_an_error_of_syntax_hides_no_other_errors() -> None:
     assert [each.code for each in document.said] == ["TLT0105", "TLT0201"]
 
 
+def test_no_comment_hides_an_error() -> None:
+    document, _, _ = opened("signal a: bool\nspec x = F b // tltlc: allow TLT0201\n")
+    assert [each.code for each in document.said] == ["TLT0201"]
+
+
 WHOLE = """\
 clock 20 Hz
 import stealth
