@@ -12,8 +12,8 @@ from threading import Timer
 
 import pytest
 
-from tests.backends.monitors import FAR, HEAD, Outcome, expected, trace_of
-from tests.conformance.runner import LONGEST_RUN_S, Runner, build, runners, write
+from tests.backends.monitors import FAR, HEAD, expected, trace_of
+from tests.conformance.runner import LONGEST_RUN_S, Outcome, Runner, build, runners, write
 from tltlc.conformance.case import Case
 from tltlc.conformance.corpus import CASES
 from tltlc.limits import TRACE_LINE
@@ -85,11 +85,8 @@ def program(request: pytest.FixtureRequest, case: Case, tmp_path_factory: pytest
     """The program of a language: the folder in which it lies, and how it is started there."""
     runner: Runner = request.param
     folder = tmp_path_factory.mktemp(runner.name)
-    write(runner, case, folder)
-    if runner.build_all is None:
-        build(runner, NAME, folder)
-    else:
-        runner.build_all(folder, (NAME,))
+    write(runner, case.fspa, folder)
+    build(runner, NAME, folder)
     return folder, [word.format(name=NAME) for word in runner.run]
 
 
