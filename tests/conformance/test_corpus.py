@@ -93,6 +93,7 @@ def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (0, f"{count} traces, 0 of them not as expected\n"), done.stderr
     monitor = tmp_path / "build" / "ranges_monitor.py"
     monitor.write_text(monitor.read_text().replace("reward", "rewards"))
+    command[3], count = "ranges,cells", sum(len(CASES[name]().traces) for name in ("ranges", "cells"))
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 1
     assert done.stdout.endswith(f"{count} traces, 1 of them not as expected\n")
