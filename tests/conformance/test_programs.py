@@ -92,12 +92,22 @@ def runner(request: pytest.FixtureRequest) -> Runner:
 
 
 @pytest.fixture(scope="session")
-def program(runner: Runner, case: Case, tmp_path_factory: pytest.TempPathFactory) -> Program:
+def programs() -> dict[str, Program]:
+    """Those that have been built, by the name of the runner: in a random order, its tests do not follow one another."""
+    return {}
+
+
+@pytest.fixture(scope="session")
+def program(
+    runner: Runner, case: Case, programs: dict[str, Program], tmp_path_factory: pytest.TempPathFactory
+) -> Program:
     """The program of a language: the folder in which it lies, and how it is started there."""
-    folder = tmp_path_factory.mktemp(runner.name)
-    write(runner, case.fspa, folder)
-    build(runner, NAME, folder)
-    return folder, [word.format(name=NAME) for word in runner.run]
+    if runner.name not in programs:
+        folder = tmp_path_factory.mktemp(runner.name)
+        write(runner, case.fspa, folder)
+        build(runner, NAME, folder)
+        programs[runner.name] = folder, [word.format(name=NAME) for word in runner.run]
+    return programs[runner.name]
 
 
 @pytest.fixture(scope="session")
