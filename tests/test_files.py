@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
 import pytest
 
-from tltlc.files import exists, is_dir, is_file, noted, read_source, stamp
+from tltlc.files import exists, is_dir, is_file, noted, read_source, stamp, walk
 
 
 def test_what_is_there(tmp_path: Path) -> None:
@@ -65,3 +66,25 @@ def test_notes_within_notes(tmp_path: Path) -> None:
             pass
         exists(tmp_path)
     assert [*outer] == [str(tmp_path)]
+
+
+def test_folders_of_any_depth_are_walked(tmp_path: Path) -> None:
+    before = Path.cwd()
+    os.chdir(tmp_path)
+    try:
+        for _ in range(1200):
+            Path("d").mkdir()
+            os.chdir("d")
+    finally:
+        os.chdir(before)
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "file").touch()
+    (tmp_path / "link").symlink_to(tmp_path)
+    refused: list[OSError] = []
+    walked = list(walk(tmp_path, refused.append))
+    assert len(walked) > 1000
+    assert (str(tmp_path), ["b", "d", "link"], []) == (walked[0][0], sorted(walked[0][1]), walked[0][2])
+    assert (str(tmp_path / "b"), [], ["file"]) in walked
+    # Where a path may have some thousand characters only, the last folders are refused.
+    assert len(refused) <= 1
+    subprocess.run(["rm", "-rf", str(tmp_path / "d")], check=False)

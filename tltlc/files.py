@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Final, Union
@@ -22,8 +22,17 @@ _BYTE_ORDER_MARK: Final = b"\xef\xbb\xbf"
 Stamp = Union[tuple[int, ...], None]
 """What tells one state of a file from another; of a folder or a device only that it is there, and None of nothing."""
 
-_noted: Final[list[dict[str, Stamp]]] = []
-"""Who asks for notes of what is looked at, by the paths."""
+
+class Notes(dict[str, Stamp]):
+    """The paths that were looked for or read, with their states before that; ``read`` are those that were read."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.read: set[str] = set()
+
+
+_noted: Final[list[Notes]] = []
+"""Who asks for notes of what is looked at."""
 
 _unsaved: Final[ContextVar[Mapping[str, str]]] = ContextVar("unsaved", default=EMPTY)
 """The texts that an editor has not saved, by absolute paths."""
@@ -84,12 +93,12 @@ def _unsaved_text(path: str | os.PathLike[str]) -> str | None:
 
 
 @contextmanager
-def noted() -> Iterator[dict[str, Stamp]]:
+def noted() -> Iterator[Notes]:
     """Within, every path that is looked for or read here is noted with its state before that, if it is there or not.
 
     They are what a result depends on: as long as :func:`stamp` says the same of each, it would come out the same.
     """
-    notes: dict[str, Stamp] = {}
+    notes = Notes()
     _noted.append(notes)
     try:
         yield notes
@@ -105,15 +114,22 @@ def note(path: str | os.PathLike[str]) -> None:
             notes[name] = stamp(name)
 
 
+def note_read(path: str | os.PathLike[str]) -> None:
+    """Tell those who asked by :func:`noted` that this file is about to be read."""
+    note(path)
+    for notes in _noted:
+        notes.read.add(os.fspath(path))
+
+
 def read_as(path: str | os.PathLike[str]) -> str | None:
     """The path by which the file at ``path`` was read since the outermost :func:`noted` began; None if it was not."""
     if not _noted:
         return None
-    now = stamp(os.fspath(path))
-    if now is None or len(now) < 3:
+    now, notes = stamp(os.fspath(path)), _noted[0]
+    if now is None:
         return None
-    notes = _noted[0].items()
-    return next((name for name, was in notes if was and was[2:] == now[2:] and is_same(name, path)), None)
+    # The number of the file comes first: to compare paths takes calls of the system.
+    return next((name for name in notes.read if (notes[name] or ())[2:] == now[2:] and is_same(name, path)), None)
 
 
 def stamp(path: str) -> Stamp:
@@ -163,6 +179,38 @@ def is_dir(path: str | os.PathLike[str]) -> bool:
     return os.path.isdir(path)  # noqa: PTH112
 
 
+def walk(
+    folder: str | os.PathLike[str], onerror: Callable[[OSError], object] | None = None
+) -> Iterator[tuple[str, list[str], list[str]]]:
+    """Yield what :func:`os.walk` yields from the top down, for folders of any depth.
+
+    Before Python 3.12 that one calls itself for each level, and ends in a RecursionError.
+    """
+    waiting = [os.fspath(folder)]
+    while waiting:
+        place = waiting.pop()
+        folders: list[str] = []
+        files: list[str] = []
+        try:
+            with os.scandir(place) as entries:
+                for entry in entries:
+                    (folders if _leads_to_folder(entry) else files).append(entry.name)
+        except OSError as error:
+            if onerror is not None:
+                onerror(error)
+            continue
+        yield place, folders, files
+        paths = (os.path.join(place, name) for name in reversed(folders))  # noqa: PTH118
+        waiting += [path for path in paths if not os.path.islink(path)]  # noqa: PTH114
+
+
+def _leads_to_folder(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:
+        return False
+
+
 def is_same(one: str | os.PathLike[str], other: str | os.PathLike[str]) -> bool:
     """Whether two paths name one file that is there."""
     try:
@@ -189,7 +237,7 @@ def read_bytes(path: str | os.PathLike[str], name: str, max_bytes: int) -> bytes
     """
     if not may_read(path):
         raise TltlError([outside(name)])
-    note(path)
+    note_read(path)
     text = _unsaved_text(path)
     if text is not None:
         return text.encode(errors="replace")[: max_bytes + 1]

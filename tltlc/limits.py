@@ -71,6 +71,12 @@ ARITHMETIC: Final = Arithmetic(depth=100, compared=110, parts=500)
 SOURCE: Final = Limit(size=1 << 20)
 """A source text; the grammar has more limits of its own, on words and on nesting."""
 
+IMPORTED: Final = Limit(size=1 << 24, values=100_000)
+"""The names that all imports of a program offer: a file that is imported twice offers its names twice.
+
+``size`` counts letters: `as` writes each name anew.
+"""
+
 TOML: Final = Limit(size=1 << 20, depth=32, values=50_000)
 """A level, an asset, an overlay, a suite, settings, ``tltl.toml``."""
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from tltlc.automaton.build import DEFAULT_STATE_BUDGET, build
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, stop_at_errors
 from tltlc.files import MAX_ARTEFACT_BYTES, read_source
-from tltlc.grammar.allowed import unsilenced
 from tltlc.grammar.parser import parse
+from tltlc.grammar.silencing import unsilenced
 from tltlc.record import EMPTY, record, replace
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolution

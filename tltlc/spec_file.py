@@ -9,7 +9,7 @@ from errno import EBADF
 from typing import TYPE_CHECKING, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, note, read_bytes, reading_error
+from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, note_read, read_bytes, reading_error
 from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def read(path: str) -> tuple[SourceFile, bool]:
     try:
         if path == STDIN:
             return _read_stream(standard_input(), STDIN_NAME)
-        note(path)
+        note_read(path)
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             return _read_stream(file, path)
     except (OSError, ValueError) as error:

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests.automaton.letters import holds, letters, minimal_size, named, run, table, traces
 from tests.logic.strategies import formulas
 from tests.reference_formulas import read_formula
-from tltlc.automaton.build import build, default_judge, spec_from_formula
+from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.logic import oracle
 from tltlc.logic.formula import Formula
@@ -303,29 +303,3 @@ def test_a_group_that_names_an_atom_twice_says_nothing_more() -> None:
 def test_exclusive_atoms_make_skipping_impossible() -> None:
     assert compiled("F a & F b").spec_size == 1
     assert compiled("F a & F b", ("a", "b")).spec_size == 2
-
-
-# --- judge ----------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("text", "judge"),
-    [
-        ("G p", "limit"),
-        ("a & G b", "limit"),
-        ("G(a -> F b)", "limit"),
-        ("F e & G p", "goal"),
-        ("a U b", "goal"),
-        ("a W b", "limit"),
-        ("!F a", "limit"),
-        ("!G a", "goal"),
-        ("a | X a", "goal"),
-        ("a | X(a | X a)", "goal"),
-        ("(a | X(a | X a)) & G b", "goal"),
-        ("(a | b | X(a | b | X(a | b))) & G c", "goal"),
-        ("c | a | X(a | X a)", "limit"),
-        ("a & N(a & N a)", "limit"),
-    ],
-)
-def test_default_judge(text: str, judge: str) -> None:
-    assert default_judge(read_formula(text)) == judge

@@ -1,10 +1,12 @@
 """What monitors do as programs, beside printing the right rows: arguments, ways to write a trace, errors.
 
-Python's program reads JSON lines, too; its tests are in ``tests/monitor``.
+Python's program reads JSON lines, too; its tests are in ``tests/monitor``, but for those on standard output.
 """
 
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -69,7 +71,7 @@ USAGE = [[], ["--full"], ["-", "--full"], ["--full", "a", "b"], ["--what", "a"]]
 
 Run = Callable[..., Outcome]
 RunAll = Callable[[Sequence[bytes]], list[Outcome]]
-Program = tuple[Path, list[str]]
+Program = tuple[Runner, Path, list[str]]
 
 
 @pytest.fixture(scope="session")
@@ -79,16 +81,17 @@ def case() -> Case:
 
 # Which cannot be used here, and why, tests/conformance/test_conformance.py says.
 USABLE = [runner for runner in runners() if runner.name != "python" and runner.missing() is None]
+WITH_PYTHON = [*USABLE, *(runner for runner in runners() if runner.name == "python")]
+
+FULL = Path("/dev/full")
+# Their engine prints for them, and does not tell them whether it could.
+UNAWARE = {"gdscript", "gdscript3"}
+# Their interpreter or library opens the null device where standard output is closed.
+REOPENING = {"csharp", "javascript", "rust"}
 
 
 # Their programs read many traces in one process.
 SLOW_TO_START = ("gdscript3", "node")
-
-
-@pytest.fixture(scope="session", params=USABLE, ids=lambda runner: runner.name)
-def runner(request: pytest.FixtureRequest) -> Runner:
-    runner: Runner = request.param
-    return runner
 
 
 @pytest.fixture(scope="session")
@@ -97,23 +100,27 @@ def programs() -> dict[str, Program]:
     return {}
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="session", params=USABLE, ids=lambda runner: runner.name)
 def program(
-    runner: Runner, case: Case, programs: dict[str, Program], tmp_path_factory: pytest.TempPathFactory
+    request: pytest.FixtureRequest,
+    case: Case,
+    programs: dict[str, Program],
+    tmp_path_factory: pytest.TempPathFactory,
 ) -> Program:
-    """The program of a language: the folder in which it lies, and how it is started there."""
+    """The program of a language: the runner, the folder in which it lies, and how it is started there."""
+    runner: Runner = request.param
     if runner.name not in programs:
         folder = tmp_path_factory.mktemp(runner.name)
         write(runner, case.fspa, folder)
         build(runner, NAME, folder)
-        programs[runner.name] = folder, [word.format(name=NAME) for word in runner.run]
+        programs[runner.name] = runner, folder, [word.format(name=NAME) for word in runner.run]
     return programs[runner.name]
 
 
 @pytest.fixture(scope="session")
 def run(program: Program) -> Run:
     """Runs the program of a language on a trace, a file's or that of standard input."""
-    folder, command = program
+    _, folder, command = program
 
     def run(*arguments: str, trace: str | bytes = "") -> Outcome:
         data = trace.encode() if isinstance(trace, str) else trace
@@ -129,8 +136,9 @@ def run(program: Program) -> Run:
 
 
 @pytest.fixture
-def outcomes(runner: Runner, run: Run, case: Case, tmp_path: Path) -> RunAll:
+def outcomes(program: Program, run: Run, case: Case, tmp_path: Path) -> RunAll:
     """Runs the program of a language on many traces, with ``--full``."""
+    runner, _, _ = program
     if runner.name in SLOW_TO_START:
         together = built(runner, [case.fspa], tmp_path)
         return lambda traces: together([(NAME, trace) for trace in traces])
@@ -179,8 +187,8 @@ def test_standard_input_is_read_as_bytes(run: Run, byte: bytes) -> None:
 
 def test_rows_come_as_the_samples_do(program: Program) -> None:
     """A game that still runs may write the trace; Godot reads all of it first."""
-    folder, command = program
-    if "godot3-server" in command:
+    runner, folder, command = program
+    if runner.target in UNAWARE:
         pytest.skip("Godot reads standard input to its end")
     with subprocess.Popen([*command, "-"], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as running:
         assert running.stdin is not None and running.stdout is not None
@@ -210,3 +218,106 @@ def test_wrong_usage(run: Run, arguments: list[str]) -> None:
     status, out, err = run(*arguments)
     assert (status, out) == (2, "")
     assert err.startswith("usage: ")
+
+
+with_python = pytest.mark.parametrize(
+    "program", WITH_PYTHON, indirect=True, ids=lambda runner: runner.name, scope="session"
+)
+
+
+def notices_output(program: Program) -> tuple[Path, list[str]]:
+    """The folder and the command of a program that is told whether its rows could be written."""
+    runner, folder, command = program
+    if runner.target in UNAWARE:
+        pytest.skip(f"{runner.name}: the engine does not say whether it could print")
+    return folder, command
+
+
+def full_device() -> Path:
+    if not FULL.exists():
+        pytest.skip(f"there is no {FULL}, a device without room")
+    return FULL
+
+
+@with_python
+@pytest.mark.parametrize("rest", ["", "1,20,20,20\n" * 20_000, "1,20,?,20\n"], ids=["one row", "many", "an error"])
+def test_standard_output_without_room_is_3(program: Program, rest: str) -> None:
+    folder, command = notices_output(program)
+    (folder / "trace.csv").write_text(f"{HEAD}2,20,20,20\n{rest}")
+    with full_device().open("wb") as full:
+        done = subprocess.run(
+            [*command, "--full", "trace.csv"], cwd=folder, stdout=full, stderr=subprocess.PIPE, timeout=LONGEST_RUN_S
+        )
+    message, *warnings = done.stderr.decode().splitlines()
+    assert done.returncode == 3
+    assert message.startswith("error: cannot write to standard output: ")
+    assert "no space left on device" in message.lower()
+    assert warnings == ["warning: step 1: the signal `health` is 2, outside [0, 1]: it counts as 1"]
+
+
+@with_python
+def test_messages_without_room_do_not_change_the_exit_status(program: Program) -> None:
+    folder, command = notices_output(program)
+    for trace, status in ((f"{HEAD}2,20,20,20\n", 3), (f"{HEAD}1,20,?,20\n", 1)):
+        (folder / "trace.csv").write_text(trace)
+        with full_device().open("wb") as full:
+            done = subprocess.run([*command, "trace.csv"], cwd=folder, stdout=full, stderr=full, timeout=LONGEST_RUN_S)
+        assert done.returncode == status
+
+
+@with_python
+def test_standard_output_that_is_closed_is_3(program: Program) -> None:
+    folder, command = notices_output(program)
+    if program[0].target in REOPENING:
+        pytest.skip(f"{program[0].name}: rows go to the null device where standard output is closed")
+    (folder / "trace.csv").write_text(f"{HEAD}1,20,20,20\n")
+    closing = ["sh", "-c", 'exec "$@" >&-', "sh", *command, "trace.csv"]
+    done = subprocess.run(closing, cwd=folder, capture_output=True, timeout=LONGEST_RUN_S)
+    assert (done.returncode, done.stderr) == (3, b"error: cannot write to standard output: it is closed\n")
+
+
+@with_python
+@pytest.mark.parametrize("by_signal", [True, False], ids=["by signal", "by error"])
+def test_a_reader_that_has_gone_ends_a_program_quietly(program: Program, by_signal: bool) -> None:
+    """The system tells a program by a signal, unless whoever starts it has turned that off."""
+    folder, command = notices_output(program)
+    (folder / "trace.csv").write_text(f"{HEAD}2,20,20,20\n")
+    reading, writing = os.pipe()
+    os.close(reading)
+    try:
+        done = subprocess.run(
+            [*command, "trace.csv"],
+            cwd=folder,
+            stdout=writing,
+            stderr=subprocess.PIPE,
+            restore_signals=by_signal,
+            timeout=LONGEST_RUN_S,
+        )
+    finally:
+        os.close(writing)
+    # A shell gives 141 for the signal.
+    assert done.returncode in ((141, -signal.SIGPIPE) if by_signal else (141,))
+    assert done.stderr == b""
+
+
+@with_python
+def test_a_reader_that_goes_ends_a_program_that_waits(program: Program) -> None:
+    folder, command = notices_output(program)
+    running = subprocess.Popen(
+        [*command, "-"], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    with running:
+        assert running.stdin is not None and running.stdout is not None and running.stderr is not None
+        deadline = Timer(2 * LONGEST_RUN_S, running.kill)
+        deadline.start()
+        running.stdin.write(f"{HEAD}1,20,20,20\n".encode())
+        running.stdin.flush()
+        assert running.stdout.readline().startswith(b"step,")
+        assert running.stdout.readline().startswith(b"1,")
+        running.stdout.close()
+        running.stdin.write(b"1,20,20,20\n")
+        running.stdin.flush()
+        # It ends though more could follow.
+        assert running.wait() in (141, -signal.SIGPIPE)
+        assert running.stderr.read() == b""
+        deadline.cancel()

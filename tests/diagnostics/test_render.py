@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.calls import calls
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.diagnostics.formats.text import columns
 from tltlc.diagnostics.render import FORMATS, render
 from tltlc.source import SourceFile, Span
@@ -121,7 +121,9 @@ def test_columns_add_up(text: str) -> None:
 
 
 def test_json() -> None:
-    shown = json.loads(render([diagnostic("a\nkeep é", "é", "remark", help="help")], "json"))
+    fix = instead(SourceFile("a.tltl", "a\nkeep é"), Span(7, 8), "e")
+    shown = json.loads(render([diagnostic("a\nkeep é", "é", "remark", help="help", fixes=(fix,))], "json"))
+    place = {"start": {"line": 2, "column": 6, "offset": 7}, "end": {"line": 2, "column": 7, "offset": 8}}
     assert shown == {
         "diagnostics": [
             {
@@ -129,20 +131,52 @@ def test_json() -> None:
                 "severity": "error",
                 "title": "a title",
                 "help": "help",
-                "labels": [
-                    {
-                        "file": "a.tltl",
-                        "start": {"line": 2, "column": 6, "offset": 7},
-                        "end": {"line": 2, "column": 7, "offset": 8},
-                        "message": "remark",
-                    }
-                ],
+                "labels": [{"file": "a.tltl", **place, "message": "remark"}],
+                "fixes": [{"title": "Write `e`", "applicability": "maybe", "edits": [{**place, "text": "e"}]}],
             }
         ]
     }
 
 
 POSITION = {"type": "integer", "minimum": 1}
+REGION = {
+    "type": "object",
+    "additionalProperties": False,
+    "properties": dict.fromkeys(["startLine", "startColumn", "endLine", "endColumn"], POSITION),
+}
+ARTIFACT = {
+    "type": "object",
+    "required": ["uri"],
+    "additionalProperties": False,
+    "properties": {"uri": {"type": "string", "pattern": r"^[A-Za-z0-9._~:/%+-]+$"}},
+}
+REPLACEMENT = {
+    "type": "object",
+    "required": ["deletedRegion"],
+    "additionalProperties": False,
+    "properties": {"deletedRegion": REGION, "insertedContent": {"type": "object", "required": ["text"]}},
+}
+FIX = {
+    "type": "object",
+    "required": ["artifactChanges"],
+    "additionalProperties": False,
+    "properties": {
+        "description": {"type": "object", "required": ["text"]},
+        "artifactChanges": {
+            "type": "array",
+            "minItems": 1,
+            "items": {
+                "type": "object",
+                "required": ["artifactLocation", "replacements"],
+                "additionalProperties": False,
+                "properties": {
+                    "artifactLocation": ARTIFACT,
+                    "replacements": {"type": "array", "minItems": 1, "items": REPLACEMENT},
+                },
+            },
+        },
+    },
+}
 LOCATION = {
     "type": "object",
     "required": ["physicalLocation"],
@@ -154,17 +188,8 @@ LOCATION = {
             "required": ["artifactLocation", "region"],
             "additionalProperties": False,
             "properties": {
-                "artifactLocation": {
-                    "type": "object",
-                    "required": ["uri"],
-                    "additionalProperties": False,
-                    "properties": {"uri": {"type": "string", "pattern": r"^[A-Za-z0-9._~:/%+-]+$"}},
-                },
-                "region": {
-                    "type": "object",
-                    "additionalProperties": False,
-                    "properties": dict.fromkeys(["startLine", "startColumn", "endLine", "endColumn"], POSITION),
-                },
+                "artifactLocation": ARTIFACT,
+                "region": REGION,
             },
         },
     },
@@ -214,6 +239,7 @@ SARIF = {
                                 "message": {"type": "object", "required": ["text"]},
                                 "locations": {"type": "array", "items": LOCATION},
                                 "relatedLocations": {"type": "array", "items": LOCATION},
+                                "fixes": {"type": "array", "items": FIX},
                             },
                         },
                     },
@@ -231,7 +257,8 @@ def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     labels = [Label(SourceFile(name, "keep a"), Span(5, 6), "here") for name in names]
     found = [Diagnostic("TLT0101", "a title", (label,), "help") for label in labels]
     found.append(Diagnostic("TLT0001", "no place", severity="warning"))
-    found.append(Diagnostic("TLT0101", "two places", (labels[0], labels[1]), severity="note"))
+    fixes = (instead(labels[0].source, labels[0].span, "b"),)
+    found.append(Diagnostic("TLT0101", "two places", (labels[0], labels[1]), severity="note", fixes=fixes))
     log = json.loads(render(found, "sarif"))
     jsonschema.validate(log, SARIF)
     (run,) = log["runs"]
@@ -250,6 +277,10 @@ def test_sarif(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert run["results"][0]["message"]["text"] == "a title\nhere\nhelp"
     assert [result["level"] for result in run["results"]] == ["error"] * 4 + ["warning", "note"]
     assert len(run["results"][5]["relatedLocations"]) == 1
+    ((change,),) = (fix["artifactChanges"] for fix in run["results"][5]["fixes"])
+    assert change["artifactLocation"]["uri"] == uris[0]
+    region = {"startLine": 1, "startColumn": 6, "endLine": 1, "endColumn": 7}
+    assert change["replacements"] == [{"deletedRegion": region, "insertedContent": {"text": "b"}}]
 
 
 def test_github() -> None:

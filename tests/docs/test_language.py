@@ -18,7 +18,7 @@ from tltlc.grammar.builder import Builder
 from tltlc.grammar.lexer import tokenize
 from tltlc.grammar.parser import parse_formula
 from tltlc.grammar.tables import STARTS, load
-from tltlc.limits import ARITHMETIC, WORK
+from tltlc.limits import ARITHMETIC, IMPORTED, WORK
 from tltlc.record import replace
 from tltlc.resolve import context, scope, units
 from tltlc.resolve.predicate_check import cases, check
@@ -187,6 +187,7 @@ def test_limits() -> None:
     }
     assert list(said.values()) == [
         [files.MAX_SOURCE_BYTES / 2**20, lexer.MAX_TOKENS],
+        [IMPORTED.values, IMPORTED.size],
         [nesting.MAX_BRACKETS],
         [nesting.MAX_DEPTH],
         [ARITHMETIC.depth],

@@ -122,7 +122,7 @@ def test_the_columns_are_those() -> None:
     (fspa,) = tltlc.compile_text(SPEC)
     assert f"\n    {','.join(header(fspa)[:5])}\n" in ARTEFACT
     (generated,) = emit("python", fspa).values()
-    found = re.search(r'print\("(step,[\w,]+)"', str(generated))
+    found = re.search(r'"(step,[\w,]+)"', str(generated))
     assert found
     assert f"\n    {found[1]}\n" in ARTEFACT
 

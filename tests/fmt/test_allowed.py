@@ -10,11 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.calls import calls
 from tests.fmt.laws import check
 from tests.fmt.random_texts import join
 from tltlc.fmt import STYLES, format_text
+from tltlc.fmt.allowed import NOTHING, keeping
 from tltlc.grammar.allowed import statements
 from tltlc.grammar.lexer import tokenize
+from tltlc.grammar.parser import parse
 from tltlc.lint.run import findings, view_of
 from tltlc.pipeline import CompileOptions
 from tltlc.source import SourceFile
@@ -85,3 +88,14 @@ def test_what_cannot_be_laid_out_so_stays_as_it_is() -> None:
     rest = "signal e: bool\nspec t = not e\n"
     kept = text.replace("\n\n\n", "\n\n")
     assert check(f"{rest}{text}\nspec u=!e", "words") == f"{rest}{kept}\nspec u = not e\n"
+
+
+def test_the_work_of_comments_above_one_line_grows_with_the_text() -> None:
+    def work(number: int) -> int:
+        comments = "// tltlc: allow TLT0418\n" * number
+        lets = " ".join(f"let l{index} = F a" for index in range(number))
+        text = f"signal a: bool\nspec s = F a\n{comments}{lets}\n"
+        module, _ = parse(SourceFile("example.tltl", text))
+        return calls(lambda: keeping(module, text, NOTHING))
+
+    assert work(400) < 2.5 * work(200)

@@ -14,10 +14,9 @@ import pytest
 
 import tltlc
 from tltlc.automaton.fspa import Fspa
-from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar import english
 from tltlc.grammar.parser import parse
-from tltlc.lint.ways_out import of_messages
+from tltlc.lint.scopes import after
 from tltlc.monitor.guards import holds
 from tltlc.monitor.tables import tables
 from tltlc.source import SourceFile
@@ -38,7 +37,8 @@ TIME = f"{STEPS} steps"
 CLAUSES = ("reach", "keep", "avoid", "require")
 PREFIXES = ("", "c then ", "c and ", "c or ", "c implies ", "not ")
 CONDITIONS = ("if", "when", "whenever", "while", "during")
-INFIX = (*CONDITIONS, "before", "after", "followed by", "unless", "without", "but", "xor")
+ORDER = ("before", "after", "followed by")
+INFIX = (*CONDITIONS, *ORDER, "unless", "without", "but", "xor", "xnor", "nor", "nand")
 TIMES = ("within", "in", "before", "by", "for", "after")
 
 
@@ -117,7 +117,7 @@ def prefixed_by(prefix: str, formula: Here) -> Here:
 
 def of_infix(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX a WORD b`."""
-    if prefix == "c implies " or (prefix == "c then " and clause != "reach"):
+    if prefix == "c implies " or (prefix == "c then " and clause != "reach") or _is_open(clause, prefix, word):
         return None
     first = prefix if prefix != "c then " else ""
     left = prefixed_by(first, a)
@@ -130,6 +130,23 @@ def of_infix(clause: str, prefix: str, word: str) -> Whole | None:
     return whole(clause, prefixed_by("c then ", goal) if prefix == "c then " else goal)
 
 
+def _is_open(clause: str, prefix: str, word: str) -> bool:
+    """Whether it is open what the word belongs to, and that is not the same either way."""
+    if clause == "require" and word in CONDITIONS[1:]:
+        return True
+    if prefix == "not ":
+        same = {"keep": (*CONDITIONS, "before", "after", "unless"), "require": CONDITIONS}.get(clause, ())
+        return word not in (*same, "but", "xor", "xnor")
+    if word in CONDITIONS:
+        return prefix == ("c or " if clause in ("reach", "avoid") else "c and ")
+    joined = {
+        "unless": ("c and ", "c then ", *(() if clause in ("reach", "keep") else ("c or ",))),
+        "without": ("c and ", "c or ", "c then ") if clause == "reach" else ("c or ",),
+        "but": ("c or ",),
+    }
+    return prefix in (("c and ", "c or ") if word in ORDER else joined.get(word, ()))
+
+
 def _joined(clause: str, word: str, left: Here, *, is_alone: bool, is_negated: bool) -> Here | tuple[Here] | None:
     """What is asked for in a clause; in a tuple where it is asked for at the first sample."""
     if word in CONDITIONS:
@@ -139,10 +156,11 @@ def _joined(clause: str, word: str, left: Here, *, is_alone: bool, is_negated: b
     if word == "unless":
         met = {"reach": either(left, b), "keep": either(left, b), "avoid": both(left, negated(b))}
         return met.get(clause, until(left, b))
-    if word == "xor" and not is_alone:
+    if word in ("xor", "xnor", "nor", "nand") and not is_alone:
         return None
     different = both(either(left, b), negated(both(left, b)))
-    return {"without": both(left, negated(b)), "but": both(left, b), "xor": different}[word]
+    states = {"without": both(left, negated(b)), "but": both(left, b), "xor": different, "xnor": negated(different)}
+    return {**states, "nor": negated(either(left, b)), "nand": negated(both(left, b))}[word]
 
 
 def _ordered(clause: str, word: str, left: Here, *, is_negated: bool) -> Here | tuple[Here] | None:
@@ -197,6 +215,8 @@ def before_clause(clause: str, prefix: str, word: str) -> Whole | None:
     """The meaning of `CLAUSE PREFIX WORD b, a`."""
     allowed = {"reach": ("", "c and ", "c or ", "c then "), "avoid": ("", "c and ", "c or ")}
     if prefix not in allowed.get(clause, ("", "c and ", "c or ", "c implies ")):
+        return None
+    if clause == "require" and word != "if":
         return None
     condition = both(a, b) if clause in ("reach", "avoid") else either(a, negated(b))
     return whole(clause, prefixed_by(prefix, condition))
@@ -254,16 +274,9 @@ CASES = {
 def mended(clause: str) -> str | None:
     """The clause after the edit that its help offers, None where it offers none."""
     text = f"spec s {{ {clause}\n}}\n"
-    module, said = parse(SourceFile("a.tltl", text))
-    ways = list(of_messages(said, module, _errors))
-    if not ways:
-        return None
-    (edit,) = ways[0].edits
-    return f"{text[: edit.span.start]}{edit.text}{text[edit.span.end :]}"
-
-
-def _errors(source: SourceFile) -> tuple[Diagnostic, ...]:
-    return parse(source)[1]
+    source = SourceFile("a.tltl", text)
+    fixes = [fix for each in parse(source)[1] for fix in each.fixes]
+    return after(source, fixes[0].edits).text if fixes else None
 
 
 def compiled(text: str) -> Fspa:

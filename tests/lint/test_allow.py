@@ -6,7 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from tests.calls import calls
 from tests.lint.helpers import codes, mended
+from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.lint.allow import silenced
+from tltlc.lint.rule import Finding
+from tltlc.lint.run import lint, view_of
+from tltlc.pipeline import CompileOptions
+from tltlc.source import SourceFile
 
 BEFORE = "signal seen: bool\n"
 
@@ -124,3 +131,43 @@ def test_what_no_rule_could_judge_is_not_in_vain(clauses: str) -> None:
     # Beside that spec, comments are judged as ever.
     aside = f"{text}// tltlc: allow TLT0412\nspec t = F seen\n"
     assert "TLT0427" in codes(aside)
+
+
+LINES = (
+    ("// tltlc: allow {codes}\nsignal a: bool\nspec s = F a", "the codes of one comment"),
+    ("signal a: bool\nspec s = F a  // tltlc: allow {codes}", "the codes of a comment on a line"),
+    ("signal a: bool\n{comments}spec s = F a", "comments above one statement"),
+    ("signal a: bool\n{comments}spec s = F a {lets}", "comments above a line of statements"),
+    ("signal a: bool\nlet first = F a\n{lines}spec s = F a", "statements with a comment each"),
+    ("// tltlc: allow TLT0421\nsignal a: bool\nlet first = F a\n{lets}\nspec s = F a", "findings in an allowed file"),
+)
+
+
+@pytest.mark.parametrize(("text", "what"), LINES, ids=[what for _, what in LINES])
+def test_the_work_of_comments_grows_with_the_text(text: str, what: str) -> None:
+    def work(number: int) -> int:
+        written = text.format(
+            codes="TLT0421 TLT0420 " * number,
+            comments="// tltlc: allow TLT0421\n" * number,
+            lets=" ".join(f"let l{index} = F a" for index in range(number)),
+            lines="".join(f"let l{index} = F a // tltlc: allow TLT0421, TLT0420\n" for index in range(number)),
+        )
+        view = view_of(SourceFile("example.tltl", written), CompileOptions())
+        spans = [each.span for each in view.module.declarations]
+        said = [Finding(Diagnostic("TLT0421", "unused", (Label(view.source, span),))) for span in spans]
+        return calls(lambda: silenced(view, said))
+
+    assert work(800) < 2.5 * work(400), what
+
+
+def test_each_comment_that_silences_the_same_is_needed() -> None:
+    comments = "// tltlc: allow TLT0419\n" * 2
+    assert codes(f"{comments}{BEFORE}{comments}spec hide {{ avoid seen }}  // tltlc: allow TLT0419") == []
+
+
+def test_a_comment_within_a_statement_speaks_of_all_around_it() -> None:
+    text = f"{BEFORE}signal heard: bool\nspec go {{\n    limit 9 steps\n    reach (seen implies heard)  // ALLOW\n}}\n"
+    found = text.replace("ALLOW", "tltlc: allow TLT0412, TLT0412 TLT0411")
+    assert [each.diagnostic.title for each in lint(SourceFile("example.tltl", found))] == [
+        "this allows TLT0411, which is not found here"
+    ]

@@ -7,8 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tltlc
+from tests.calls import calls
 from tests.lint.helpers import codes, found, mended
 from tltlc.grammar.parser import parse
+from tltlc.lint.rule import Edit
+from tltlc.lint.scopes import keeping_scopes
+from tltlc.source import SourceFile
 
 SPEC = "spec s = F a\n"
 MORE = "signal x in [0, 9]\nspec s = F more(x, 1, 1)\n"
@@ -175,3 +179,15 @@ def test_fixes_change_the_automaton_of_no_spec_and_leave_nothing_to_fix(text: st
     ]
     # A comment that says nothing to the linter stays, unless it stands behind what goes.
     assert fixed.source.text.count("// A comment of its own.") == 1
+
+
+def test_the_work_of_comments_above_one_line_grows_with_the_text() -> None:
+    def work(number: int) -> int:
+        comments = "// tltlc: allow TLT0418\n" * number
+        lets = " ".join(f"let l{index} = F a" for index in range(number))
+        source = SourceFile("example.tltl", f"signal a: bool\nspec s = F a\n{comments}{lets}\n")
+        module, _ = parse(source)
+        edits = [Edit(each.span, "") for each in module.declarations[2:]]
+        return calls(lambda: keeping_scopes(module, edits))
+
+    assert work(400) < 2.5 * work(200)

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import pytest
 
 from tests.lint.helpers import codes, mended
+from tltlc.grammar.parser import parse
+from tltlc.grammar.tree import Comment
+from tltlc.lint.removal import without
+from tltlc.source import SourceFile, Span
 
 SPEC = "spec s = F a\n"
 
@@ -34,3 +41,27 @@ def test_documentation(before: str, after: str) -> None:
 def test_an_item_stays_where_a_comment_would_go_with_it(text: str, code: str) -> None:
     assert codes(text) == [code]
     assert mended(text).source.text == text
+
+
+class _Comments(Sequence[Comment]):
+    """The comments of a text, which count how many of them are looked at."""
+
+    def __init__(self, text: str) -> None:
+        self._comments = parse(SourceFile("example.tltl", text))[0].comments
+        self.looks = 0
+
+    def __len__(self) -> int:
+        return len(self._comments)
+
+    def __getitem__(self, index: Any) -> Any:
+        self.looks += 1
+        return self._comments[index]
+
+
+def test_of_many_comments_few_are_looked_at() -> None:
+    text = "".join(f"// Of a{number}.\nsignal a{number}: bool\n" for number in range(500))
+    comments = _Comments(text)
+    start = text.index("signal a300")
+    span = without(SourceFile("example.tltl", text), Span(start, text.index("\n", start)), comments)
+    assert text[span.start : span.end] == "signal a300: bool\n"
+    assert comments.looks < 20

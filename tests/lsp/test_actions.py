@@ -8,8 +8,8 @@ import pytest
 from lsprotocol import types
 
 from tests.lsp.texts import opened
+from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.parser import parse
-from tltlc.lint.rule import Edit
 from tltlc.lsp.actions import actions
 from tltlc.lsp.document import Document
 from tltlc.lsp.edits import applied

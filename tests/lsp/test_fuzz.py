@@ -9,8 +9,7 @@ import pytest
 from lsprotocol import types
 
 from tests.lsp.texts import EXAMPLES, opened
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.lint.rule import Edit
+from tltlc.diagnostics.diagnostic import Edit, TltlError
 from tltlc.lsp import actions, completion, folding, formatting, hover, imports, lenses, references, symbols, tokens
 from tltlc.lsp.analysis import Analysis, Figures
 from tltlc.lsp.cursor import cursor, quoted

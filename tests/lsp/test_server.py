@@ -109,6 +109,16 @@ def test_errors_of_an_imported_file_stand_at_the_import(client: Client, tmp_path
     assert other["location"]["range"]["start"] == {"line": 0, "character": 13}
 
 
+def test_too_many_names_of_imports_are_an_error_at_the_import(client: Client, tmp_path: Path) -> None:
+    for number in range(30):
+        both = f"import m{number + 1} as x\nimport m{number + 1} as y\n"
+        (tmp_path / f"m{number}.tltl").write_text(both, encoding="utf-8")
+    (tmp_path / "m30.tltl").write_text("signal loud: bool\n", encoding="utf-8")
+    main = client.open(tmp_path / "main.tltl", "import m0\nsignal a: bool\nspec hush = G !a\n")
+    (found,) = client.diagnostics(main, bool)
+    assert (found["code"], found["range"]["start"]) == ("TLT0012", {"line": 0, "character": 7})
+
+
 def test_files_that_come_and_go(client: Client, tmp_path: Path) -> None:
     main = client.open(tmp_path / "main.tltl", 'import "common.tltl"\nspec hush = quiet\n')
     assert codes(client.diagnostics(main)) == ["TLT0010"]

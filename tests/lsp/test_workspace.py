@@ -48,7 +48,7 @@ def said_of(workspace: Workspace, uri: str) -> tuple[Said, Said]:
     """What is said of a document and of its project, less the advice, for which whole folders are looked through."""
     document = workspace.document(uri)
     assert document is not None
-    said = tuple(replace(each, help=None) for each in document.said)
+    said = tuple(replace(each, help=None, fixes=()) for each in document.said)
     return said, workspace.project(document.source.name)[1]
 
 

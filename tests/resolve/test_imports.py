@@ -8,6 +8,7 @@ import pytest
 
 from tests.calls import calls
 from tests.resolve.helpers import good, only, resolved, write
+from tltlc.limits import IMPORTED
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.spec import Spec
 
@@ -151,3 +152,47 @@ def test_the_standard_library_is_read_once_for_all_unknown_names() -> None:
     library_with("near")
     work = calls(lambda: [library_with(f"no_such_name_{number}") for number in range(1_000)])
     assert work < 20_000
+
+
+def _doubled(folder: Path, files: int) -> None:
+    """Files of which the first imports the second under two names, and so on; the last one has a name of its own."""
+    both = {f"m{i}": f"import m{i + 1} as x import m{i + 1} as y" for i in range(files)}
+    write(folder, **both, **{f"m{files}": "signal a: bool let goal = F a"})
+
+
+def test_files_that_import_each_other_twice_are_refused_by_one_message(tmp_path: Path) -> None:
+    _doubled(tmp_path, 40)
+    _, (found,) = resolved("import m0 spec s = F nothing", str(tmp_path / "main.tltl"))
+    assert (found.code, found.title) == (
+        "TLT0012",
+        f"the imports of all files offer more than {IMPORTED.values:,} names",
+    )
+    (label,) = found.labels
+    assert label.source.slice(label.span).startswith("import m")
+
+
+def test_names_that_imports_offer_are_counted_before_they_are_made(tmp_path: Path) -> None:
+    _doubled(tmp_path, 40)
+    assert calls(lambda: resolved("import m0", str(tmp_path / "main.tltl"))) < 40 * (IMPORTED.values or 0)
+
+
+def test_files_within_the_limit_keep_all_their_names(tmp_path: Path) -> None:
+    _doubled(tmp_path, 10)
+    name = "x.y.x.y.x.y.x.y.x.y.goal"
+    assert str(_spec(tmp_path, f"import m0 spec s = {name}").formula) == "F a"
+
+
+def test_a_file_that_is_imported_often_offers_its_names_each_time(tmp_path: Path) -> None:
+    # Each import alone has a hundredth of the names that all of them may have.
+    many = (IMPORTED.values or 0) // 100
+    write(tmp_path, many=f"entity {', '.join(f'e{i}' for i in range(many))}")
+    hundred = "\n".join(f"import many as m{i}" for i in range(100))
+    assert _in(tmp_path, hundred) == []
+    assert _in(tmp_path, f"{hundred}\nimport many (e0)") == ["TLT0012"]
+
+
+def test_long_names_behind_as_are_refused(tmp_path: Path) -> None:
+    many = 1_000
+    write(tmp_path, many=f"entity {', '.join(f'e{i}' for i in range(many))}")
+    assert _in(tmp_path, f"import many as {'x' * (IMPORTED.size // many - 10)}") == []
+    assert _in(tmp_path, f"import many as {'x' * (IMPORTED.size // many)}") == ["TLT0012"]

@@ -14,17 +14,17 @@ from tltlc.automaton.composition import minimal_machine as compose
 from tltlc.automaton.diagrams import ACCEPT, IMPOSSIBLE, REJECT, Diagrams, OutOfSteps
 from tltlc.automaton.fspa import Edge, Fspa, Guard, State, Text, Verdict
 from tltlc.automaton.guards import Guards, TooManyPrimes
+from tltlc.automaton.judge import default_judge, judge_of
 from tltlc.automaton.labels import LONGEST_SIMPLIFIED, Labels, LabelsTooLong
 from tltlc.automaton.machine import Machine, OutOfStates
 from tltlc.automaton.order import better_order, reordered, restored
 from tltlc.automaton.successors import Successors
 from tltlc.expression import Signal as SignalValue
 from tltlc.limits import WORK
-from tltlc.logic.bounded import bounded, with_bounds
 from tltlc.logic.formula import Formula, rebuild
 from tltlc.logic.normal_form import negation_normal_form
 from tltlc.logic.printer import ascii_text, english_text, unicode_text
-from tltlc.resolve.spec import Atom, Judge, Signal, Spec
+from tltlc.resolve.spec import Atom, Signal, Spec
 from tltlc.source import SourceFile, Span
 
 DEFAULT_STATE_BUDGET = 50_000
@@ -109,7 +109,7 @@ def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
         formula=text_of(spec.formula),
         level=spec.level,
         limit_steps=spec.limit_steps,
-        judge=spec.judge or default_judge(spec.formula),
+        judge=spec.judge or (judge_of(spec.parts) if spec.parts else default_judge(spec.formula)),
         semantics=spec.semantics,
         tags=spec.tags,
         clock_s=spec.clock_s,
@@ -121,36 +121,6 @@ def _built(spec: Spec, state_budget: int, steps: int | None = None) -> Fspa:
         edges=edges,
         spec_size=max(finite, default=0),
     )
-
-
-def default_judge(formula: Formula) -> Judge:
-    """``limit`` where the formula is true of "nothing yet", else ``goal`` (semantics, section 4; docs/adr/0009)."""
-    normal = negation_normal_form(formula)
-    value: dict[Formula, bool] = {}
-    stack = [normal]
-    while stack:
-        node = stack[-1]
-        waiting = [part for part in _at_once(node) if part not in value]
-        if waiting:
-            stack.extend(waiting)
-        else:
-            value[stack.pop()] = _of_nothing_yet(node, value)
-    return "limit" if value[normal] else "goal"
-
-
-def _at_once(node: Formula) -> list[Formula]:
-    """The operands of an ``and`` or ``or``; of no other operator, nor of ``F[0,n] p``, which is ``p | X(p | …)``."""
-    if node.op == "or":
-        return [] if bounded(node) else with_bounds(node)
-    return list(node.args) if node.op == "and" else []
-
-
-def _of_nothing_yet(node: Formula, value: dict[Formula, bool]) -> bool:
-    if node.op == "and":
-        return all(value[operand] for operand in _at_once(node))
-    if node.op == "or":
-        return any(value[operand] for operand in _at_once(node))
-    return node.op not in ("false", "F", "U", "M", "X")
 
 
 def allowed_letters(diagrams: Diagrams, exclusive: Iterable[Sequence[int]]) -> int:

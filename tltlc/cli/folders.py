@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import may_be_file, reading_error
+from tltlc.files import may_be_file, reading_error, walk
 
 if TYPE_CHECKING:
     from tltlc.cli.report import Report
@@ -50,7 +50,7 @@ def below(folder: Path, endings: tuple[str, ...] = (".tltl",)) -> list[Path]:
     TLT0001, for a folder that the system does not let us read: without its files an answer could be wrong.
     """
     found: list[Path] = []
-    for place, folders, files in os.walk(folder, onerror=_unreadable):
+    for place, folders, files in walk(folder, onerror=_unreadable):
         folders[:] = [name for name in folders if not name.startswith(".")]
         inside = Path(place).relative_to(folder)
         named = [name for name in files if name.endswith(endings) and not name.startswith(".")]

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import exists, is_file, may_be_file, read_source
+from tltlc.files import exists, is_file, may_be_file, read_source, walk
 from tltlc.record import replace
 from tltlc.spec_file import is_plain_name
 
@@ -52,7 +51,7 @@ def _declaring(name: str) -> Iterator[Path]:
 
 def _files() -> Iterator[Path]:
     """Source files, those of the current folder first; hidden ones, pipes and devices are left out."""
-    for place, folders, files in islice(os.walk("."), _MOST_FOLDERS):
+    for place, folders, files in islice(walk("."), _MOST_FOLDERS):
         folders[:] = sorted(each for each in folders if not each.startswith("."))
         named = (Path(place, each) for each in sorted(files) if each.endswith(".tltl") and not each.startswith("."))
         yield from filter(may_be_file, named)

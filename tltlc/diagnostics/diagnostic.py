@@ -9,6 +9,8 @@ from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
 Severity = Literal["error", "warning", "note"]
+Applicability = Literal["safe", "maybe"]
+"""Whether a fix keeps what the text asks of the game, or is what was meant most likely."""
 
 
 @record
@@ -21,10 +23,28 @@ class Label:
 
 
 @record
+class Edit:
+    """Another text in place of what a span covers."""
+
+    span: Span
+    text: str
+
+
+@record
+class Fix:
+    """What can be done about a message, in a few words, and how it changes the text: edits that do not overlap."""
+
+    title: str
+    edits: tuple[Edit, ...]
+    applicability: Applicability = "maybe"
+
+
+@record
 class Diagnostic:
     """A message: what happened (title), where (labels, the first is the main one), one way out (help).
 
-    ``code`` is one of the closed list in :mod:`tltlc.diagnostics.codes`.
+    ``code`` is one of the closed list in :mod:`tltlc.diagnostics.codes`.  ``fixes`` are the ways out that a program can
+    take, the likeliest first, as edits of the source of the first label.
     """
 
     code: str
@@ -32,6 +52,24 @@ class Diagnostic:
     labels: tuple[Label, ...] = ()
     help: str | None = None
     severity: Severity = "error"
+    fixes: tuple[Fix, ...] = ()
+
+
+def instead(source: SourceFile, span: Span, text: str, applicability: Applicability = "maybe") -> Fix:
+    """The fix that writes a text in place of a span; a word stays apart from those beside it."""
+    before, behind = source.text[max(0, span.start - 1) : span.start], source.text[span.end : span.end + 1]
+    start = " " if _is_word(before) and _is_word(text[:1]) else ""
+    end = " " if _is_word(behind) and _is_word(text[-1:]) else ""
+    return Fix(f"Write `{text}`", (Edit(span, f"{start}{text}{end}"),), applicability)
+
+
+def around(span: Span, opening: str = "(", closing: str = ")") -> tuple[Edit, ...]:
+    """The edits that put brackets around a span."""
+    return Edit(Span(span.start, span.start), opening), Edit(Span(span.end, span.end), closing)
+
+
+def _is_word(sign: str) -> bool:
+    return sign.isalnum() or sign == "_"
 
 
 class TltlError(Exception):

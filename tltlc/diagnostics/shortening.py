@@ -22,7 +22,8 @@ def shortened(diagnostic: Diagnostic) -> Diagnostic:
         for label in diagnostic.labels
     )
     title, help_ = short_text(diagnostic.title), diagnostic.help and short_text(diagnostic.help)
-    return replace(diagnostic, title=title, labels=labels, help=help_)
+    fixes = tuple(replace(fix, title=short_text(fix.title)) for fix in diagnostic.fixes)
+    return replace(diagnostic, title=title, labels=labels, help=help_, fixes=fixes)
 
 
 def short_text(text: str) -> str:

@@ -34,7 +34,10 @@ def keeping(module: Module, text: str, kept: Kept) -> Kept:
     laid_out, _ = parse(SourceFile("<layout>", text))
     back = dict(zip(statements(laid_out), statements(module), strict=True))
     wrong: set[Span] = set()
-    for (_, places), (_, others) in zip(before, spoken_of(laid_out), strict=True):
+    after = spoken_of(laid_out)
+    # Comments that speak of the same line share its statements, before and after.
+    pairs = {(id(places), id(others)): (places, others) for (_, places), (_, others) in zip(before, after, strict=True)}
+    for places, others in pairs.values():
         now = {back[place] for place in others or ()}
         if places is not None and _outer(places) != _outer(now):
             wrong.update(now.union(places))

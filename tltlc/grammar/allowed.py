@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.tree import Comment, EntityDecl, Module, SpecDecl
 from tltlc.record import record
 from tltlc.source import SourceFile, Span
@@ -30,21 +29,6 @@ class Allowed:
     span: Span
     comment: Comment
     places: tuple[Span, ...] | None
-
-    def silences(self, diagnostic: Diagnostic) -> bool:
-        """Whether this allows what is said."""
-        label = diagnostic.labels[0] if diagnostic.labels else None
-        if diagnostic.code != self.code or label is None or label.source != self.source:
-            return False
-        start = label.span.start
-        return self.places is None or any(place.start <= start <= place.end for place in self.places)
-
-
-def unsilenced(modules: Iterable[Module], found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """What the compiler has to say, less the remarks that comments allow in the file where they are."""
-    said = tuple(found)
-    comments = [each for module in modules for each in allowed(module)] if said else []
-    return tuple(one for one in said if one.severity == "error" or not any(each.silences(one) for each in comments))
 
 
 def allowed(module: Module) -> Iterator[Allowed]:
@@ -67,13 +51,17 @@ def is_allowing(comment: Comment) -> bool:
 
 
 def spoken_of(module: Module) -> list[tuple[Comment, tuple[Span, ...] | None]]:
-    """The comments that allow something, and the clauses and declarations of which each speaks; None is the file."""
+    """The comments that allow something, and the clauses and declarations of which each speaks; None is the file.
+
+    Comments that speak of the same line share one tuple.
+    """
     comments = [comment for comment in module.comments if is_allowing(comment)]
     if not comments:
         return []
     first = module.declarations[0].span.start if module.declarations else len(module.source.text)
     by_line = _by_line(module)
     lines = sorted(by_line)
+    of_line: dict[int, tuple[Span, ...]] = {}
     found: list[tuple[Comment, tuple[Span, ...] | None]] = []
     for comment in comments:
         line, _ = module.source.position(comment.span.start)
@@ -81,7 +69,9 @@ def spoken_of(module: Module) -> list[tuple[Comment, tuple[Span, ...] | None]]:
             # It stands between two of them, above the next one.
             below = bisect_right(lines, line)
             line = lines[below] if below < len(lines) else line
-        found.append((comment, None if comment.span.start < first else tuple(by_line.get(line, ()))))
+        if line not in of_line:
+            of_line[line] = tuple(by_line.get(line, ()))
+        found.append((comment, None if comment.span.start < first else of_line[line]))
     return found
 
 

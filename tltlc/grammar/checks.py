@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.grammar import tree
 from tltlc.grammar.then_check import check_then
 from tltlc.grammar.tree import Declaration, Expr
@@ -70,7 +70,8 @@ def _check_bound(source: SourceFile, formula: tree.Unary, bound: tree.Bound) -> 
 def _check_spec(source: SourceFile, spec: tree.SpecDecl) -> Iterator[Diagnostic]:
     if "." in spec.name:
         plain = spec.name.replace(".", "_")
-        yield _error(source, "TLT0113", "the name of a spec has no dots", spec.name_span, f"write `{plain}`")
+        title = "the name of a spec has no dots"
+        yield _error(source, "TLT0113", title, spec.name_span, f"write `{plain}`", write=plain)
     if not any(clause.kind in _FORMULA_CLAUSES for clause in spec.clauses):
         title = f"`{spec.name}` asks for nothing"
         help_ = "add a clause: `reach`, `keep`, `avoid` or `require`"
@@ -109,7 +110,8 @@ def _check_word(source: SourceFile, word: str, span: Span, words: tuple[str, ...
         near = closest(word, words)
         listed = ", ".join(f"`{form} {other}`" for other in words[:-1]) + f" or `{form} {words[-1]}`"
         help_ = _COMPARED.get(word) or (f"did you mean `{near}`?" if near else listed)
-        yield _error(source, "TLT0108", f"`{word}` is not known here", span, help_)
+        meant = None if word in _COMPARED else near
+        yield _error(source, "TLT0108", f"`{word}` is not known here", span, help_, write=meant)
 
 
 def _first(errors: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
@@ -118,5 +120,8 @@ def _first(errors: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
         return
 
 
-def _error(source: SourceFile, code: str, title: str, span: Span, help_: str) -> Diagnostic:
-    return Diagnostic(code, title, (Label(source, span),), help_)
+def _error(
+    source: SourceFile, code: str, title: str, span: Span, help_: str, *, write: str | None = None
+) -> Diagnostic:
+    fixes = (instead(source, span, write),) if write is not None else ()
+    return Diagnostic(code, title, (Label(source, span),), help_, fixes=fixes)

@@ -6,13 +6,22 @@ from collections.abc import Callable
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.clear import TEMPORAL, UNCLEAR, has, is_of_one_step
 from tltlc.grammar.english import conditional
 from tltlc.grammar.lexer import BAD, END, Token
-from tltlc.grammar.place import INFIX, KEYWORDS, NOUNS, OPENING, Place, shown
+from tltlc.grammar.place import INFIX, KEYWORDS, NOUNS, OPENING, UNTILS, Place, shown
 from tltlc.grammar.rewording import formula_start, formula_stop, operand, reworded, span_of, written
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, DECLARATIONS, JUDGE, OPERATORS, SYNONYMS, TEST_ITEMS, UNITS_ELSEWHERE, closest
 
+_IN_BRACKETS: Final = (
+    "put in brackets what `{word}` belongs to, behind a keyword: `avoid (a until b)`, `require (not a) until b`"
+)
+_ONCE: Final = "`require a` is about the first step, `keep a` about every one, `reach a` about some one"
+_BEHIND_THEN: Final = (
+    "`then` joins the goals of `reach`; what holds, or comes, after `a` is a clause of its own: "
+    "`keep a implies always b`, `keep a implies always not b`, `keep a implies eventually b`"
+)
 _OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
 """The clauses that operators at the beginning of a line stand for."""
 
@@ -29,11 +38,24 @@ def unknown_keyword(place: Place) -> Diagnostic | None:
     if found:
         return found
     near = SYNONYMS[place.start].get(token.text.lower())
+    if near and place.start == "clause" and not _is_clear_keyword(place, near):
+        return place.error("TLT0107", title, _ONCE if near == "require" else _IN_BRACKETS.format(word=token.text))
     if near is None and token.type == "NAME":
         near = closest(token.text, tuple(keywords))
     message = f"did you mean `{near}`?" if near else ""
     listed = ", ".join(f"`{word}`" for word in keywords)
-    return place.error("TLT0107", title, None if near else f"one of {listed}", message)
+    return place.error("TLT0107", title, None if near else f"one of {listed}", message, write=near)
+
+
+def _is_clear_keyword(place: Place, near: str) -> bool:
+    """Whether a word can be replaced by this keyword alone, by what follows it."""
+    stop = len(place.tokens) - 1
+    if near == "require":
+        return not is_of_one_step(place, 1, stop)
+    if place.found.text.lower() == "never":
+        return not has(place, 1, stop, INFIX)
+    allowed = {"keep": {"IMPLIES", "IFF"}, "reach": {"THEN"}}.get(near, set())
+    return not has(place, 1, stop, UNCLEAR - allowed)
 
 
 def clause_outside(place: Place) -> Diagnostic | None:
@@ -48,33 +70,65 @@ def clause_inside(place: Place) -> Diagnostic | None:
     if word not in OPERATORS or before is None or not place.wants_operand or place.found.type == "NAME":
         return None
     title = f"{shown(place.found)} begins a clause, and stands in no formula"
-    start, stop = formula_start(place), formula_stop(place)
+    start, stop, clause = formula_start(place), formula_stop(place), _clause(place)
     found = None
+    if before.type == "THEN" and not _is_next_goal(place, word):
+        return place.error("TLT0107", title, _BEHIND_THEN)
     if before.type == "EQUAL" and place.tokens[0].type == "SPEC":
         text = f"{{ {written(place, at, stop)} }}"
         found = reworded(place, at - 1, stop, text, title, ": clauses stand in braces", "TLT0107")
-    elif before.type == "THEN" and word == "reach":
-        found = reworded(place, at - 1, at + 1, before.text, title, ", which says it already", "TLT0107")
     elif before.type == "THEN":
-        found = reworded(place, at, stop, f"({operand(place, at, stop)})", title, code="TLT0107")
-    elif before.type == "OR" and start == 1 and not place.open_brackets and place.tokens[0].text in OPERATORS:
+        found = reworded(place, at - 1, at + 1, before.text, title, ", which says it already", "TLT0107")
+    elif before.type == "OR" and clause in OPERATORS and not place.open_brackets:
         # Of clauses that are joined by `or`, each one is a formula of its own.
         either, other = operand(place, start - 1, at - 1), operand(place, at, stop)
-        found = reworded(place, 0, stop, f"require ({either}) {before.text} ({other})", title, code="TLT0107")
-    found = found or reworded(place, at, stop, operand(place, at, stop), title, code="TLT0107")
-    inside = f"{OPERATORS[word]} a".strip()
-    return found or place.error("TLT0107", title, f"inside a formula, `{word} a` is `{inside}`")
+        text = f"require ({either}) {before.text} ({other})"
+        if not has(place, start, at, UNCLEAR | TEMPORAL):
+            found = reworded(place, 0, stop, text, title, code="TLT0107")
+    elif _is_clear_operator(place, start, at):
+        found = reworded(place, at, stop, operand(place, at, stop), title, code="TLT0107")
+    return found or place.error("TLT0107", title, _inside(word, word))
 
 
 def synonym_inside(place: Place) -> Diagnostic | None:
-    """``reach a then never b``."""
+    """``keep a implies never b``."""
     before, at = place.before, place.stop.index - 1
     meant = SYNONYMS["clause"].get(before.text) if before and before.type == "NAME" and place.wants_operator else None
-    if meant is None or at < 1:
+    if before is None or meant is None or at < 1:
         return None
-    text = f"{OPERATORS[meant]} {operand(place, at + 1, formula_stop(place))}".strip()
-    text = f"({text})" if place.tokens[at - 1].type == "THEN" else text
-    return reworded(place, at, formula_stop(place), text, f"{shown(before)} is no operator")
+    start, stop, title = formula_start(place), formula_stop(place), f"{shown(before)} is no operator"
+    if place.tokens[at - 1].type == "THEN" and not _is_next_goal(place, meant):
+        return place.error("TLT0101", title, _BEHIND_THEN, span=before.span)
+    found = None
+    if not has(place, at + 1, stop, INFIX) and (
+        place.tokens[at - 1].type == "THEN" or _is_clear_operator(place, start, at)
+    ):
+        operator = "" if place.tokens[at - 1].type == "THEN" else OPERATORS[meant]
+        text = f"{operator} {operand(place, at + 1, stop)}".strip()
+        found = reworded(place, at, stop, text, title)
+    return found or place.error("TLT0101", title, _inside(before.text, meant), span=before.span)
+
+
+def _clause(place: Place) -> str:
+    """The keyword of the clause, in brackets too."""
+    return place.tokens[0].text if place.start == "clause" else ""
+
+
+def _is_next_goal(place: Place, word: str) -> bool:
+    """Whether a keyword behind `then` only says once more that a goal follows."""
+    return word == "reach" and _clause(place) not in ("keep", "avoid")
+
+
+def _is_clear_operator(place: Place, start: int, at: int) -> bool:
+    """Whether a keyword at this place of a formula can be nothing but its operator."""
+    before, clause = place.tokens[at - 1].type, _clause(place)
+    if clause in ("reach", "avoid") or before in UNTILS or has(place, start, at, TEMPORAL):
+        return False
+    return clause != "keep" or before != "OR"
+
+
+def _inside(word: str, meant: str) -> str:
+    return f"inside a formula, `{word} a` is `{f'{OPERATORS[meant]} a'.strip()}`"
 
 
 def joined_clauses(place: Place) -> Diagnostic | None:
@@ -82,10 +136,10 @@ def joined_clauses(place: Place) -> Diagnostic | None:
     word, before = place.found.text, place.before
     if place.start != "clause" or word not in CLAUSES or before is None or before.type != "AND" or place.open_brackets:
         return None
-    span = span_of([before, place.found])
-    return place.error(
-        "TLT0101", f"clauses are not joined by {shown(before)}", f"write `{word}` alone: all clauses count", span=span
-    )
+    title, span = f"clauses are not joined by {shown(before)}", span_of([before, place.found])
+    if has(place, 1, place.stop.index, UNCLEAR | {"OR"}):
+        return place.error("TLT0101", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
+    return place.error("TLT0101", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 
 
 def limit_in_other_words(place: Place) -> Diagnostic | None:
@@ -97,7 +151,8 @@ def judge(place: Place) -> Diagnostic | None:
     """``judge goal``."""
     if place.before is None or place.before.type != "JUDGE" or place.found.text not in JUDGE:
         return None
-    return place.error("TLT0101", place.expectation(), f"write `at {place.found.text}`")
+    text = f"at {place.found.text}"
+    return place.error("TLT0101", place.expectation(), f"write `{text}`", write=text)
 
 
 def without_braces(place: Place) -> Diagnostic | None:
@@ -107,7 +162,8 @@ def without_braces(place: Place) -> Diagnostic | None:
         return None
     title = "the clauses of a spec stand in braces"
     if before.type == "EQUAL" and found.type == "LBRACE":
-        return place.error("TLT0101", f"{title}, without `=`", "write `{` alone", span=span_of([before, found]))
+        span = span_of([before, found])
+        return place.error("TLT0101", f"{title}, without `=`", "write `{` alone", span=span, write="{")
     if "LBRACE" not in place.allowed or not (found.text in CLAUSES or found.text in (":", "(", "[")):
         return None
     return place.error("TLT0101", title, "put `{` before the first one and `}` behind the last")
@@ -119,7 +175,7 @@ def sign_behind_keyword(place: Place) -> Diagnostic | None:
         return None
     word = place.tokens[0].text
     title = f"no {shown(place.found)} stands behind `{word}`"
-    return place.error("TLT0104", title, f"write `{word}` alone", span=span_of(place.tokens[:2]))
+    return place.error("TLT0104", title, f"write `{word}` alone", span=span_of(place.tokens[:2]), write=word)
 
 
 def _outside(place: Place) -> Diagnostic:
@@ -138,20 +194,24 @@ def _no_clause(place: Place, title: str) -> Diagnostic | None:
         return found
     mark = next((index for index in (1, 2) if tokens[index:] and tokens[index].text in CLAUSES), None)
     if mark and not any(_is_word(each) for each in tokens[:mark]):
-        word, signs = tokens[mark].text, written(place, 0, mark)
-        return place.error(
-            "TLT0107", f"no clause begins with `{signs}`", f"write `{word}` alone", span=span_of(tokens[: mark + 1])
-        )
+        word, signs, span = tokens[mark].text, written(place, 0, mark), span_of(tokens[: mark + 1])
+        title = f"no clause begins with `{signs}`"
+        return place.error("TLT0107", title, f"write `{word}` alone", span=span, write=word)
     if not any(_is_word(each) for each in tokens[:-1]):
         return place.error("TLT0107", title, "leave it out: a clause begins with its keyword")
     found = conditional(place)
     if found:
         return found
     if token.type in _OF_OPERATOR:
-        # A clause has no bound of its own.
+        # A keyword belongs to all of its line, an operator to what stands right behind it; and no clause has a bound.
         bound = len(tokens) > 2 and tokens[1].text in ("within", "for", "[")
-        meant = f"require {token.text}" if bound else _OF_OPERATOR[token.type]
-        return place.error("TLT0107", title, None, f"did you mean `{meant}`?")
+        stop = len(tokens) - 1
+        if bound or has(place, 1, stop, INFIX):
+            text = f"require {written(place, 0, stop)}"
+            found = reworded(place, 0, stop, text, title, ": the formula as it is written", "TLT0107")
+            return found or place.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
+        meant = _OF_OPERATOR[token.type]
+        return place.error("TLT0107", title, None, f"did you mean `{meant}`?", write=meant)
     if token.type in INFIX:
         return place.error("TLT0107", title, f"it stands between two formulas, and there is none before `{token.text}`")
     if token.text.lower() in ("allow", "permit", "may", "can"):

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.clear import (
+    QUANTIFIERS,
+    TEMPORAL,
+    UNCLEAR,
+    clause_asked,
+    has,
+    has_always_before,
+    is_clear_here,
+    is_clear_time_here,
+    is_clear_word,
+    is_of_one_step,
+)
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.place import BEFORE_ONE, INFIX, Place, outside, shown
 from tltlc.grammar.rewording import formula_start, formula_stop, last_of, operand, reworded, span_of
@@ -43,6 +55,9 @@ _FORMS: Final[dict[str, Forms]] = {
     "without": {"": "{a} and not {b}"},
     "but": {"": "{a} and {b}"},
     "xor": {"": "not ({a} iff {b})"},
+    "xnor": {"": "{a} iff {b}"},
+    "nor": {"": "not ({a} or {b})"},
+    "nand": {"": "not ({a} and {b})"},
 }
 """What `a WORD b` is."""
 
@@ -91,6 +106,7 @@ _REASONS: Final = {
     ("before", "reach"): "; where only the order counts, `require (not {b}) until {a}`",
 }
 _WHERE: Final = ": where `{b}` holds, `{a}` must, too"
+_ONCE: Final = "; a clause `keep {b} implies {a}` asks for it at every step"
 
 
 def plain_english(place: Place) -> Diagnostic | None:
@@ -125,7 +141,7 @@ def compared(place: Place) -> Diagnostic | None:
         value = place.tokens[at + length].type
         if value == "NUMBER" or (value == "NAME" and phrase[0] != "at"):
             title, span = f"{shown(place.found)} is no operator", span_of(place.tokens[at : at + length])
-            return place.error("TLT0101", title, f"write `{sign}`", span=span)
+            return place.error("TLT0101", title, f"write `{sign}`", span=span, write=sign)
     return None
 
 
@@ -153,10 +169,11 @@ def _without(place: Place) -> Diagnostic:
     """``reach a without b``: `avoid` asks for what follows, which must be one operand."""
     help_ = "`avoid`, which begins a clause of its own and speaks of every step"
     at = place.stop.index
-    alone = not _has(place, at + 1, formula_stop(place), INFIX) and not _has(
-        place, _goals(place, at)[-1], at, _AMBIGUOUS
-    )
-    return place.error("TLT0101", "`without` is no operator", f"{'write' if alone else 'use'} {help_}")
+    goals = _goals(place, at)
+    sides = ((goals[-1], at), (at + 1, formula_stop(place)))
+    alone = len(goals) == 1 and is_clear_word(place, "without", *sides, _kind(place))
+    write = "avoid" if alone else None
+    return place.error("TLT0101", "`without` is no operator", f"{'write' if alone else 'use'} {help_}", write=write)
 
 
 def _untimed(place: Place, forms: Forms) -> Diagnostic:
@@ -167,13 +184,13 @@ def _untimed(place: Place, forms: Forms) -> Diagnostic:
     end = next((index for index in outside(place.tokens, behind, stop) if place.tokens[index].type == "THEN"), stop)
     form = forms.get(kind, forms[""])
     said = _Said(operand(place, begin, at), operand(place, behind, end))
+    word = place.found.text
     is_clear = (
-        (end == stop or kind == "reach")
-        and not _has(place, begin, at, _AMBIGUOUS)
-        and not _has(place, behind, end, _AMBIGUOUS)
-        and not (form == _FORMS["xor"][""] and (_has(place, begin, at, INFIX) or _has(place, behind, end, INFIX)))
-        and not (" then " in form and (kind == "keep" or place.tokens[begin].type == "NOT"))
-        and (form in _ANYWHERE or _is_clear_inside(place, form))
+        (end == stop or (kind == "reach" and word not in _OF_THE_REST))
+        and (begin == formula_start(place) or word != "unless")
+        and not (" then " in form and kind == "keep")
+        and is_clear_word(place, word, (begin, at), (behind, end), kind)
+        and is_clear_here(place, word)
     )
     return _told(place, at, (begin, end), form, said if is_clear else None)
 
@@ -186,7 +203,7 @@ def _timed(place: Place, forms: Forms) -> Diagnostic:
     time, behind = _time(place, at + 1)
     if len(goals) > 1:
         before = operand(place, goals[-2], begin - 1)
-        is_clear = not _has(place, goals[-2], begin - 1, _AMBIGUOUS)
+        is_clear = not has(place, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
         form, start = forms["then"], goals[-2]
     elif kind in forms and kind:
         before, form, start, is_clear = "", forms[kind], begin, True
@@ -195,6 +212,9 @@ def _timed(place: Place, forms: Forms) -> Diagnostic:
         last = last_of(place, INFIX, begin)
         start = begin = begin if last is None else last + 1
         before, form, is_clear = "", forms[""], _is_clear_time(place, begin, forms)
+        is_clear = is_clear and place.tokens[begin].type not in _UNARY
+        is_clear = is_clear and not has(place, formula_start(place), at, TEMPORAL | QUANTIFIERS)
+    if kind != "keep":
         is_clear = is_clear and place.tokens[begin].type not in _UNARY
     is_clear = is_clear and behind == stop and _is_clear_operand(place, begin, at)
     said = _Said(operand(place, begin, at), time, before)
@@ -214,7 +234,9 @@ def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic
     said = _Said(operand(place, behind, stop), operand(place, at + 1, split))
     previous = place.tokens[at - 1].type if at > formula_start(place) else None
     is_clear = previous in _BEFORE_CONDITIONS.get(_kind(place), (None, "AND", "OR", "IMPLIES"))
-    is_clear = is_clear and _is_clear_inside(place, form)
+    is_clear = is_clear and is_clear_here(place, place.tokens[at].text)
+    is_clear = is_clear and not has(place, formula_start(place), split, TEMPORAL)
+    is_clear = is_clear and not (_kind(place) in ("reach", "avoid") and has(place, behind, stop, TEMPORAL))
     wrapped = form if previous in (None, "THEN") else f"({form})"
     return _told(place, at, (at, stop), wrapped, said if is_clear else None)
 
@@ -226,14 +248,16 @@ def _prefixed_time(place: Place, at: int, forms: Forms) -> Diagnostic:
     is_clear = _is_clear_operand(place, behind, stop)
     if at == first:
         form = forms.get(kind, forms[""])
-        is_clear = is_clear and (form != forms[""] or _is_clear_time(place, at, forms))
+        is_own = form != forms[""]
+        is_clear = is_clear and (is_own or (_is_clear_time(place, at, forms) and not has(place, behind, stop, INFIX)))
     elif kind == "reach" and place.tokens[at - 1].type == "THEN":
         start = _goals(place, at)[-2]
         form, before = forms["then"], operand(place, start, at - 1)
-        is_clear = is_clear and not _has(place, start, at - 1, _AMBIGUOUS)
+        is_clear = is_clear and not has(place, start, at - 1, UNCLEAR | TEMPORAL)
     else:
         form = forms[""]
-        is_clear = _is_clear_time(place, at, forms) and not _has(place, behind, stop, INFIX)
+        is_clear = is_clear and _is_clear_time(place, at, forms)
+        is_clear = is_clear and not has(place, first, stop, {*TEMPORAL, "AND", "OR"})
     said = _Said(operand(place, behind, stop), time, before)
     return _told(place, at, (start, stop), form, said if is_clear else None)
 
@@ -271,7 +295,7 @@ def _told(place: Place, at: int, part: tuple[int, int], form: str, said: _Said |
     text = said.put_in(form) if said and said.a and said.b and not (timed and _is_zero(said.b)) else ""
     if said and text:
         reason = ((word.text == "for" or not timed) and _REASONS.get((word.text, kind))) or (
-            _WHERE if form == _CONDITION[""] else ""
+            (_WHERE if _is_of_every_step(place, at) else _ONCE) if form == _CONDITION[""] else ""
         )
         found = reworded(place, start, stop, text, title, reason.format(a=said.a, b=said.b), code)
         if found:
@@ -285,34 +309,33 @@ def _in_general(place: Place, at: int, form: str) -> str:
     said = _Said("a", "20 steps" if timed else "b", "c")
     infix = "followed by" if word == "followed" else word
     english = f"{word} {said.b}, a" if prefixed else f"a {infix} {said.b}"
+    if form == _CONDITION[""] and not _is_of_every_step(place, at):
+        return (
+            f"`{english}` is `b implies a` where it is about one step, a clause `keep b implies a` where it is about "
+            "every one, and `a and b` where both are asked for"
+        )
     if "{c}" in form:
         english = f"c then {english}"
+    kind, written = _kind(place), said.put_in(form)
+    asks = clause_asked(place, at)
+    if asks != kind and asks in _FORMS.get(word, {}) and not timed:
+        # What is written for this clause alone would say something else there.
+        form = _FORMS[word][asks]
+        written = said.put_in(form if _is_clause(form) else f"{asks} {form}")
+        return f"`{asks} {english}` is written `{written}`"
     if at and _is_clause(form):
-        english = f"{_kind(place)} {english}"
-    return f"`{english}` is written `{said.put_in(form)}`"
+        english = f"{kind} {english}"
+    return f"`{english}` is written `{written}`"
 
 
-_AMBIGUOUS: Final = INFIX - {"AND", "OR"}
-"""Operators beside which it is not clear what a word or a time belongs to."""
 _UNARY: Final = BEFORE_ONE | {"ALL", "ANY"}
 _BEFORE_CONDITIONS: Final[Mapping[str, tuple[str | None, ...]]] = {
     "reach": (None, "AND", "OR", "THEN"),
     "avoid": (None, "AND", "OR"),
 }
 """What may stand before `if` in these clauses, None for nothing."""
-_ANYWHERE: Final = {_FORMS[word][""] for word in ("without", "but", "xor")}
-"""Forms that mean the same in each clause, in brackets too."""
-
-
-def _has(place: Place, start: int, stop: int, kinds: Collection[str]) -> bool:
-    """Whether one of these kinds of tokens stands outside brackets in a part."""
-    return any(place.tokens[index].type in kinds for index in outside(place.tokens, start, stop))
-
-
-def _is_clear_inside(place: Place, form: str) -> bool:
-    """Whether the form of any clause is right here: in the brackets of `reach`, say, it may ask for too little."""
-    clause = place.tokens[0].text if place.start == "clause" and place.open_brackets else ""
-    return clause not in ("reach", "avoid", "keep") or (clause == "keep" and form == _CONDITION[""])
+_OF_THE_REST: Final = ("after", "unless", "but")
+"""Words that can be about all goals that follow, or about the next one."""
 
 
 def _is_clear_time(place: Place, begin: int, forms: Forms) -> bool:
@@ -321,15 +344,18 @@ def _is_clear_time(place: Place, begin: int, forms: Forms) -> bool:
     previous = place.tokens[begin - 1].type if begin > formula_start(place) else None
     if clause in ("reach", "avoid"):
         return False
+    is_kept = clause == "keep" or has_always_before(place)
     # A step that must be there makes a goal of what is kept.
-    if clause == "keep" and (previous is None or forms is _AFTER_TIME):
+    if is_kept and (forms is _AFTER_TIME or (previous is None and (clause == "keep" or forms is _FOR_TIME))):
         return False
-    return previous in (None, "IMPLIES")
+    within = forms is _IN_TIME
+    return previous in (None, "IMPLIES") and is_clear_time_here(place, may_be_negated=within, may_be_kept=True)
 
 
 def _is_clear_operand(place: Place, start: int, stop: int) -> bool:
     """Whether a time can be that of all of these tokens."""
-    return not _has(place, start, stop, _AMBIGUOUS) and place.tokens[start].text not in OPERATORS
+    is_one = is_of_one_step(place, start, stop) and not has(place, start, stop, UNCLEAR)
+    return is_one and place.tokens[start].text not in OPERATORS
 
 
 def _goals(place: Place, at: int) -> list[int]:
@@ -339,6 +365,12 @@ def _goals(place: Place, at: int) -> list[int]:
         return [start]
     thens = (index for index in outside(place.tokens, start, at) if place.tokens[index].type == "THEN")
     return [start, *(index + 1 for index in thens)]
+
+
+def _is_of_every_step(place: Place, at: int) -> bool:
+    """Whether a condition stands where it is asked for at each step."""
+    is_kept = place.tokens[0].text == "keep" and place.start == "clause"
+    return at == 0 or ((is_kept or has_always_before(place)) and is_clear_here(place, place.tokens[at].text))
 
 
 def _is_clause(form: str) -> bool:

@@ -8,7 +8,18 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
-from tltlc.grammar.place import ARITHMETIC, BEFORE_ONE, CLOSING, COMPARISONS, INFIX, OPENING, Place, shown, touch
+from tltlc.grammar.place import (
+    ARITHMETIC,
+    BEFORE_ONE,
+    CLOSING,
+    COMPARISONS,
+    INFIX,
+    OPENING,
+    Place,
+    outside,
+    shown,
+    touch,
+)
 from tltlc.grammar.punctuation import NAME
 from tltlc.grammar.rewording import formula_start, formula_stop, reworded, span_of, written
 from tltlc.grammar.tables import load
@@ -72,18 +83,28 @@ def arrow(place: Place) -> Diagnostic | None:
     if sign not in ("=>", "=<"):
         return None
     number = len(after) > 1 and after[1].type == "NUMBER"
-    help_ = "write `<=`" if sign == "=<" else "write `>=`" if number else "write `implies` or `->`"
-    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span_of(place.tokens[at : at + 2]))
+    meant = "<=" if sign == "=<" else ">=" if number else "implies"
+    help_ = f"write `{meant}`" + (" or `->`" if meant == "implies" else "")
+    span = span_of(place.tokens[at : at + 2])
+    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span, write=meant)
 
 
 def comment(place: Place) -> Diagnostic | None:
-    """``-- a comment``."""
-    after = place.tokens[place.stop.index + 1 :][:1]
-    if place.found.text != "-" or not after or after[0].text != "-" or not touch(place.found, after[0]):
-        return None
-    return place.error(
-        "TLT0104", "`--` means nothing here", "write `//` before a comment", span=span_of([place.found, after[0]])
-    )
+    """``-- a comment``, whose words may be read as far as they make a formula."""
+    tokens, at = place.tokens, place.stop.index
+    for index in range(min(at, len(tokens) - 2), -1, -1):
+        first, second, behind = tokens[index], tokens[index + 1], tokens[index + 2 : index + 3]
+        if first.text == second.text == "-" and touch(first, second):
+            # `--3` is a number.
+            if index < at and behind and touch(second, behind[0]):
+                return None
+            span = span_of([first, second])
+            return place.error(
+                "TLT0104", "`--` means nothing here", "write `//` before a comment", span=span, write="//"
+            )
+        if is_first_on_line(place.source, tokens, index):
+            return None
+    return None
 
 
 def unit(place: Place) -> Diagnostic | None:
@@ -94,7 +115,8 @@ def unit(place: Place) -> Diagnostic | None:
     title = f"there is no unit {shown(found)}"
     known = UNITS_ELSEWHERE.get(found.text.lower())
     if known:
-        return place.error("TLT0111", title, None, f"write `{number.text} {known}`", span_of([number, found]))
+        text = f"{number.text} {known}"
+        return place.error("TLT0111", title, None, f"write `{text}`", span_of([number, found]), write=text)
     is_call = place.tokens[place.stop.index + 1].type == "LPAR"
     if is_call or place.allowed == {"UNIT"} or is_first_on_line(place.source, place.tokens, place.stop.index):
         return None
@@ -110,8 +132,11 @@ def doubled(place: Place) -> Diagnostic | None:
         return None
     title = f"{shown(before)} and {shown(found)} stand side by side"
     word = found.text if (before.type, found.type) == ("AND", "THEN") else before.text
-    help_ = f"write `{word}` alone" if found.type in ("THEN", before.type) else "leave one of the two out"
-    return place.error("TLT0101", title, help_, span=span_of([before, found]))
+    # `keep a then b` asks for `b` after the last step.
+    is_order = found.type == "THEN" and place.tokens[0].text != "keep"
+    write = word if found.type == before.type or is_order else None
+    help_ = f"write `{write}` alone" if write else "leave one of the two out"
+    return place.error("TLT0101", title, help_, span=span_of([before, found]), write=write)
 
 
 def prefix_between(place: Place) -> Diagnostic | None:
@@ -124,8 +149,12 @@ def prefix_between(place: Place) -> Diagnostic | None:
     if last or found.type not in {*BEFORE_ONE, "ALL", "ANY"} or not place.wants_operator:
         return None
     goal = keyword == "reach" and found.type in ("NEXT", "EVENTUALLY")
-    help_ = "write `then`" if goal else f"write `and {found.text}`"
-    return place.error("TLT0101", f"{shown(found)} stands before one formula, not between two", help_)
+    meant = "then" if goal else f"and {found.text}"
+    title = f"{shown(found)} stands before one formula, not between two"
+    # Beside another operator, `and` may take too little.
+    stops = outside(place.tokens, formula_start(place), formula_stop(place))
+    is_clear = goal or all(place.tokens[index].type not in INFIX - {"AND"} for index in stops)
+    return place.error("TLT0101", title, f"write `{meant}`", write=meant if is_clear else None)
 
 
 def side(tokens: Sequence[Token], at: int, step: int) -> int:
@@ -144,7 +173,6 @@ HABITS: Final[tuple[Callable[[Place], Diagnostic | None], ...]] = (
     arrow,
     equality,
     chained,
-    comment,
     unit,
     doubled,
     prefix_between,

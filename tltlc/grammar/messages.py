@@ -9,13 +9,14 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr
 from tltlc.grammar.clauses import CLAUSE_RULES
+from tltlc.grammar.clear import has
 from tltlc.grammar.english import compared, filler, plain_english
-from tltlc.grammar.habits import HABITS, side
+from tltlc.grammar.habits import HABITS, comment, side
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
 from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, OPERAND, UNTILS, Place, shown
 from tltlc.grammar.punctuation import PUNCTUATION, missing_comma
-from tltlc.grammar.rewording import reworded, span_of, written
+from tltlc.grammar.rewording import formula_stop, reworded, span_of, written
 from tltlc.grammar.strange import strange
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CASES, CLAUSES, DECLARATIONS, closest
@@ -68,7 +69,8 @@ def _bounds(place: Place) -> Diagnostic | None:
         return _no_number(place)
     if place.allowed == {"UNIT"} and before:
         help_ = f"write `{before.text} steps` or, with a clock, `{before.text} s`"
-        return place.error("TLT0111", f"expected a unit after {shown(before)}", help_, span=before.span)
+        title = f"expected a unit after {shown(before)}"
+        return place.error("TLT0111", title, help_, span=before.span, write=f"{before.text} steps")
     if place.found.type == "RSQB" and before and "COMMA" in place.allowed and _is_bound(place):
         return _one_end(place, before.text)
     if place.found.type == "LSQB" and before and before.type in UNTILS:
@@ -154,11 +156,15 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
         return None
     if re.fullmatch("[FGXN]{2,}", before.text):
         letters = " ".join(before.text)
-        return place.error("TLT0101", f"`{before.text}` is read as one name", f"write `{letters}`", span=before.span)
+        title = f"`{before.text}` is read as one name"
+        return place.error("TLT0101", title, f"write `{letters}`", span=before.span, write=letters)
+    if token.text.lower() == "else":
+        help_ = "`a or b` asks for one of both; of conditions, one follows the other in `when x > 3: 1 otherwise: -1`"
+        return place.error("TLT0101", "`else` is no operator", help_)
     words = tuple(word for word, terminal in load().words.items() if terminal in INFIX and len(word) > 1)
     near = closest(token.text, words) if token.type == "NAME" else None
     if near and _is_before_operand(place):
-        return place.error("TLT0101", place.expectation(), None, f"did you mean `{near}`?")
+        return place.error("TLT0101", place.expectation(), None, f"did you mean `{near}`?", write=near)
     meant = before.text.lower()
     if meant not in load().words and meant != "no":
         prefixes = (word for word, terminal in load().words.items() if terminal in {*BEFORE_ONE, "WHEN"})
@@ -166,8 +172,11 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
         meant = closest(before.text, known) or ""
     if not meant or before.type != "NAME":
         return None
-    message = f"did you mean `{'not' if meant == 'no' else meant}`?"
-    return place.error("TLT0101", f"`{before.text}` is no operator", None, message, before.span)
+    title = f"`{before.text}` is no operator"
+    if meant == "no" and has(place, place.stop.index, formula_stop(place), INFIX):
+        return place.error("TLT0101", title, "`(not a) or b` is about one, `not (a or b)` about both")
+    meant = "not" if meant == "no" else meant
+    return place.error("TLT0101", title, None, f"did you mean `{meant}`?", before.span, write=meant)
 
 
 def _is_before_operand(place: Place) -> bool:
@@ -198,7 +207,7 @@ def _otherwise(place: Place) -> Diagnostic | None:
     """``when a: 1 else: 0``."""
     if place.found.text not in ("else", "default") or "OTHERWISE" not in place.allowed:
         return None
-    return place.error("TLT0101", f"{shown(place.found)} begins no case", "write `otherwise`")
+    return place.error("TLT0101", f"{shown(place.found)} begins no case", "write `otherwise`", write="otherwise")
 
 
 def _cases(place: Place) -> Diagnostic | None:
@@ -220,9 +229,10 @@ def _side_by_side(place: Place) -> Diagnostic | None:
         return place.error("TLT0101", title, "formulas are joined by `and`, `or` or `then`")
     if _is_before_operand(place):
         return place.error("TLT0101", f"{shown(found)} is no operator", "formulas are joined by `and`, `or` or `then`")
-    help_ = f"write `{before.text}({found.text})` where the one is said of the other; else join them by `and` or `then`"
+    text = f"{before.text}({found.text})"
+    help_ = f"write `{text}` where the one is said of the other; else join them by `and` or `then`"
     title = f"{shown(before)} and {shown(found)} are not joined"
-    return place.error("TLT0101", title, help_, span=span_of([before, found]))
+    return place.error("TLT0101", title, help_, span=span_of([before, found]), write=text)
 
 
 def _operator_for_name(place: Place) -> Diagnostic | None:
@@ -240,6 +250,7 @@ def _operator_for_name(place: Place) -> Diagnostic | None:
 
 
 _RULES: Final = (
+    comment,
     strange,
     plain_english,
     compared,

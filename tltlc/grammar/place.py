@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.grammar import lalr
 from tltlc.grammar.lexer import END, Token
 from tltlc.grammar.tables import load
@@ -92,12 +92,23 @@ class Place:
         return f"the form is {form}" if form else None
 
     def error(
-        self, code: str, title: str, help_: str | None, message: str = "", span: Span | None = None
+        self,
+        code: str,
+        title: str,
+        help_: str | None,
+        message: str = "",
+        span: Span | None = None,
+        *,
+        write: str | None = None,
     ) -> Diagnostic:
-        """An error at the token that was found; at the end of a piece, at its last token."""
+        """An error at the token that was found; at the end of a piece, at its last token.
+
+        Its fix is to ``write`` something else there, where that is given.
+        """
         if span is None:
             span = self.before.span if self.at_end and self.before else self.found.span
-        return Diagnostic(code, title, (Label(self.source, span, message),), help_)
+        fixes = (instead(self.source, span, write),) if write is not None else ()
+        return Diagnostic(code, title, (Label(self.source, span, message),), help_, fixes=fixes)
 
     def expectation(self) -> str:
         """``expected … after …, found …``."""

@@ -19,6 +19,9 @@ _COMMA: Final = {
     "avoid": ("or", ""),
 }
 """What joins the formulas of a clause, where it is not `and`."""
+_NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
+_IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
+_QUANTIFIERS: Final = frozenset(("ALL", "ANY"))
 
 
 def comma(place: Place) -> Diagnostic | None:
@@ -27,11 +30,8 @@ def comma(place: Place) -> Diagnostic | None:
     if place.found.type != "COMMA" or before is None or not place.wants_operator or place.open_brackets:
         return None
     after = place.tokens[at + 1]
-    if before.type == after.type == "NUMBER" and touch(before, place.found) and touch(place.found, after):
-        text = f"{before.text}.{after.text}"
-        return place.error(
-            "TLT0104", "a number has a point, no comma", f"write `{text}`", span=span_of([before, after])
-        )
+    if before.type == after.type == "NUMBER" and _touch(place, at):
+        return _comma_in_number(place)
     if after.type == END:
         return place.error("TLT0104", "`,` means nothing here", left_out(place))
     word, reason = _COMMA.get(place.tokens[0].text, ("and", ""))
@@ -41,11 +41,36 @@ def comma(place: Place) -> Diagnostic | None:
     return found or place.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
 
 
+def _comma_in_number(place: Place) -> Diagnostic:
+    """``2,5``, and ``1,000``, which is a thousand in one country and one in another."""
+    at = place.stop.index
+    stop = at + 2
+    while place.tokens[stop].type == "COMMA" and place.tokens[stop + 1].type == "NUMBER" and _touch(place, stop):
+        stop += 2
+    text = place.source.slice(span_of(place.tokens[at - 1 : stop]))
+    span, title = span_of(place.tokens[at - 1 : stop]), "a number has a point, no comma"
+    thousands, fraction = text.replace(",", ""), text.replace(",", ".")
+    is_fraction, in_thousands = _NUMBER.fullmatch(fraction), _IN_THOUSANDS.fullmatch(text)
+    if in_thousands:
+        help_ = f"write `{thousands}` where a comma parts the thousands"
+        help_ += f", `{fraction}` where it stands for a point" if is_fraction else ""
+        return place.error("TLT0104", title, help_, span=span)
+    if is_fraction:
+        return place.error("TLT0104", title, f"write `{fraction}`", span=span, write=fraction)
+    return place.error("TLT0104", title, "write it without commas", span=span)
+
+
+def _touch(place: Place, at: int) -> bool:
+    """Whether a token touches both the one before it and the one behind it."""
+    before, found, behind = place.tokens[at - 1 : at + 2]
+    return touch(before, found) and touch(found, behind)
+
+
 def _joined(place: Place, start: int, stop: int, word: str) -> str:
     """Tokens with a word in place of each comma outside brackets, or with none where an operator follows anyway."""
     text = ""
     for end in [*(index for index in outside(place.tokens, start, stop) if place.tokens[index].type == "COMMA"), stop]:
-        part = written(place, start, end) if word == "then" else operand(place, start, end)
+        part = _goal(place, start, end) if word == "then" else operand(place, start, end)
         if start == end:
             continue
         if text and place.tokens[start].type in INFIX:
@@ -54,6 +79,15 @@ def _joined(place: Place, start: int, stop: int, word: str) -> str:
             text += f" {word} {part}" if text else part
         start = end + 1
     return text
+
+
+def _goal(place: Place, start: int, stop: int) -> str:
+    """Tokens before `then`: a quantifier in brackets, as it reaches as far as it can, over the `then` too."""
+    quantifiers = (index for index in outside(place.tokens, start, stop) if place.tokens[index].type in _QUANTIFIERS)
+    at = next(quantifiers, None)
+    if at is None:
+        return written(place, start, stop)
+    return f"{written(place, start, at)} ({written(place, at, stop)})".strip()
 
 
 def missing_comma(place: Place) -> Diagnostic | None:
@@ -71,7 +105,7 @@ def missing_comma(place: Place) -> Diagnostic | None:
     number = before.type == "UNIT"
     text = f"{written(place, place.stop.index - 1 - number, place.stop.index)}, {found.text}"
     span = span_of(place.tokens[place.stop.index - 1 - number : place.stop.index + 1])
-    return place.error("TLT0101", place.expectation(), f"write `{text}`", span=span)
+    return place.error("TLT0101", place.expectation(), f"write `{text}`", span=span, write=text)
 
 
 def argument(place: Place) -> Diagnostic | None:
@@ -81,12 +115,12 @@ def argument(place: Place) -> Diagnostic | None:
         return None
     title = "an argument by name has `=` before its value"
     if place.found.type == "COLON":
-        return place.error("TLT0101", title, f"write `{before.text} =`", span=span_of([before, place.found]))
-    if place.found.type != "NUMBER":
+        text = f"{before.text} ="
+    elif place.found.type == "NUMBER":
+        text = f"{before.text} = {place.found.text}"
+    else:
         return None
-    return place.error(
-        "TLT0101", title, f"write `{before.text} = {place.found.text}`", span=span_of([before, place.found])
-    )
+    return place.error("TLT0101", title, f"write `{text}`", span=span_of([before, place.found]), write=text)
 
 
 def no_arguments(place: Place) -> Diagnostic | None:
@@ -98,7 +132,7 @@ def no_arguments(place: Place) -> Diagnostic | None:
     name = place.tokens[at - 2].text
     title = "there is nothing in these brackets"
     help_ = f"write `{name}` alone, or what it is said of between them"
-    return place.error("TLT0101", title, help_, span=span_of(place.tokens[at - 2 : at + 1]))
+    return place.error("TLT0101", title, help_, span=span_of(place.tokens[at - 2 : at + 1]), write=name)
 
 
 def brackets(place: Place) -> Diagnostic | None:
@@ -145,7 +179,8 @@ def no_name(place: Place) -> Diagnostic | None:
         span, text = span_of([before, after[0]]), f"{before.text}_{after[0].text}"
     else:
         return None
-    return place.error("TLT0104", f"`{place.source.slice(span)}` is no name", f"{rule}: write `{text}`", span=span)
+    title = f"`{place.source.slice(span)}` is no name"
+    return place.error("TLT0104", title, f"{rule}: write `{text}`", span=span, write=text)
 
 
 def value_of_signal(place: Place) -> Diagnostic | None:
@@ -159,7 +194,7 @@ def type_alone(place: Place) -> Diagnostic | None:
     """``signal at(entity): bool``."""
     if place.found.type != "ENTITY" or "NAME" not in place.allowed or not place.open_brackets:
         return None
-    return place.error("TLT0101", "a parameter has a name", "write `x: entity`")
+    return place.error("TLT0101", "a parameter has a name", "write `x: entity`", write="x: entity")
 
 
 def several(place: Place) -> Diagnostic | None:
@@ -174,7 +209,7 @@ def range_word(place: Place) -> Diagnostic | None:
     """``signal coins [0, 50]``."""
     if place.found.type != "LSQB" or "IN" not in place.allowed or place.before is None or place.before.text == "in":
         return None
-    return place.error("TLT0101", place.expectation(), "write `in [`")
+    return place.error("TLT0101", place.expectation(), "write `in [`", write="in [")
 
 
 def left_out(place: Place) -> str:

@@ -29,7 +29,8 @@ def reworded(
     """
     if len(text) > _LONGEST or not _can_be_read(place, start, stop, text):
         return None
-    return place.error(code, title, f"write `{text}`{reason}", span=span_of(place.tokens[start:stop]))
+    span = span_of(place.tokens[start:stop])
+    return place.error(code, title, f"write `{text}`{reason}", span=span, write=text)
 
 
 def span_of(tokens: Sequence[Token]) -> Span:

@@ -17,9 +17,9 @@ from tltlc.source import Span
 _QUOTES: Final = frozenset("\"'`´‘’‚“”„«»")
 _SIGNS: Final = {"−": "-", "×": "*", "÷": "/", "≔": "=", "°": "deg"}
 """What stands for a sign from elsewhere, beside what Unicode knows of its form."""
+_SUPERSCRIPTS: Final = "⁰¹²³⁴⁵⁶⁷⁸⁹"
 _HELPS: Final = {
     "#": "comments begin with `//`",
-    "~": "for `not` write `not` or `!`",
     "%": "a percentage follows a number, as in `50%`",
     "≠": "write `a < b or a > b`; a `bool` signal is an atom by itself",
 }
@@ -48,25 +48,38 @@ def strange(place: Place) -> Diagnostic | None:
     if text == ".":
         after = place.tokens[place.stop.index + 1]
         number = after.type == "NUMBER" and after.start == token.end
-        help_ = f"write `0.{after.text}`" if number else left_out(place)
+        write = f"0.{after.text}" if number else None
         span = Span(token.start, after.end) if number else token.span
-        return place.error("TLT0104", "`.` means nothing here", help_, span=span)
+        help_ = f"write `{write}`" if write else left_out(place)
+        return place.error("TLT0104", "`.` means nothing here", help_, span=span, write=write)
     if text == ";":
         after = place.tokens[place.stop.index + 1]
         listed = "COMMA" in place.allowed and after.type == "NAME"
-        return place.error("TLT0104", "`;` means nothing here", "write `,`" if listed else left_out(place))
-    return place.error("TLT0104", f"{_sign(text)} means nothing here", _HELPS.get(text) or _like(text))
+        help_ = "write `,`" if listed else left_out(place)
+        return place.error("TLT0104", "`;` means nothing here", help_, write="," if listed else None)
+    title = f"{_sign(text)} means nothing here"
+    if text == "~":
+        return place.error("TLT0104", title, "for `not` write `not` or `!`", write="not")
+    like = _like(text)
+    if text in _HELPS or like is None:
+        return place.error("TLT0104", title, _HELPS.get(text) or _left_out(text))
+    return place.error("TLT0104", title, f"write `{like}`", write=like)
 
 
 def _name(place: Place) -> Diagnostic:
-    """``café``."""
+    """``café`` and ``coins²``."""
     from unicodedata import normalize
 
     text = place.found.text
+    base = text.rstrip(_SUPERSCRIPTS)
+    if base != text and (not base or (base.isascii() and base.isidentifier())):
+        power = f"{base}^{normalize('NFKC', text[len(base) :])}"
+        title = f"{shown(place.found)} is no name" if base else f"`{text}` means nothing here"
+        return place.error("TLT0104", title, f"for a power write `{power}`", write=power)
     plain = "".join(sign for sign in normalize("NFKD", text) if sign.isascii())
-    close = f": write `{plain}`" if plain.isidentifier() and len(plain) == len(text) else ""
-    help_ = f"names are ASCII letters, digits and `_`{close}"
-    return place.error("TLT0104", f"{shown(place.found)} is no name", help_)
+    write = plain if plain.isidentifier() and len(plain) == len(text) else None
+    help_ = "names are ASCII letters, digits and `_`" + (f": write `{write}`" if write else "")
+    return place.error("TLT0104", f"{shown(place.found)} is no name", help_, write=write)
 
 
 def _quotes(place: Place) -> Diagnostic:
@@ -93,11 +106,16 @@ def _sign(text: str) -> str:
     return f"`U+{ord(text):04X}`" + (f" ({said})" if said else "")
 
 
-def _like(text: str) -> str:
+def _like(text: str) -> str | None:
     """What the language has instead of a sign that looks like one of its own."""
-    from unicodedata import category, normalize
+    from unicodedata import normalize
 
     plain = _SIGNS.get(text) or normalize("NFKC", text)
-    if plain in load().signs or plain in load().units:
-        return f"write `{plain}`"
+    return plain if plain in load().signs or plain in load().units else None
+
+
+def _left_out(text: str) -> str:
+    """What to do about a sign that the language has nothing like."""
+    from unicodedata import category
+
     return "write `-` for a difference, `_` in a name" if category(text) == "Pd" else "leave it out"

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, around
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Expr
 from tltlc.grammar.walk import children, operands
@@ -37,7 +37,7 @@ def check_then(source: SourceFile, formula: Expr, *, in_reach: bool) -> Iterator
 def _check_operand(source: SourceFile, sequence: list[Expr], place: int, lenient: bool) -> Iterator[Diagnostic]:
     operand = sequence[place]
     leading = _leading(operand)
-    if leading is None and (lenient or _is_plain(operand)):
+    if not _lacks_brackets(operand, lenient):
         return
     last = place == len(sequence) - 1
     other = sequence[place - 1] if last else sequence[place + 1]
@@ -54,7 +54,7 @@ def _check_operand(source: SourceFile, sequence: list[Expr], place: int, lenient
             first, second = _text(source, before), _text(source, after)
             if len(first) + len(second) <= _SHORT:
                 help_ = f"`reach {first} then {second}` means: {second} after {first}\n{help_}"
-    yield Diagnostic("TLT0102", title, (Label(source, span),), help_)
+    yield Diagnostic("TLT0102", title, (Label(source, span),), help_, fixes=_fixes(source, sequence, place, lenient))
 
 
 def _leading(operand: Expr) -> tree.Unary | None:
@@ -96,6 +96,34 @@ def _readings(source: SourceFile, operand: Expr, other: Expr, last: bool) -> str
             f" or `({neighbour} then {_text(source, inner)}){tail}`" if tail else ""
         )
     return f"write `({whole}) then {neighbour}` or `{head}({_text(source, inner)} then {neighbour})`"
+
+
+def _fixes(source: SourceFile, sequence: list[Expr], place: int, lenient: bool) -> tuple[Fix, ...]:
+    """Brackets around the operand, and around its one half with what follows or precedes it, where that can be read."""
+    operand = sequence[place]
+    bare = [each for each in sequence if _lacks_brackets(each, lenient)]
+    whole = _text(source, operand)
+    title = f"Write `({whole})`" if len(whole) <= _SHORT else "Put the operand in brackets"
+    title = title if len(bare) == 1 else "Put each operand in brackets"
+    fixes = [Fix(title, tuple(edit for each in bare for edit in around(each.span)))]
+    half = _half(operand, last=place == 1)
+    if len(sequence) == 2 and bare == [operand] and half and not _lacks_brackets(half, lenient=False):
+        first, second = (sequence[0], half) if place else (half, sequence[1])
+        text = f"{_text(source, first)} then {_text(source, second)}"
+        if len(text) <= _SHORT:
+            fixes.append(Fix(f"Write `({text})`", around(first.span.to(second.span))))
+    return tuple(fixes)
+
+
+def _lacks_brackets(operand: Expr, lenient: bool) -> bool:
+    return _leading(operand) is not None or not (lenient or _is_plain(operand))
+
+
+def _half(operand: Expr, last: bool) -> Expr | None:
+    """The operand of an operator that stands beside the `then`."""
+    if isinstance(operand, tree.Binary):
+        return operand.left if last else operand.right
+    return operand.operand if isinstance(operand, tree.Unary) and not last else None
 
 
 def _text(source: SourceFile, part: Expr) -> str:

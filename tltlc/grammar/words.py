@@ -102,10 +102,26 @@ SEMANTICS: Final = ("finite", "infinite")
 VERDICTS: Final = ("satisfied", "holding", "pending", "violated")
 
 
+_NEGATING: Final = (
+    "n",
+    "x",
+    "xn",
+    "un",
+    "dis",
+    *(f"{word}{sign}" for word in ("no", "non", "not") for sign in ("", "_")),
+)
+_OF_OTHERS: Final = frozenset(("else", "eor", "entails", "hence", "except", "strong_until", "strong_next"))
+"""Words that mean something else than the words of the language that look like them."""
+
+
 @lru_cache(maxsize=1000)
 def closest(word: str, known: tuple[str, ...]) -> str | None:
-    """The known word that ``word`` is most likely a misspelling of, if any."""
+    """The known word that ``word`` is most likely a misspelling of, if any; none that says something else."""
     from difflib import get_close_matches
 
-    found = get_close_matches(word.lower(), known, n=1, cutoff=0.65)
+    word = word.lower()
+    if word in _OF_OTHERS:
+        return None
+    known = tuple(each for each in known if word not in {f"{prefix}{each}" for prefix in _NEGATING})
+    found = get_close_matches(word, known, n=1, cutoff=0.65)
     return found[0] if found else None

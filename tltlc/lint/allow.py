@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_right
 from collections.abc import Iterable
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
-from tltlc.grammar.allowed import Allowed, allowed, codes, is_allowing
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, Severity
+from tltlc.grammar.allowed import Allowed, codes, is_allowing
+from tltlc.grammar.silencing import Silencing
 from tltlc.grammar.tree import Comment
 from tltlc.lint.removal import without
-from tltlc.lint.rule import Edit, Finding
+from tltlc.lint.rule import Finding, removal
 from tltlc.lint.view import View
 from tltlc.source import SourceFile, Span
 
@@ -23,41 +25,59 @@ def silenced(view: View, found: Iterable[Finding]) -> list[Finding]:
     """The findings that no comment silences, of the file where they are; and one for each code that the file itself
     allows in vain.
     """
-    comments = [each for loaded in view.modules for each in allowed(loaded.module)]
-    used: set[Allowed] = set()
-    left: list[Finding] = []
-    for finding in found:
-        silencing = [each for each in comments if each.silences(finding.diagnostic)]
-        used.update(silencing)
-        if not silencing:
-            left.append(finding)
-    own = [each for each in comments if each.source is view.source]
-    undecided = _undecided(view)
-    judged = [each for each in own if each not in used and not _speaks_of_any(undecided, each)]
-    needless = dict.fromkeys(each for each in judged if CODE not in codes(each.comment))
-    kept = {each.comment for each in own if each not in needless}
-    left += [_in_vain(each, each.comment in kept) for each in needless]
+    comments = Silencing(loaded.module for loaded in view.modules)
+    left = [finding for finding in found if not comments.silences(finding.diagnostic)]
+    own = comments.allowed(view.source)
+    asked_for = {each.comment for each in own if each.code == CODE}
+    undecided = _Undecided(view)
+    needless = [
+        each
+        for each in own
+        if each.comment not in asked_for and not comments.has_silenced(each) and not undecided.touch(each)
+    ]
+    in_vain = set(map(id, needless))
+    kept = {each.comment for each in own if id(each) not in in_vain}
+    fixes = {
+        comment: removal("Remove it", (without(view.source, comment.span),))
+        for comment in dict.fromkeys(each.comment for each in needless)
+        if comment not in kept
+    }
+    left += [_in_vain(each, fixes.get(each.comment)) for each in needless]
     bare = [each for each in view.module.comments if is_allowing(each) and not codes(each)]
     left += [_without_code(each, view.source) for each in bare]
     return left + [_misspelt(each, view.source) for each in view.module.comments if _is_misspelt(each)]
 
 
-def _undecided(view: View) -> list[Span]:
+class _Undecided:
     """The specs that no trace satisfies, or every one: until they are mended, most rules say nothing."""
-    return [spec.declaration.span for spec in view.specs if spec.is_settled]
+
+    def __init__(self, view: View) -> None:
+        self._specs = sorted(
+            (spec.declaration.span for spec in view.specs if spec.is_settled), key=lambda span: span.start
+        )
+        self._starts = [span.start for span in self._specs]
+        self._known: dict[int, bool] = {}
+
+    def touch(self, each: Allowed) -> bool:
+        """Whether a comment speaks of any of them."""
+        if each.places is None:
+            return bool(self._specs)
+        # Comments that speak of the same line share its places.
+        if id(each.places) not in self._known:
+            self._known[id(each.places)] = any(map(self._covers, each.places))
+        return self._known[id(each.places)]
+
+    def _covers(self, place: Span) -> bool:
+        index = bisect_right(self._starts, place.start) - 1
+        return index >= 0 and self._specs[index].covers(place)
 
 
-def _speaks_of_any(specs: Iterable[Span], each: Allowed) -> bool:
-    return any(each.places is None or any(spec.covers(place) for place in each.places) for spec in specs)
-
-
-def _in_vain(each: Allowed, is_kept: bool) -> Finding:
-    """``is_kept``: the comment still allows something else, and is left to the author."""
+def _in_vain(each: Allowed, fix: Fix | None) -> Finding:
+    """``fix`` removes the comment; there is none where it still allows something else, and is left to the author."""
     where = "in this file" if each.places is None else "here"
     title = f"this allows {each.code}, which is not found {where}"
     label = Label(each.source, each.span)
-    fix = () if is_kept else (Edit(without(each.source, each.comment.span), ""),)
-    return Finding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY), fix)
+    return Finding(Diagnostic(CODE, title, (label,), "remove it", SEVERITY, (fix,) if fix else ()))
 
 
 def _without_code(comment: Comment, source: SourceFile) -> Finding:

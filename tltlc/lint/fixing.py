@@ -5,13 +5,13 @@ from __future__ import annotations
 from bisect import bisect, insort
 from collections.abc import Container, Iterable, Mapping, Sequence
 
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
 from tltlc.grammar.allowed import spoken_of
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tree import Module
 from tltlc.limits import WORK
-from tltlc.lint.rule import Edit, Finding
-from tltlc.lint.run import levelled, lint
+from tltlc.lint.rule import Finding
+from tltlc.lint.run import lint
 from tltlc.lint.scopes import after, keeping_scopes
 from tltlc.pipeline import CompileOptions
 from tltlc.record import EMPTY, record
@@ -42,14 +42,14 @@ def fix(
 
     Errors: as of :func:`tltlc.lint.run.lint`.
     """
-    found = levelled(lint(source, options, elsewhere), levels)
+    found = lint(source, options, elsewhere, levels)
     fixed: list[Diagnostic] = []
     for _ in range(_MOST_ROUNDS):
         edited, applied = _applied(source, found)
         if not applied:
             break
         try:
-            left = levelled(lint(edited, options, elsewhere), levels)
+            left = lint(edited, options, elsewhere, levels)
         except TltlError:
             # A fix that breaks a file is none: the file stays as it was before.
             break

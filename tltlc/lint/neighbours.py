@@ -41,7 +41,9 @@ def _root(folder: Path) -> Path:
 
 
 def _below(root: Path) -> Iterator[Path]:
-    for folder, folders, _ in os.walk(root):
+    from tltlc.files import walk
+
+    for folder, folders, _ in walk(root):
         folders[:] = [name for name in folders if not name.startswith(".") and name != "node_modules"]
         yield from _in(Path(folder))
 

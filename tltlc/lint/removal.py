@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 
 from tltlc.grammar.tree import Comment
@@ -41,7 +42,8 @@ def _is_comment(text: str, start: int, end: int) -> bool:
 def _documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
     """Where the documentation of a place begins, with other comments in it; the place itself where there is none."""
     first = start
-    for comment in reversed([each for each in comments if each.span.end <= start]):
+    for index in reversed(range(bisect_right(comments, start, key=lambda each: each.span.end))):
+        comment = comments[index]
         if source.text[comment.span.end : start].strip():
             break
         start = comment.span.start

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, Severity
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Fix, Label, Severity
 from tltlc.record import record
 from tltlc.source import Span
 
@@ -14,25 +14,16 @@ if TYPE_CHECKING:
 
 
 @record
-class Edit:
-    """Another text in place of what a span of the file covers."""
-
-    span: Span
-    text: str
-
-
-Fix = tuple[Edit, ...]
-"""Edits that do not change what any spec of the file asks of the game."""
-
-
-@record
 class Remark:
-    """What a rule has to say, fields as of :class:`~tltlc.diagnostics.diagnostic.Diagnostic`; with a fix or none."""
+    """What a rule has to say, fields as of :class:`~tltlc.diagnostics.diagnostic.Diagnostic`; with a fix or none.
+
+    The fix changes nothing that a spec of the file asks of the game.
+    """
 
     title: str
     labels: tuple[Label, ...]
     help: str
-    fix: Fix = ()
+    fix: Fix | None = None
 
 
 @record
@@ -51,7 +42,16 @@ class Rule:
 
 @record
 class Finding:
-    """A diagnostic, and the fix that makes it go away or none."""
+    """A diagnostic of the linter."""
 
     diagnostic: Diagnostic
-    fix: Fix = ()
+
+    @property
+    def fix(self) -> tuple[Edit, ...]:
+        """The edits that make it go away and change nothing that a spec asks for, if there are any."""
+        return next((fix.edits for fix in self.diagnostic.fixes if fix.applicability == "safe"), ())
+
+
+def removal(title: str, spans: Iterable[Span]) -> Fix:
+    """The fix that leaves out what needs not be there."""
+    return Fix(title, tuple(Edit(span, "") for span in spans), "safe")

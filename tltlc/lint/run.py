@@ -3,41 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping
+from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, stop_at_errors
-from tltlc.grammar.allowed import unsilenced
 from tltlc.grammar.parser import parse
+from tltlc.grammar.silencing import unsilenced
 from tltlc.grammar.tree import SpecDecl
 from tltlc.lint.allow import silenced
 from tltlc.lint.rule import Finding, Rule
 from tltlc.lint.rules import rules
 from tltlc.lint.view import SpecView, View
 from tltlc.pipeline import CompileOptions, build_spec
-from tltlc.record import replace
+from tltlc.record import EMPTY, replace
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolution
 from tltlc.source import SourceFile
 
+_COUNTS: Final = {"note": 0, "warning": 1, "error": 2}
+
 
 def lint(
-    source: SourceFile, options: CompileOptions | None = None, elsewhere: Container[str] = frozenset()
+    source: SourceFile,
+    options: CompileOptions | None = None,
+    elsewhere: Container[str] = frozenset(),
+    levels: Mapping[str, str] = EMPTY,
 ) -> tuple[Finding, ...]:
     """What is to be said of a file that compiles, in the order of its text; the compiler's own warnings are among it.
 
     All specs of the file are looked at, whatever the options name; ``elsewhere`` are names that other files may use
-    of it.
+    of it, and ``levels`` are as of :func:`levelled`.
     Errors: :class:`TltlError` with everything that was found, as of :func:`tltlc.pipeline.compile_source`.
     """
-    return findings(replace(view_of(source, options or CompileOptions()), elsewhere=elsewhere))
+    return findings(replace(view_of(source, options or CompileOptions()), elsewhere=elsewhere), levels)
 
 
-def findings(view: View) -> tuple[Finding, ...]:
-    """What the compiler and the rules have to say of a file, less what its comments silence."""
-    # The body of a quantifier is looked at once for each entity, and says the same of all.
-    of_rules = [(rule, finding) for rule in rules() for finding in dict.fromkeys(_found(rule, view))]
-    found = [Finding(said) for said in view.said if not _is_superseded(said, of_rules)]
-    found += [finding for _, finding in of_rules if not _is_superseded(finding.diagnostic, of_rules)]
-    return tuple(sorted(silenced(view, found), key=lambda finding: _place(finding, view.source)))
+def findings(view: View, levels: Mapping[str, str] = EMPTY) -> tuple[Finding, ...]:
+    """What the compiler and the rules have to say of a file, less what its comments and ``levels`` silence.
+
+    Only what is shown supersedes anything, and nothing of a higher severity than its own.
+    """
+    found = [Finding(said) for said in view.said]
+    supersedes: dict[str, tuple[str, ...]] = {}
+    for rule in rules():
+        # The body of a quantifier is looked at once for each entity, and says the same of all.
+        found += dict.fromkeys(_found(rule, view))
+        supersedes[rule.code] = rule.supersedes
+    shown = levelled(silenced(view, found), levels)
+    more: dict[str, list[Diagnostic]] = {}
+    for finding in shown:
+        for code in supersedes.get(finding.diagnostic.code, ()):
+            more.setdefault(code, []).append(finding.diagnostic)
+    left = [each for each in shown if not _is_superseded(each.diagnostic, more.get(each.diagnostic.code, ()))]
+    return tuple(sorted(left, key=lambda finding: _place(finding, view.source)))
 
 
 def levelled(found: Iterable[Finding], levels: Mapping[str, str]) -> tuple[Finding, ...]:
@@ -71,16 +88,15 @@ def _at(finding: Finding, severity: str) -> Finding:
 
 def _found(rule: Rule, view: View) -> Iterator[Finding]:
     for remark in rule.check(view):
-        diagnostic = Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity)
-        yield Finding(diagnostic, remark.fix)
+        fixes = (remark.fix,) if remark.fix else ()
+        yield Finding(Diagnostic(rule.code, remark.title, remark.labels, remark.help, rule.severity, fixes))
 
 
-def _is_superseded(said: Diagnostic, of_rules: Iterable[tuple[Rule, Finding]]) -> bool:
-    """Whether a rule says more of one of the places that a diagnostic points at."""
-    places = [finding.diagnostic.labels[0] for rule, finding in of_rules if said.code in rule.supersedes]
-    return any(
-        label.source == place.source and label.span.covers(place.span) for label in said.labels for place in places
-    )
+def _is_superseded(diagnostic: Diagnostic, more: Iterable[Diagnostic]) -> bool:
+    """Whether a rule says more of one of the places that a diagnostic points at, and counts as much."""
+    places = [other.labels[0] for other in more if _COUNTS[other.severity] >= _COUNTS[diagnostic.severity]]
+    labels = diagnostic.labels
+    return any(label.source == place.source and label.span.covers(place.span) for label in labels for place in places)
 
 
 def _place(finding: Finding, source: SourceFile) -> tuple[bool, int, str]:

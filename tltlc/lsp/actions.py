@@ -1,4 +1,4 @@
-"""Ways out that can be taken at once, as actions of the protocol."""
+"""Fixes that can be taken at once, as actions of the protocol."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Callable
 from lsprotocol import types
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.lint.fixes import of_errors, of_findings
 from tltlc.lint.rule import Finding
-from tltlc.lint.ways_out import of_findings, of_messages
 from tltlc.lsp.document import Document
 from tltlc.lsp.edits import text_edit
 from tltlc.lsp.remarks import remark
@@ -35,13 +35,14 @@ def actions(
     told = [each for each in document.said if _touches(each, document, span)]
     return [
         types.CodeAction(
-            way_out.title,
+            offer.fix.title,
             kind=types.CodeActionKind.QuickFix,
-            diagnostics=[remark(way_out.diagnostic, document, encoding, uri_of)],
-            edit=edit_of({uri: [text_edit(document.source, edit, encoding) for edit in way_out.edits]}),
-            is_preferred=True,
+            diagnostics=[remark(offer.diagnostic, document, encoding, uri_of)],
+            edit=edit_of({uri: [text_edit(document.source, edit, encoding) for edit in offer.fix.edits]}),
+            # Of two readings, whoever wrote the text chooses one.
+            is_preferred=len(offer.diagnostic.fixes) == 1,
         )
-        for way_out in (*of_findings(near, document.module), *of_messages(told, document.module, errors))
+        for offer in (*of_findings(near, document.module), *of_errors(told, document.source, errors))
     ]
 
 

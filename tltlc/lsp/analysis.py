@@ -73,7 +73,7 @@ def analyse(request: Request) -> Analysis:
         if _seems_unused(view):
             # Only now is it worth while to read the files around.
             view = replace(view, elsewhere=_elsewhere(request))
-        found = levelled(findings(view), request.levels)
+        found = findings(view, request.levels)
         return _with_tests(view, found, options)
 
 

@@ -7,8 +7,8 @@ from typing import Any, Final
 
 from lsprotocol import types
 
+from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.tree import SpecDecl
-from tltlc.lint.rule import Edit
 from tltlc.lsp import (
     actions,
     completion,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from lsprotocol import types
 
-from tltlc.lint.rule import Edit
+from tltlc.diagnostics.diagnostic import Edit
 from tltlc.lsp.positions import range_of
 from tltlc.source import SourceFile, Span
 

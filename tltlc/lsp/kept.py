@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.lint.rule import Edit
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, Label
 from tltlc.lsp.analysis import Analysis
 from tltlc.lsp.document import Document
 from tltlc.lsp.edits import difference
@@ -14,8 +13,14 @@ from tltlc.source import SourceFile, Span
 def kept(before: Document, found: Analysis, now: Document) -> tuple[Diagnostic, ...]:
     """What only the automata told of a document as it was, less what is said of places that have been edited."""
     edits = difference(before.source, now.source.text)
+    told = {_without_fixes(each) for each in now.said}
     moved = (_moved(each, edits, now.source) for each in found.said if each not in before.said)
-    return tuple(each for each in moved if each is not None and each not in now.said)
+    return tuple(each for each in moved if each is not None and each not in told)
+
+
+def _without_fixes(diagnostic: Diagnostic) -> Diagnostic:
+    """The diagnostic alone: the edits of its fixes are for another text."""
+    return replace(diagnostic, fixes=())
 
 
 def _moved(diagnostic: Diagnostic, edits: list[Edit], source: SourceFile) -> Diagnostic | None:
@@ -33,4 +38,4 @@ def _moved(diagnostic: Diagnostic, edits: list[Edit], source: SourceFile) -> Dia
             elif edit.span.start <= end:
                 return None
         labels.append(replace(label, source=source, span=Span(start, end)))
-    return replace(diagnostic, labels=tuple(labels))
+    return replace(_without_fixes(diagnostic), labels=tuple(labels))

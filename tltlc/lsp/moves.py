@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from os.path import dirname, normpath, relpath
 from pathlib import Path, PurePath
 
+from tltlc.diagnostics.diagnostic import Edit
 from tltlc.grammar.quoted import quoted
 from tltlc.grammar.tables import load
 from tltlc.grammar.tree import Import
-from tltlc.lint.rule import Edit
 from tltlc.lsp.document import Document
 from tltlc.lsp.paths import is_below, path_of
 from tltlc.lsp.workspace import Workspace

@@ -8,10 +8,9 @@ from collections.abc import Callable
 from itertools import accumulate
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit, TltlError
 from tltlc.grammar.parser import parse
 from tltlc.grammar.tables import load
-from tltlc.lint.rule import Edit
 from tltlc.lsp.document import Document
 from tltlc.lsp.edits import applied
 from tltlc.lsp.moves import may_import

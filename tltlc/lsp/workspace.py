@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable, Iterator
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import is_file, may_be_file, noted, read_source, unsaved
+from tltlc.files import is_file, may_be_file, noted, read_source, unsaved, walk
 from tltlc.limits import WORKSPACE, WORKSPACE_PARSED
 from tltlc.lsp.document import Document
 from tltlc.lsp.paths import is_below, name_of, path_of, uri_of
@@ -148,7 +148,7 @@ class Workspace:
         names = dict.fromkeys(self._open)
         count = 0
         for folder in self.folders:
-            for place, folders, files in os.walk(folder):
+            for place, folders, files in walk(folder):
                 count += len(folders) + len(files)
                 if count > (WORKSPACE.values or 0):
                     raise _too_large(f"{WORKSPACE.values:,} files and folders")

@@ -8,13 +8,13 @@ from typing import Any, Final
 
 from tltlc.automaton.fspa import Fspa, Text
 from tltlc.backends import Notation
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label, TltlError
 from tltlc.diagnostics.shortening import shortened
 from tltlc.explain.document import failure_texts
 from tltlc.explain.explanation import Explanation, explain
 from tltlc.explain.values import values
-from tltlc.lint.run import findings, levelled, view_of
-from tltlc.lint.ways_out import WayOut, of_findings
+from tltlc.lint.fixes import Offer, of_findings
+from tltlc.lint.run import findings, view_of
 from tltlc.monitor.tests import run_tests
 from tltlc.pipeline import CompileOptions
 from tltlc.playground.mending import of_errors
@@ -43,7 +43,7 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
 
     - ``diagnostics``: each with code, severity, title, help, labels and ways_out; their ``start`` and ``end`` are
       offsets into the text in UTF-16 units, as browsers count, or None in another file.  Failed tests are among them.
-      Ways out are those of :mod:`tltlc.lint.ways_out`, each with a title and edits that do not meet.
+      Ways out are those of :mod:`tltlc.lint.fixes`, each with a title and edits that do not meet.
     - ``more``: how many messages are left out beyond :data:`MOST_MESSAGES`.
     - ``specs``: the names of all specs; none where there are errors.
     - ``tests``: the title of each test, its spec, and whether it passed.
@@ -62,9 +62,9 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
         libraries = project.libraries
         seen = view_of(source, CompileOptions(library_dirs=libraries, state_budget=STATE_BUDGET))
     except TltlError as error:
-        ways_out = of_errors(source, error.diagnostics, libraries)
-        return {**found, **_told(error.diagnostics, source, ways_out)}
-    remarks = levelled(findings(seen), project.lint)
+        offers = of_errors(source, error.diagnostics, libraries)
+        return {**found, **_told(error.diagnostics, source, offers)}
+    remarks = findings(seen, project.lint)
     results = run_tests(seen.program, (each.fspa for each in seen.specs))
     said = [*(each.diagnostic for each in remarks), *(result.failure for result in results if result.failure)]
     found.update(_told(said, source, list(of_findings(remarks[:MOST_MESSAGES], seen.module))))
@@ -78,8 +78,8 @@ def view(text: str, spec: str = "", letters: Iterable[Letter] = (), notation: No
     return found
 
 
-def _told(said: Sequence[Diagnostic], source: SourceFile, ways_out: Sequence[WayOut]) -> dict[str, Any]:
-    shown = [diagnostic(each, source, ways_out) for each in said[:MOST_MESSAGES]]
+def _told(said: Sequence[Diagnostic], source: SourceFile, offers: Sequence[Offer]) -> dict[str, Any]:
+    shown = [diagnostic(each, source, offers) for each in said[:MOST_MESSAGES]]
     return {"diagnostics": shown, "more": len(said) - len(shown)}
 
 
@@ -119,10 +119,10 @@ def _texts(text: Text) -> dict[str, str]:
     return {"ascii": text.ascii, "unicode": text.unicode, "english": text.english}
 
 
-def diagnostic(said: Diagnostic, source: SourceFile | None = None, ways_out: Iterable[WayOut] = ()) -> dict[str, Any]:
+def diagnostic(said: Diagnostic, source: SourceFile | None = None, offers: Iterable[Offer] = ()) -> dict[str, Any]:
     """A message as the page takes it; ``source`` is the text, of which the page can show places.
 
-    Of the ways out it takes those of this very message.
+    Of the fixes that are offered it takes those of this very message.
     """
     short = shortened(said)
     return {
@@ -131,7 +131,7 @@ def diagnostic(said: Diagnostic, source: SourceFile | None = None, ways_out: Ite
         "title": short.title,
         "help": short.help,
         "labels": [_label(label, source) for label in short.labels],
-        "ways_out": [_way_out(each, source) for each in ways_out if source and each.diagnostic is said],
+        "ways_out": [_way_out(each.fix, source) for each in offers if source and each.diagnostic is said],
     }
 
 
@@ -149,12 +149,12 @@ def _label(label: Label, source: SourceFile | None) -> dict[str, Any]:
     }
 
 
-def _way_out(way_out: WayOut, source: SourceFile) -> dict[str, Any]:
+def _way_out(fix: Fix, source: SourceFile) -> dict[str, Any]:
     edits = [
         {"start": _units(source.text, edit.span.start), "end": _units(source.text, edit.span.end), "text": edit.text}
-        for edit in sorted(way_out.edits, key=lambda edit: edit.span.start)
+        for edit in sorted(fix.edits, key=lambda edit: edit.span.start)
     ]
-    return {"title": way_out.title, "edits": edits}
+    return {"title": fix.title, "edits": edits}
 
 
 def _units(text: str, offset: int) -> int:

@@ -1,4 +1,4 @@
-"""Ways out of errors that the page offers: what the messages name, tried before."""
+"""Fixes of errors that the page offers, tried before."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.parser import parse
-from tltlc.lint.ways_out import WayOut, of_messages
+from tltlc.lint import fixes
+from tltlc.lint.fixes import Offer
 from tltlc.resolve.options import ResolveOptions
 from tltlc.resolve.program import resolve
 from tltlc.source import SourceFile
 
 _LONGEST: Final = 20_000
-"""Characters of a text that is soon read again for each way out."""
+"""Characters of a text that is soon read again for each fix."""
 
 
-def of_errors(source: SourceFile, told: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[WayOut]:
-    """The ways out of errors of a text that imports from these folders; none of a long text."""
+def of_errors(source: SourceFile, told: Iterable[Diagnostic], libraries: tuple[Path, ...]) -> list[Offer]:
+    """The fixes of errors of a text that imports from these folders; none of a long text."""
     if len(source.text) > _LONGEST:
         return []
 
@@ -27,4 +28,4 @@ def of_errors(source: SourceFile, told: Iterable[Diagnostic], libraries: tuple[P
         _, more = resolve(module, ResolveOptions(library_dirs=libraries, proofs=False))
         return (*found, *more)
 
-    return list(of_messages(told, parse(source)[0], errors))
+    return list(fixes.of_errors(told, source, errors))

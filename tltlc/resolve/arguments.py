@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from tltlc.diagnostics.diagnostic import Label
+from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.grammar.tree import Argument, Call, Expr, Name, Parameter
 from tltlc.resolve.problem import problem
 from tltlc.resolve.scope import Binding, Scope
+from tltlc.source import Span
 
 
 def match(
@@ -54,7 +55,9 @@ def _parameter_for(
         listed = ", ".join(f"`{name}`" for name in names)
         advice = None if close else f"it takes {listed}" if names else "it takes no arguments"
         title = f"`{binding.name}` has no `{argument.name}`"
-        raise problem("TLT0210", title, scope.source, argument.span, hint, advice=advice)
+        place = Span(argument.span.start, argument.span.start + len(argument.name))
+        fixes = tuple(instead(scope.source, place, name) for name in close)
+        raise problem("TLT0210", title, scope.source, argument.span, hint, advice=advice, fixes=fixes)
     if position >= len(names):
         count = {0: "no arguments", 1: "one argument"}.get(len(names), f"{len(names)} arguments")
         raise problem(

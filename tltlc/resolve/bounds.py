@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.grammar.tree import Unary
-from tltlc.logic.formula import Formula, and_, next_, or_, weak_next
+from tltlc.logic.formula import Formula, always, and_, eventually, next_, or_, weak_next
 from tltlc.resolve.constants import samples
 from tltlc.resolve.context import LARGEST_EXPANSION, too_large
 from tltlc.resolve.problem import problem
@@ -19,6 +19,8 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
     """
     bound = expr.bound
     assert bound is not None
+    if env.unbounded:
+        return _unbounded(expr.op, samples(bound.high, env), operand)
     source = env.scope.source
     high = samples(bound.high, env)
     low = samples(bound.low, env) if bound.low is not None else 0
@@ -43,3 +45,12 @@ def bounded(expr: Unary, operand: Formula, env: Env) -> Formula:
     for _ in range(low):
         result = step(result)
     return env.context.checked_size(result, what, source, bound.span)
+
+
+def _unbounded(op: str, steps: int, operand: Formula) -> Formula:
+    """``F`` or ``G`` without its bound; as many ``X`` or ``N`` as ``next after`` takes steps."""
+    if op in ("F", "G"):
+        return eventually(operand) if op == "F" else always(operand)
+    for _ in range(steps):
+        operand = next_(operand) if op == "X" else weak_next(operand)
+    return operand

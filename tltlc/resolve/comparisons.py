@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from math import inf
 
+from tltlc.diagnostics.diagnostic import Edit, Fix, instead
 from tltlc.grammar.tree import Binary, Number
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
@@ -13,6 +14,7 @@ from tltlc.resolve.margins import robustness
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.quantities import quantity
 from tltlc.resolve.values import PRODUCT, Env, Quantity, apply, range_text
+from tltlc.source import Span
 
 _MIRRORED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 _NEGATED = {"<=": ">", ">=": "<"}
@@ -75,13 +77,17 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
     if always or never:
         holds = always != negated
         message = f"`{x.text}` lies in {range_text(x.low, x.high, x.dimension)}"
-        advice = "compare with a value inside that range, or write `true` or `false`"
+        constant = "true" if holds else "false"
+        advice = f"compare with a value inside that range, or write `{constant}`"
+        fix = instead(source, expr.span, constant, "safe")
         if x.is_constant:
-            message, advice = "both sides are constant", f"compare a signal, or write `{'true' if holds else 'false'}`"
+            message, advice = "both sides are constant", f"compare a signal, or write `{constant}`"
         elif _is_percentage(x, c, op, expr):
-            advice = f"write `{source.slice(expr.span)} %`: a ratio is a number in [0, 1]"
+            text, end = f"{' '.join(source.slice(expr.span).split())} %", expr.span.end
+            advice = f"write `{text}`: a ratio is a number in [0, 1]"
+            fix = Fix(f"Write `{text}`", (Edit(Span(end, end), " %"),))
         title = f"this comparison {'always' if holds else 'never'} holds"
-        raise problem("TLT0310", title, source, expr.span, message, advice=advice)
+        raise problem("TLT0310", title, source, expr.span, message, advice=advice, fixes=(fix,))
     needed = [inf in (left.high, -right.low), inf in (-left.low, right.high)]
     if any(needed):
         raise _unbounded(x, needed, expr, env)

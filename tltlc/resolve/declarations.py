@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import inf
 
-from tltlc.diagnostics.diagnostic import Label
+from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.grammar.tree import ClockDecl, ParamDecl, SignalDecl
 from tltlc.record import replace
 from tltlc.resolve import units
@@ -62,7 +62,9 @@ def _signal(declaration: SignalDecl, env: Env) -> None:
     for parameter in declaration.parameters:
         if parameter.type not in (None, "entity"):
             title = f"a signal is of entities, not of {parameter.type}s"
-            raise problem("TLT0210", title, scope.source, parameter.span, advice=f"write `{parameter.name}: entity`")
+            text = f"{parameter.name}: entity"
+            fixes = (instead(scope.source, parameter.span, text),)
+            raise problem("TLT0210", title, scope.source, parameter.span, advice=f"write `{text}`", fixes=fixes)
     type_ = _type(declaration, scope)
     low, high = _range(declaration, type_, env)
     names = tuple(parameter.name for parameter in declaration.parameters)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tltlc.diagnostics.diagnostic import instead
 from tltlc.grammar.tree import Expr, Group, Number
 from tltlc.resolve import units
 from tltlc.resolve.problem import ResolutionError, problem
@@ -16,20 +17,36 @@ def same_dimension(left: Quantity, right: Quantity, at: Expr, env: Env) -> Dimen
     raise mismatch(left.dimension, right.dimension, at, env, f"the left side is {units.described(left.dimension)}")
 
 
+def _goes_on(written: str | None, wanted: str | None, found: Dimension) -> bool:
+    """Whether the number keeps its value with the unit that is wanted: none was written, or one that this begins with.
+
+    A number is wanted without the unit that was written, if it is that of SI.
+    """
+    if wanted is None:
+        return written == units.si_unit(found)
+    return written is None or wanted.startswith(f"{written}/")
+
+
 def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
     """The problem of a quantity of the wrong dimension at ``at``."""
     while isinstance(at, Group):
         at = at.inner
     unit = units.si_unit(expected)
-    advice = None
+    advice, meant = None, ""
     if isinstance(at, Number):
         digits = env.scope.source.text[at.span.start : at.span.end]
         if at.unit and digits.endswith(at.unit):
             digits = digits[: -len(at.unit)].rstrip()
-        why += f"; write `{digits} {unit}`" if unit else f"; write `{digits}`" if expected == units.PLAIN else ""
+        meant = f"{digits} {unit}" if unit else digits if expected == units.PLAIN else ""
+        why += f"; write `{meant}`" if meant else ""
+        if expected == units.TYPES["angle"]:
+            why, meant = f"{why} or `{digits} deg`", ""
+        elif not _goes_on(at.unit, unit, found):
+            meant = ""
     elif unit:
         advice = f"give {units.described(expected)} there, e.g. `3 {unit}`"
     elif expected == units.PLAIN and "divide" not in why:
         advice = f"divide it by {units.described(found)} to get a number"
     title = f"expected {units.described(expected)}, found {units.described(found)}"
-    return problem("TLT0305", title, env.scope.source, at.span, why, advice=advice)
+    fixes = (instead(env.scope.source, at.span, meant),) if meant else ()
+    return problem("TLT0305", title, env.scope.source, at.span, why, advice=advice, fixes=fixes)

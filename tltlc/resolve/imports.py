@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, instead
 from tltlc.files import is_file, may_be_file, may_read, outside, read_source
 from tltlc.grammar.tree import Import, Module
 from tltlc.record import record, replace
@@ -140,14 +140,17 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
             raise problem("TLT0010", _NO_FILE.format(target), source, declaration.target_span, advice=advice)
         _check_inside(shown, declaration, source)
         if not is_file(shown):
+            close = _close(target, [path.name for path in _files(shown.parent) if path.name != itself])
+            unquoted = None if close else _library(target, folders)
+            beginning = target[: target.rfind("/") + 1]
+            meant = [f'"{beginning}{name}"' for name in close] or ([unquoted] if unquoted else [])
             raise problem(
                 "TLT0010",
                 _NO_FILE.format(target),
                 source,
                 declaration.target_span,
-                advice=_similar(target, [path.name for path in _files(shown.parent) if path.name != itself])
-                or _unquoted(target, folders)
-                or "a path begins at the folder of this file",
+                advice=_similar(close) or _unquoted(unquoted) or "a path begins at the folder of this file",
+                fixes=tuple(instead(source, declaration.target_span, text) for text in meant),
             )
         return Path(_normal(shown.absolute())), _shown(shown)
     name = target.replace(".", "/") + ".tltl"
@@ -156,8 +159,11 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
         if is_file(folder / name):
             return Path(_normal((folder / name).absolute())), _shown(folder / name)
     known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
-    advice = _similar(target, known) or "a library is a file NAME.tltl beside this one or in a --library folder"
-    raise problem("TLT0010", f"there is no library `{target}`", source, declaration.target_span, advice=advice)
+    close = _close(target, known)
+    advice = _similar(close) or "a library is a file NAME.tltl beside this one or in a --library folder"
+    title, place = f"there is no library `{target}`", declaration.target_span
+    fixes = tuple(instead(source, place, name) for name in close)
+    raise problem("TLT0010", title, source, place, advice=advice, fixes=fixes)
 
 
 def _is_gone(path: Path) -> bool:
@@ -180,18 +186,25 @@ def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
         raise ResolutionError(outside(declaration.target, (Label(source, declaration.target_span),)))
 
 
-def _similar(target: str, known: list[str]) -> str | None:
+def _close(target: str, known: list[str]) -> list[str]:
+    """The known name that is most like the target, if any is."""
     from difflib import get_close_matches
 
-    close = get_close_matches(target, known, n=1)
+    return get_close_matches(target, known, n=1)
+
+
+def _similar(close: Sequence[str]) -> str | None:
     return f"did you mean `{close[0]}`?" if close else None
 
 
-def _unquoted(target: str, folders: tuple[Path, ...]) -> str | None:
+def _library(target: str, folders: tuple[Path, ...]) -> str | None:
+    """The library that a path in quotes names, if there is one."""
     name = target.removesuffix(".tltl")
-    if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name:
-        return f"a library is imported by its name, without quotes: `import {name}`"
-    return None
+    return name if any(is_file(folder / f"{name}.tltl") for folder in folders) and "/" not in name else None
+
+
+def _unquoted(library: str | None) -> str | None:
+    return f"a library is imported by its name, without quotes: `import {library}`" if library else None
 
 
 def _files(folder: Path) -> list[Path]:

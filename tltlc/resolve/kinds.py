@@ -4,28 +4,32 @@ from __future__ import annotations
 
 from typing import Literal
 
+from tltlc.diagnostics.diagnostic import Fix, instead
 from tltlc.grammar import tree
+from tltlc.grammar.at_top import at_top
 from tltlc.grammar.tree import Call, Expr, Group, Name, SignalDecl
 from tltlc.grammar.walk import parts
 from tltlc.grammar.words import CONDITIONS
 from tltlc.resolve import units
 from tltlc.resolve.imports import library_with
 from tltlc.resolve.problem import ResolutionError, problem
-from tltlc.resolve.scope import FUNCTIONS, Binding, Kind, suggestion
+from tltlc.resolve.scope import FUNCTIONS, Binding, Kind, closest_name
 from tltlc.resolve.values import Entity, Env, Quantity, Unknown
 
 _FORMULA_OPERATORS = ("and", "or", "implies", "iff", "U", "W", "R", "M", "then", "<", "<=", ">", ">=")
 
+_MOST_LETTERS = 4
+"""So many operators may stand in front of a name."""
 _MOST_NAMES = 5
 """So many entities are named in a message."""
 _MOST_HINTS = 50
 """Behind so many problems an unknown name is not compared with all that are known: of many, that takes long."""
-_WAYS_TO_DECLARE = {
-    "predicate": "declare it, e.g. `signal {name}: bool`, or import the library that has it",
-    "signal or param": "declare it, e.g. `signal {name} in [0, 1]`, or import the library that has it",
-    "entity": "declare it: `entity {name}`",
+_DECLARATIONS = {
+    "predicate": "signal {name}: bool",
+    "signal or param": "signal {name} in [0, 1]",
+    "entity": "entity {name}",
 }
-"""What to do where nothing of a like name is known, by the kind that was looked for."""
+"""How a name can be declared of which nothing alike is known, by the kind that was looked for."""
 
 
 def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> Binding:
@@ -39,9 +43,6 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
     if env.scope.incomplete:
         raise ResolutionError(None)
     span = use.name_span if isinstance(use, Call) else use.span
-    hint = suggestion(use.name, env.scope, wanted, env.local) if len(env.context.log) < _MOST_HINTS else ""
-    library = None if hint else library_with(use.name)
-    advice = f"`{use.name}` is in the library {library}: add `import {library}`" if library else None
     if use.name in CONDITIONS and isinstance(use, Call):
         raise problem(
             "TLT0201",
@@ -50,9 +51,43 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
             span,
             advice="`if a, then b` is written `a implies b`; where both are to hold at one step, `a and b`",
         )
-    if not hint and not library:
-        advice = _WAYS_TO_DECLARE[what].format(name=use.name)
-    raise problem("TLT0201", f"no {what} `{use.name}` here", env.scope.source, span, hint, advice=advice)
+    title, source = f"no {what} `{use.name}` here", env.scope.source
+    is_helped = len(env.context.log) < _MOST_HINTS
+    meant = _in_two_words(use.name, env, wanted) if is_helped and what == "predicate" else None
+    if meant:
+        raise problem("TLT0201", title, source, span, f"did you mean `{meant}`?", fixes=(instead(source, span, meant),))
+    near = closest_name(use.name, env.scope, wanted, env.local) if is_helped else None
+    if near:
+        binding = env.scope.names.get(near)
+        via = f" (from {binding.via})" if binding and binding.via else ""
+        hint = f"did you mean `{near}`{via}?"
+        raise problem("TLT0201", title, source, span, hint, fixes=(instead(source, span, near),))
+    library = library_with(use.name)
+    line = f"import {library}" if library else _DECLARATIONS[what].format(name=use.name)
+    if library:
+        advice = f"`{use.name}` is in the library {library}: add `{line}`"
+    else:
+        advice = f"declare it: `{line}`" if what == "entity" else _OTHERWISE.format(line)
+    fixes: tuple[Fix, ...] = ()
+    # What a call needs is another declaration, with parameters.
+    if is_helped and (library or isinstance(use, Name)):
+        fixes = (Fix(f"{'Add' if library else 'Declare'} `{line}`", (at_top(env.scope.module, line),)),)
+    raise problem("TLT0201", title, source, span, advice=advice, fixes=fixes)
+
+
+_OTHERWISE = "declare it, e.g. `{}`, or import the library that has it"
+
+
+def _in_two_words(name: str, env: Env, wanted: tuple[Kind, ...]) -> str | None:
+    """``F a`` for ``Fa``, where `a` is a name of one of these kinds; None for all else."""
+    for letters in range(1, min(len(name), _MOST_LETTERS + 1)):
+        if name[letters - 1] not in "FGXN":
+            break
+        rest = name[letters:]
+        binding = env.scope.names.get(rest)
+        if rest in env.local or (binding is not None and binding.kind in wanted):
+            return " ".join((*name[:letters], rest))
+    return None
 
 
 def entity(expr: Expr, env: Env) -> Entity:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final, cast
 
-from tltlc.diagnostics.diagnostic import Label
+from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.expression import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
@@ -151,7 +151,8 @@ def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, sc
     advice = f"did you mean `{close[0]}`?" if close else f"the types are {', '.join(known)}"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)
     span = Span(start, start + len(name)) if start >= 0 else at.span
-    return problem("TLT0211", f"there is no type `{name}`", scope.source, span, advice=advice)
+    fixes = tuple(instead(scope.source, span, known_type) for known_type in close) if start >= 0 else ()
+    return problem("TLT0211", f"there is no type `{name}`", scope.source, span, advice=advice, fixes=fixes)
 
 
 def _symbolic(parameter: Parameter, binding: Binding, env: Env) -> Value:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
 from tltlc.record import replace
 from tltlc.source import SourceFile, Span
 
@@ -23,7 +23,8 @@ class ResolutionError(Exception):
             return
         last = found.labels[-1]
         if last.source is source and body.start <= last.span.start <= last.span.end <= body.end:
-            self.diagnostic = replace(found, labels=(*found.labels, replace(use, message="used here")))
+            # Other uses of the definition may be right: what mends it for this one does not mend it.
+            self.diagnostic = replace(found, labels=(*found.labels, replace(use, message="used here")), fixes=())
 
 
 _OF_ARGUMENTS: Final = {"TLT0301", "TLT0302", "TLT0305", "TLT0307", "TLT0309", "TLT0310", "TLT0311"}
@@ -42,9 +43,11 @@ def problem(
     *,
     advice: str | None = None,
     other: tuple[Label, ...] = (),
+    fixes: tuple[Fix, ...] = (),
 ) -> ResolutionError:
     """A problem whose main place is ``span``, with a short remark under its caret and further places behind it."""
-    return ResolutionError(Diagnostic(code, title, (Label(source, span, message), *other), advice))
+    labels = (Label(source, span, message), *other)
+    return ResolutionError(Diagnostic(code, title, labels, advice, fixes=fixes))
 
 
 class Log:

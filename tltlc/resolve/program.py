@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
-from tltlc.grammar.allowed import unsilenced
 from tltlc.grammar.parser import parse_formula
+from tltlc.grammar.silencing import unsilenced
 from tltlc.grammar.tree import ExclusiveDecl, Expr, Module, SpecDecl, TestDecl
 from tltlc.logic.formula import Formula
 from tltlc.record import record, replace

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isinf
 from typing import cast
 
+from tltlc.diagnostics.diagnostic import Fix, around
 from tltlc.expression import Condition, ConditionOp, Const, When
 from tltlc.expression import depth as depth_of
 from tltlc.grammar import tree
@@ -187,13 +188,15 @@ def _check_speed(expr: tree.Binary, env: Env) -> None:
     speed = replace(expr, left=inner.right)
     if per.name not in env.scope.names and _is_per_time(speed, env):
         span = inner.right.span.to(per.span)
+        text = f"({' '.join(env.scope.source.slice(span).split())})"
         raise problem(
             "TLT0304",
             "a speed needs brackets here",
             env.scope.source,
             span,
-            f"write `({env.scope.source.slice(span)})`",
+            f"write `{text}`",
             advice="signs of one strength are read from the left: `a / 1 m/s` is `(a / 1 m) / s`",
+            fixes=(Fix(f"Write `{text}`", around(span)),),
         )
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal, Union
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.limits import IMPORTED
 from tltlc.record import record, replace
 from tltlc.resolve.imports import Loaded
 from tltlc.resolve.problem import Log, problem
@@ -45,7 +46,7 @@ class Scope:
     module: Module
     title: str
     incomplete: bool
-    """Whether a failed import may have brought further names."""
+    """Whether an import that failed may have brought further names, here or in a module that this one imports."""
     names: dict[str, Binding]
 
     @property
@@ -55,31 +56,62 @@ class Scope:
 
 
 def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
-    """One scope per module, in the same order, which has imported modules first."""
+    """One scope per module, in the same order, which has imported modules first.
+
+    Behind an import with which all of them offer too many names (TLT0012), no further one brings names.
+    """
     scopes: dict[int, Scope] = {}
+    room = _Room()
     for loaded in modules:
-        scope = Scope(loaded.module, loaded.title, not loaded.complete, {})
+        imports = [(declaration, scopes[id(target)]) for declaration, target in loaded.imports]
+        taken = [each for each in imports if room.has_for(*each, loaded.module.source, log)]
+        incomplete = not loaded.complete or len(taken) < len(imports) or any(each.incomplete for _, each in taken)
+        scope = Scope(loaded.module, loaded.title, incomplete, {})
         scopes[id(loaded)] = scope
         for binding in _own(scope):
             log.add(_declare(scope, binding))
-        for declaration, target in loaded.imports:
-            _import(declaration, scopes[id(target)].names, scope, log)
+        for declaration, target in taken:
+            _import(declaration, target.names, scope, log)
     return tuple(scopes.values())
 
 
-def suggestion(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str:
-    """``did you mean `near` (from stealth)?`` for the closest visible name, or an empty text."""
+def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str | None:
+    """The visible name of one of these kinds that is most like a name that is not known, if any is."""
     from difflib import get_close_matches
 
     wanted = set(kinds)
     known = [n for n, binding in scope.names.items() if binding.kind in wanted]
     names = [*local, *known]
     close = [n for n in names if n.lower() == name.lower()] or get_close_matches(name, names, n=1, cutoff=0.6)
-    if not close:
-        return ""
-    binding = scope.names.get(close[0])
-    via = f" (from {binding.via})" if binding and binding.via else ""
-    return f"did you mean `{close[0]}`{via}?"
+    return close[0] if close else None
+
+
+class _Room:
+    """How many names, of how many letters, the imports of a program may still offer."""
+
+    def __init__(self) -> None:
+        self._names: int = IMPORTED.values or 0
+        self._letters = IMPORTED.size
+        self._is_over = False
+
+    def has_for(self, declaration: Import, target: Scope, source: SourceFile, log: Log) -> bool:
+        """Whether there is room for the names of an import, which is counted before it is done."""
+        if self._is_over:
+            return False
+        chosen = target.names if declaration.names is None else [each.name for each in declaration.names]
+        self._names -= len(chosen)
+        if declaration.alias and self._names >= 0:
+            self._letters -= (len(declaration.alias) + 1) * len(chosen) + sum(map(len, chosen))
+        self._is_over = self._names < 0 or self._letters < 0
+        if self._is_over:
+            title = f"the imports of all files offer more than {IMPORTED.values:,} names"
+            advice = "import no file under two names, or choose the names that are used, in brackets"
+            if self._names >= 0:
+                title = f"the names that all files import by `as` have more than {IMPORTED.size:,} letters together"
+                advice = "choose a shorter name behind `as`"
+            brings = f"this one brings {len(chosen):,} names"
+            log.add(problem("TLT0012", title, source, declaration.span, brings, advice=advice).diagnostic)
+        return not self._is_over
 
 
 def _import(declaration: Import, offered: Mapping[str, Binding], scope: Scope, log: Log) -> None:
@@ -171,7 +203,9 @@ def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str,
 
     close = get_close_matches(wanted.name, list(offered), n=1)
     hint = f"did you mean `{close[0]}`?" if close else ""
-    return problem("TLT0205", f"{library} offers no `{wanted.name}`", scope.source, wanted.span, hint).diagnostic
+    fixes = tuple(instead(scope.source, wanted.span, name) for name in close)
+    title = f"{library} offers no `{wanted.name}`"
+    return problem("TLT0205", title, scope.source, wanted.span, hint, fixes=fixes).diagnostic
 
 
 def _prefixed(target: str | None) -> str:

@@ -61,13 +61,16 @@ class Bound:
 class Part:
     """One conjunct of a spec's formula and the clause that it came from, so that errors can name it.
 
-    ``bounds`` are those that were expanded in the clause.
+    ``bounds`` are those that were expanded in the clause.  ``unbounded`` is the formula with ``F p`` for
+    ``F[0,3] p`` and ``G p`` for ``G[0,3] p``, which decides when a spec is judged (docs/adr/0009), and None where
+    it is ``formula``.
     """
 
     formula: Formula
     source: SourceFile
     span: Span
     bounds: tuple[Bound, ...] = ()
+    unbounded: Formula | None = None
 
 
 @record

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Literal, cast
 
-from tltlc.diagnostics.diagnostic import Label
+from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.expression import Expression, nodes
 from tltlc.expression import Param as ParamNode
 from tltlc.expression import Signal as SignalNode
@@ -39,10 +39,7 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
     for clause in declaration.clauses:
         try:
             if clause.kind in _READERS:
-                before = len(env.context.bounds)
-                found = _READERS[clause.kind](clause, env)
-                bounds = tuple(env.context.bounds[before:])
-                parts.extend(replace(part, bounds=bounds) for part in found)
+                parts.extend(_parts(clause, env))
             elif clause.kind == "tag":
                 tags.extend(tag.name for tag in cast("tuple[Name, ...]", clause.value) if tag.name not in tags)
             else:
@@ -94,6 +91,21 @@ def vocabulary(used: Iterable[str], groups: Iterable[Sequence[str]], context: Co
         exclusive=tuple(tuple(sorted(names.index(name) for name in group)) for group in exclusive),
         clock_s=context.clock_s,
     )
+
+
+def _parts(clause: Clause, env: Env) -> list[Part]:
+    """What a clause asks for, with its bounds, and without them where the program has any."""
+    read = _READERS[clause.kind]
+    before = len(env.context.bounds)
+    parts = read(clause, env)
+    if not env.context.bounds:
+        return parts
+    bounds = tuple(env.context.bounds[before:])
+    unbounded = [part.formula for part in read(clause, replace(env, unbounded=True))]
+    return [
+        replace(part, bounds=bounds, unbounded=other if other is not part.formula else None)
+        for part, other in zip(parts, unbounded, strict=True)
+    ]
 
 
 def _reach(clause: Clause, env: Env) -> list[Part]:
@@ -157,7 +169,9 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
     if clause.value.unit is None:
         digits = env.scope.source.slice(clause.value.span)
         advice = f"write `{digits} steps` or, with a clock, `{digits} s`"
-        raise problem("TLT0312", "a limit needs a unit", env.scope.source, clause.value.span, advice=advice)
+        fixes = (instead(env.scope.source, clause.value.span, f"{digits} steps"),)
+        title, place = "a limit needs a unit", clause.value.span
+        raise problem("TLT0312", title, env.scope.source, place, advice=advice, fixes=fixes)
     steps = samples(clause.value, env)
     if steps < 1:
         title, advice = "a limit is at least one step", "write e.g. `limit 400 steps`"

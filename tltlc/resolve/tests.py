@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal, cast
 
+from tltlc.diagnostics.diagnostic import instead
 from tltlc.grammar.tree import Expr, Group, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
@@ -27,8 +28,9 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
         hint = f"did you mean `{close[0]}`?" if close else ""
         listed = ", ".join(f"`{known}`" for known in specs)
         advice = None if close else f"the specs are {listed}" if specs else f"declare it: `spec {name} {{ … }}`"
-        title = f"no spec `{name}` here"
-        context.log.add(problem("TLT0208", title, source, declaration.spec.span, hint, advice=advice).diagnostic)
+        title, place = f"no spec `{name}` here", declaration.spec.span
+        fixes = tuple(instead(source, place, known) for known in close)
+        context.log.add(problem("TLT0208", title, source, place, hint, advice=advice, fixes=fixes).diagnostic)
         return None
     spec = specs[name]
     if spec is None:

@@ -70,7 +70,8 @@ class Env:
     """Where an expression stands: the scope of its text and the values of the parameters around it.
 
     ``symbolic`` marks the check of a definition whose parameters have no values yet; ``constant`` allows
-    numbers only.
+    numbers only.  ``unbounded`` reads ``F[0,3] p`` as ``F p`` and ``G[0,3] p`` as ``G p``, in what has been read
+    with its bounds before, so that no size is checked and nothing counted again.
     """
 
     context: Context
@@ -78,6 +79,7 @@ class Env:
     local: Mapping[str, Value] = EMPTY
     symbolic: bool = False
     constant: bool = False
+    unbounded: bool = False
 
     def within(self, scope: Scope, local: Mapping[str, Value]) -> Env:
         """The inside of a declaration of ``scope``."""

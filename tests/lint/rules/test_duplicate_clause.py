@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+import tltlc
 from tests.lint.helpers import SIGNALS, mended, of
 
 
@@ -28,3 +29,24 @@ def test_the_first_of_them_stays() -> None:
     before = SIGNALS + "spec s {\n    limit 9 steps\n"
     twice = before + "    reach a then b then c\n    avoid b // once\n    keep not b // twice\n}\n"
     assert mended(twice).source.text == before + "    reach a then b then c\n    avoid b // once\n}\n"
+
+
+@pytest.mark.parametrize(
+    "clauses",
+    [
+        ("require a", "require F[0,0] a"),
+        ("require F[0,0] a", "require a"),
+        ("require a", "require F[0,0] a", "require F[0,0] a"),
+        ("reach b", "require a", "require F[0,0] a"),
+    ],
+)
+def test_a_clause_that_decides_when_the_spec_is_judged_is_not_removed(clauses: tuple[str, ...]) -> None:
+    lines = "\n    ".join(("limit 9 steps", *clauses))
+    text = f"{SIGNALS}spec s {{\n    {lines}\n}}\n"
+    before, after = (tltlc.compile_text(each)[0] for each in (text, mended(text).source.text))
+    assert before.judge == after.judge == "goal"
+
+
+def test_what_stands_twice_beside_such_a_clause_is_removed() -> None:
+    text = "signal a: bool\nspec s {\n    limit 9 steps\n    require a\n    require F[0,0] a\n    require a\n}\n"
+    assert mended(text).source.text == text.replace("    require a\n}", "}")

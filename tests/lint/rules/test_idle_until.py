@@ -35,6 +35,21 @@ def test_where_it_has_one(clause: str) -> None:
     assert "TLT0433" not in codes(spec(clause))
 
 
+@pytest.mark.parametrize(
+    ("clause", "offered"),
+    [
+        ("avoid a until b", "require (not a) weak_until b"),
+        ("avoid (a or c) until b", "require (not (a or c)) weak_until b"),
+        ("reach a until b", "require a until b"),
+    ],
+)
+def test_what_is_offered_has_a_goal_where_the_clause_has_one(clause: str, offered: str) -> None:
+    (remark,) = remarks(idle_until.check, spec(clause))[1]
+    assert remark.help == f"say `{offered}`"
+    written, other = (compile_text(spec(each))[0] for each in (clause, offered))
+    assert written.judge == other.judge
+
+
 def spec(clause: str) -> str:
     return f"{SIGNALS}spec s {{\n    limit 300 steps\n    {clause}\n}}\n"
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 
-from tests.lint.helpers import APART, PLACES, RANGES, of, remarks
+import tltlc
+from tests.lint.helpers import APART, PLACES, RANGES, SIGNALS, found, of, remarks
 from tests.lint.strategies import World, specs
 from tltlc.lint.rules import needless_clause
 
@@ -48,3 +49,24 @@ def test_no_trace_breaks_it(drawn: tuple[World, str]) -> None:
     for remark in told:
         (formula,) = (part.formula for part in spec.spec.parts if part.span == remark.labels[0].span)
         assert world.traces.satisfying(formula) == world.traces.every
+
+
+@pytest.mark.parametrize(
+    ("clauses", "judged"),
+    [
+        (("avoid a", "keep not a or b", "reach (b or not b)"), True),
+        (("avoid a", "require F[0,0] (b or not b)"), True),
+        (("judge at goal", "avoid a", "reach (b or not b)"), False),
+        (("avoid a", "reach c", "reach (b or not b)"), False),
+        (("avoid a", "keep (b or not b)"), False),
+        (("avoid a", "reach (b or not b) require F (c or not c)"), True),
+    ],
+)
+def test_what_makes_a_clause_a_goal_is_said_where_it_may_be_left_out(clauses: tuple[str, ...], judged: bool) -> None:
+    *_, needless = clauses
+    text = f"{SIGNALS}spec s {{ limit 9 steps {' '.join(clauses)} }}"
+    told = [each.diagnostic for each in found(text) if each.diagnostic.code == "TLT0430"]
+    ours, theirs = (tltlc.compile_text(each)[0] for each in (text, text.replace(needless, "")))
+    assert (ours.judge != theirs.judge) == judged
+    # Of several the last says it, without which the spec would have no goal.
+    assert ["`judge at goal`" in (each.help or "") for each in told] == [*[False] * (len(told) - 1), judged]

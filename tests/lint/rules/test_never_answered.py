@@ -31,9 +31,16 @@ def test_implications_that_are_never_answered(clause: str, expected: list[str]) 
     assert of("TLT0432", "reach at(z)", clause, before=APART) == expected
 
 
-def test_an_implication_is_told_in_place_of_the_contradiction_that_it_makes() -> None:
+def test_an_implication_is_told_beside_the_contradiction_that_it_makes() -> None:
     text = block("reach at(x)", "reach at(z)", "require always (at(x) implies at(y))", before=APART)
-    assert [code for code in codes(text) if code != "TLT0415"] == ["TLT0432"]
+    assert {code for code in codes(text) if code != "TLT0415"} == {"TLT0410", "TLT0432"}
+
+
+def test_a_clause_that_can_never_be_met_forbids_more_than_one_side() -> None:
+    clause = "keep (!at(x) -> at(x)) and at(y)"
+    assert of("TLT0432", clause, before=APART) == []
+    assert of("TLT0410", clause, before=APART) != []
+    assert of("TLT0432", "keep (!at(x) -> at(x)) and not at(y)", before=APART) == ["!at(x) -> at(x)"]
 
 
 @given(specs("keep {} implies {}", "require G ({} -> {})", "require {} implies {}", most=1))

@@ -66,7 +66,7 @@ def _of_file(
 
     from tltlc.cli.inputs import check_text
     from tltlc.lint.fixing import fix
-    from tltlc.lint.run import levelled, lint
+    from tltlc.lint.run import lint
     from tltlc.project import project_for
     from tltlc.spec_file import STDIN, read
     from tltlc.writing import rewrite
@@ -80,7 +80,7 @@ def _of_file(
     options = compile_settings(settings, project)
     with project.levelling():
         if not fixing:
-            return _diagnostics(levelled(lint(source, options, elsewhere), project.lint))
+            return _diagnostics(lint(source, options, elsewhere, project.lint))
         mended = fix(source, options, project.lint, elsewhere)
     if mended.source != source:
         rewrite(Path(path), mended.source.text)

@@ -95,7 +95,7 @@ def _file(
     """What there is to be said of a file, which is compiled once, and what became of its tests."""
     from tltlc.cli.inputs import check_text
     from tltlc.files import read_source
-    from tltlc.lint.run import findings, levelled, view_of
+    from tltlc.lint.run import findings, view_of
     from tltlc.monitor.tests import run_tests
     from tltlc.project import project_for
     from tltlc.record import replace
@@ -105,5 +105,5 @@ def _file(
     check_text(source)
     with project.levelling():
         view = view_of(source, compile_settings(settings, project))
-    found = levelled(findings(replace(view, elsewhere=elsewhere)), project.lint)
+    found = findings(replace(view, elsewhere=elsewhere), project.lint)
     return found, run_tests(view.program, (each.fspa for each in view.specs))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
+from tltlc.source import SourceFile, Span
 
 
 def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
@@ -17,6 +18,7 @@ def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
             "title": diagnostic.title,
             "help": diagnostic.help,
             "labels": [_label(label) for label in diagnostic.labels],
+            "fixes": [_fix(fix, diagnostic.labels[0].source) for fix in diagnostic.fixes],
         }
         for diagnostic in diagnostics
     ]
@@ -24,8 +26,18 @@ def render(diagnostics: Sequence[Diagnostic], *, color: bool = False) -> str:
 
 
 def _label(label: Label) -> dict[str, object]:
+    return {"file": label.source.name, **_range(label.source, label.span), "message": label.message}
+
+
+def _fix(fix: Fix, source: SourceFile) -> dict[str, object]:
+    """Edits are of the file of the first label."""
+    edits = [{**_range(source, edit.span), "text": edit.text} for edit in fix.edits]
+    return {"title": fix.title, "applicability": fix.applicability, "edits": edits}
+
+
+def _range(source: SourceFile, span: Span) -> dict[str, object]:
     places = []
-    for offset in (label.span.start, label.span.end):
-        line, column = label.source.position(offset)
+    for offset in (span.start, span.end):
+        line, column = source.position(offset)
         places.append({"line": line, "column": column, "offset": offset})
-    return {"file": label.source.name, "start": places[0], "end": places[1], "message": label.message}
+    return {"start": places[0], "end": places[1]}

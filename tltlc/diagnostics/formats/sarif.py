@@ -10,7 +10,8 @@ from urllib.parse import quote
 
 from tltlc import __version__
 from tltlc.diagnostics.codes import codes, title
-from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, Label
+from tltlc.source import SourceFile, Span
 
 _SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sarif-schema-2.1.0.json"
 
@@ -49,14 +50,28 @@ def _result(diagnostic: Diagnostic, rule: int) -> dict[str, object]:
             message = {"message": {"text": label.message}} if label.message else {}
             related.append({**_location(label), **message})
         result["relatedLocations"] = related
+    if diagnostic.fixes:
+        result["fixes"] = [_fix(fix, diagnostic.labels[0].source) for fix in diagnostic.fixes]
     return result
 
 
+def _fix(fix: Fix, source: SourceFile) -> dict[str, object]:
+    replacements = [
+        {"deletedRegion": _region(source, edit.span), "insertedContent": {"text": edit.text}} for edit in fix.edits
+    ]
+    change = {"artifactLocation": {"uri": _uri(source.name)}, "replacements": replacements}
+    return {"description": {"text": fix.title}, "artifactChanges": [change]}
+
+
 def _location(label: Label) -> dict[str, object]:
-    start_line, start_column = label.source.position(label.span.start)
-    end_line, end_column = label.source.position(label.span.end)
-    region = {"startLine": start_line, "startColumn": start_column, "endLine": end_line, "endColumn": end_column}
+    region = _region(label.source, label.span)
     return {"physicalLocation": {"artifactLocation": {"uri": _uri(label.source.name)}, "region": region}}
+
+
+def _region(source: SourceFile, span: Span) -> dict[str, object]:
+    start_line, start_column = source.position(span.start)
+    end_line, end_column = source.position(span.end)
+    return {"startLine": start_line, "startColumn": start_column, "endLine": end_line, "endColumn": end_column}
 
 
 def _uri(name: str) -> str:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from decimal import ROUND_DOWN, Context
 
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Expr, LetDecl, Unary
+from tltlc.grammar.tree import Expr, LetDecl, Number, Unary
 from tltlc.grammar.walk import parts
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.view import Expression, View, inner, operand
+from tltlc.resolve.constants import samples
+from tltlc.resolve.values import Env
 from tltlc.source import Span
 
 
@@ -43,12 +46,24 @@ def _steps(tree: Unary) -> float:
 
 def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
     text = operand(Expression(awaited, view.env))
-    clock = view.env.context.clock_s
     way_out = f"exactly {steps:g} steps later is seldom meant: declare a `clock`, and say it in seconds"
-    if clock:
-        way_out = f"say it in seconds: `eventually within {clock * steps:.6g} s {text}`"
+    if view.env.context.clock_s:
+        time = _seconds(steps, view.env.context.clock_s, view.env)
+        if chain.op == "N":
+            way_out = f"say it in seconds: `weak_next after {time} s {text}`"
+        else:
+            way_out = f"say it in seconds: `next after {time} s {text}`"
+            way_out += f", or `eventually within {time} s {text}` where it may come earlier"
     label = Label(view.source, Span(chain.span.start, awaited.span.start), f"exactly {steps:g} steps from now")
     return Remark("this counts steps, whatever time they take", (label,), way_out)
+
+
+def _seconds(steps: float, period: float, env: Env) -> str:
+    """A time of few digits, in seconds, that is read as so many steps: it never is longer, as times are rounded up."""
+    exact = steps * period
+    shorter = (str(Context(prec=digits, rounding=ROUND_DOWN).create_decimal(exact)) for digits in range(3, 18))
+    texts = [f"{exact:.6g}", *shorter]
+    return next((text for text in texts if samples(Number(float(text), "s", Span(0, 0)), env) == steps), texts[-1])
 
 
 RULE = Rule("TLT0418", "warning", check)

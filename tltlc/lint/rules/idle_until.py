@@ -24,8 +24,10 @@ def check(view: View) -> Iterator[Remark]:
                 continue
             before, goal = value.at(part.tree.left), value.at(part.tree.right)
             label = Label(value.source, part.tree.span, f"this is `{clause.kind} {goal.text}` and no more")
-            held = f"(not {operand(before)})" if clause.kind == "avoid" else operand(before)
-            way_out = f"say `require {held} until {operand(goal)}`"
+            way_out = f"say `require {operand(before)} until {operand(goal)}`"
+            if clause.kind == "avoid":
+                # What is only forbidden need not come.
+                way_out = f"say `require (not {operand(before)}) weak_until {operand(goal)}`"
             if others:
                 way_out = f"say `{operand(value.at(others[-1]))} and ({part.text})`, which counts from there on"
             yield Remark("the first half of this `until` has no say", (label,), way_out)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from tltlc.automaton.build import default_judge
 from tltlc.automaton.contradiction import contradiction
 from tltlc.diagnostics.diagnostic import Label
+from tltlc.lint.leaving_out import leave_out
 from tltlc.lint.relations import is_impossible, relations
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.rules import recurrence
 from tltlc.lint.view import SpecView, View
-from tltlc.logic.formula import Formula, and_, not_
+from tltlc.logic.formula import Formula, not_
 from tltlc.record import replace
 from tltlc.resolve.spec import Part, Spec
 
@@ -40,7 +40,7 @@ def _is_any_in(places: Sequence[Label], part: Part) -> bool:
 
 
 def _remarks(spec: SpecView, parts: Sequence[Part], reasons: Sequence[Part]) -> Iterator[Remark]:
-    left = list(reasons)
+    left, remaining = list(reasons), list(spec.spec.parts)
     # The later of two that imply each other goes, and nothing is implied by what has gone.
     for part in reversed(parts):
         others = [other for other in left if other is not part]
@@ -52,18 +52,8 @@ def _remarks(spec: SpecView, parts: Sequence[Part], reasons: Sequence[Part]) -> 
                 *(Label(other.source, other.span, "because of this") for other in needed),
             )
             title = f"{'another clause asks' if len(needed) == 1 else 'other clauses ask'} for this already"
-            way_out = "leave it out, or say what more it should ask for"
-            if _decides_judge(part, spec.spec):
-                way_out = f"leave it out and say `judge at {spec.fspa.judge}`, or say what more it should ask for"
-            yield Remark(title, labels, way_out)
-
-
-def _decides_judge(part: Part, spec: Spec) -> bool:
-    """Whether the spec would be judged at another moment without this part of its formula."""
-    if spec.judge is not None or spec.semantics == "infinite":
-        return False
-    left = and_(*(each.formula for each in spec.parts if each.formula is not part.formula))
-    return default_judge(left) != default_judge(spec.formula)
+            remaining = [each for each in remaining if each.formula is not part.formula]
+            yield Remark(title, labels, f"{leave_out(remaining, spec)}, or say what more it should ask for")
 
 
 def _known(part: Part, spec: SpecView) -> list[Part]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Label
+from tltlc.lint.leaving_out import leave_out
 from tltlc.lint.relations import relations
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.view import SpecView, View
@@ -20,10 +21,12 @@ def check(view: View) -> Iterator[Remark]:
         # Where all of it is so, the compiler says it.
         if spec.fspa.states[0].verdict == "satisfied":
             continue
+        remaining = list(spec.spec.parts)
         for part in spec.spec.parts:
             if _is_always_met(part, spec):
+                remaining = [each for each in remaining if each is not part]
                 label = Label(part.source, part.span, "every trace satisfies this")
-                yield Remark("this clause asks nothing of the game", (label,), _WAY_OUT)
+                yield Remark("this clause asks nothing of the game", (label,), f"{leave_out(remaining, spec)}{_OR}")
 
 
 def _is_always_met(part: Part, spec: SpecView) -> bool:
@@ -31,6 +34,6 @@ def _is_always_met(part: Part, spec: SpecView) -> bool:
     return spec.decision((negated, *relations(spec, part.formula.atoms())), spec.spec)
 
 
-_WAY_OUT: Final = "leave it out, or say what it is to ask for: was `and` meant where `or` stands, or the other way?"
+_OR: Final = ", or say what it is to ask for: was `and` meant where `or` stands, or the other way?"
 
 RULE = Rule("TLT0430", "warning", check, supersedes=("TLT0429",))

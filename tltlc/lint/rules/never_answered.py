@@ -6,22 +6,25 @@ from collections.abc import Iterator
 
 from tltlc.automaton.contradiction import unsatisfiable
 from tltlc.diagnostics.diagnostic import Label
-from tltlc.grammar.tree import Binary, Unary
+from tltlc.grammar.tree import Binary, Clause, Unary
 from tltlc.lint.relations import relations
 from tltlc.lint.rule import Remark, Rule
 from tltlc.lint.view import Expression, SpecView, View, operand
-from tltlc.logic.formula import Formula, and_
+from tltlc.logic.formula import Formula, always, and_
 from tltlc.logic.phrases import is_state
 from tltlc.resolve.spec import Part
 
 
 def check(view: View) -> Iterator[Remark]:
-    """A remark for each implication of a rule whose two sides never hold at one step, and each of them does at some."""
+    """A remark for each implication of a rule whose two sides never hold at one step, and each of them does at some.
+
+    None for a clause that no trace satisfies: it does more than forbid one side.
+    """
     for spec in view.specs:
-        for _, clause in spec.clauses("keep", "require"):
-            for part in _implications(clause):
-                if _never_together(part, spec):
-                    yield _remark(part)
+        for clause, value in spec.clauses("keep", "require"):
+            found = [part for part in _implications(value) if _never_together(part, spec)]
+            if found and _can_hold(clause, value, spec):
+                yield from map(_remark, found)
 
 
 def _implications(value: Expression) -> Iterator[Expression]:
@@ -51,6 +54,14 @@ def _never_together(implication: Expression, spec: SpecView) -> bool:
     return not can_be(and_(condition, result)) and can_be(condition) and can_be(result)
 
 
+def _can_hold(clause: Clause, value: Expression, spec: SpecView) -> bool:
+    formula = value.formula()
+    if formula is None:
+        return False
+    whole = Part(always(formula) if clause.kind == "keep" else formula, value.source, value.tree.span)
+    return not spec.decision((whole, *relations(spec, formula.atoms())), spec.spec)
+
+
 def _remark(implication: Expression) -> Remark:
     assert isinstance(implication.tree, Binary)
     condition, result = implication.at(implication.tree.left), implication.at(implication.tree.right)
@@ -59,4 +70,4 @@ def _remark(implication: Expression) -> Remark:
     return Remark(f"`{result.text}` never holds at the step of `{condition.text}`", (label,), way_out)
 
 
-RULE = Rule("TLT0432", "warning", check, supersedes=("TLT0410",))
+RULE = Rule("TLT0432", "warning", check)

@@ -7,7 +7,7 @@ from typing import Final, Union
 
 from tltlc.grammar.tree import EntityDecl, LetDecl, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.lint.removal import item, without
-from tltlc.lint.rule import Edit, Remark, Rule
+from tltlc.lint.rule import Remark, Rule, removal
 from tltlc.lint.view import View
 from tltlc.source import Span
 
@@ -43,7 +43,7 @@ def _entities(declaration: EntityDecl, used: Container[str], view: View) -> Iter
 
 def _remark(kind: str, name: str, place: Span, gone: tuple[Span, ...], view: View) -> Remark:
     title = f"nothing uses the {kind} `{name}`"
-    return Remark(title, (view.label(place),), "remove it, or use it", tuple(Edit(span, "") for span in gone))
+    return Remark(title, (view.label(place),), "remove it, or use it", removal("Remove it", gone))
 
 
 def _is_refined(declaration: Declared, view: View) -> bool:

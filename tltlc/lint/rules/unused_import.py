@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from bisect import bisect_left
+from collections.abc import Container, Iterable, Iterator, Sequence
 
 from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import
 from tltlc.lint.removal import item, without
-from tltlc.lint.rule import Edit, Remark, Rule
+from tltlc.lint.rule import Remark, Rule, removal
 from tltlc.lint.view import View
 from tltlc.resolve.imports import Loaded
 
@@ -16,14 +17,15 @@ def check(view: View) -> Iterator[Remark]:
     if not view.specs:
         return
     used = view.used
+    brought, unnamed = _brought(used, view), _count_unnamed(view.modules)
     for declaration, loaded in view.modules[-1].imports:
-        if _counts_unnamed(loaded):
+        if id(loaded) in unnamed:
             continue
-        if not any(name in used for name in _brought(declaration, view)):
+        if not _brings_any(declaration, brought.get(declaration.target, [])):
             gone = without(view.source, declaration.span, view.module.comments)
             title = f"nothing of `{declaration.target}` is used"
             remark = view.label(declaration.target_span)
-            yield Remark(title, (remark,), "remove the import, or use it", (Edit(gone, ""),))
+            yield Remark(title, (remark,), "remove the import, or use it", removal("Remove the import", (gone,)))
         else:
             yield from _names(declaration, used, view)
 
@@ -34,26 +36,51 @@ def _names(declaration: Import, used: Container[str], view: View) -> Iterator[Re
         if f"{_prefix(declaration)}{name.name}" not in used:
             gone = item([each.span for each in names], index, view.module.comments)
             title = f"`{name.name}` of `{declaration.target}` is not used"
-            fix = tuple(Edit(span, "") for span in gone)
+            fix = removal("Remove it from the import", gone)
             yield Remark(title, (view.label(name.span),), "remove it from the import, or use it", fix)
 
 
-def _brought(declaration: Import, view: View) -> set[str]:
-    """The names that an import makes visible; a name that an earlier one brings as well is counted there."""
+def _brought(used: Container[str], view: View) -> dict[str, list[str]]:
+    """The names that are used, by the target of the import that makes them visible, in sorted order.
+
+    A name that an earlier import brings as well is counted there.
+    """
+    found: dict[str, list[str]] = {}
+    for name, binding in view.env.scope.names.items():
+        if binding.via is not None and name in used:
+            found.setdefault(binding.via, []).append(name)
+    return {target: sorted(names) for target, names in found.items()}
+
+
+def _brings_any(declaration: Import, names: Sequence[str]) -> bool:
+    """Whether an import makes one of these names visible, which are sorted."""
+    if declaration.names is not None:
+        return any(_first(names, each.name) == each.name for each in declaration.names)
     prefix = _prefix(declaration)
-    names = [name for name, binding in view.env.scope.names.items() if binding.via == declaration.target]
-    chosen = {f"{prefix}{name.name}" for name in declaration.names or ()}
-    return {name for name in names if name in chosen or (declaration.names is None and name.startswith(prefix))}
+    return bool(names) and _first(names, prefix).startswith(prefix)
+
+
+def _first(names: Sequence[str], start: str) -> str:
+    """The first of these names, which are sorted, that is not below a text; empty where there is none."""
+    place = bisect_left(names, start)
+    return names[place] if place < len(names) else ""
 
 
 def _prefix(declaration: Import) -> str:
     return f"{declaration.alias}." if declaration.alias else ""
 
 
-def _counts_unnamed(loaded: Loaded) -> bool:
-    """Whether a module, or one that it imports, says what counts without being named: a clock, or what is exclusive."""
-    own = any(isinstance(each, (ClockDecl, ExclusiveDecl)) for each in loaded.module.declarations)
-    return own or any(_counts_unnamed(other) for _, other in loaded.imports)
+def _count_unnamed(modules: Iterable[Loaded]) -> set[int]:
+    """The modules, by identity, that say what counts without being named: a clock, or what is exclusive.
+
+    They may say it by what they import, which stands before them.
+    """
+    found: set[int] = set()
+    for loaded in modules:
+        own = any(isinstance(each, (ClockDecl, ExclusiveDecl)) for each in loaded.module.declarations)
+        if own or any(id(other) in found for _, other in loaded.imports):
+            found.add(id(loaded))
+    return found
 
 
 RULE = Rule("TLT0422", "warning", check)

@@ -1,0 +1,451 @@
+"""An edit is offered only for words that have one reading in their place, and it has that reading.
+
+The rows are judged by hand.  The readings of drawn clauses are made here once more, over traces and without the
+compiler: a word can belong to the operand beside it or to all that stands on a side of it, and only where that is the
+same, an edit may be offered.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+from itertools import product
+
+import pytest
+
+import tltlc
+from tests.grammar.test_english import (
+    LETTERS,
+    Here,
+    Trace,
+    Whole,
+    a,
+    b,
+    both,
+    c,
+    compiled,
+    either,
+    later,
+    negated,
+    throughout,
+    until,
+    verdicts,
+    whole,
+)
+from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.parser import parse
+from tltlc.lint.fixes import of_errors
+from tltlc.lint.scopes import after
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
+
+HEAD = """entity k, d
+signal a: bool
+signal b: bool
+signal c: bool
+signal p(e): bool
+signal q(e): bool
+"""
+
+ALL, ANY = "all x in (k, d): p(x)", "any x in (k, d): p(x)"
+
+ROWS: list[tuple[str, str | None]] = [
+    # Behind an operator.
+    ("require always a before b", None),
+    ("require always a after b", None),
+    ("require always a followed by b", None),
+    ("require always a without b", None),
+    ("require always a unless b", None),
+    ("require always a if b", None),
+    ("require always a while b", None),
+    ("require always a but b", None),
+    ("require always a within 5 steps", None),
+    ("require always a for 5 steps", None),
+    ("require always a implies b within 5 steps", None),
+    ("require eventually a before b", None),
+    ("require eventually a without b", None),
+    ("require eventually a unless b", None),
+    ("require eventually a for 5 steps", None),
+    ("require a before always b", None),
+    ("require never a before b", None),
+    ("require not a before b", None),
+    ("require not a within 5 steps", None),
+    ("reach eventually a before b", None),
+    ("reach always a without b", None),
+    ("reach a without always b", None),
+    ("reach always a within 5 steps", None),
+    ("reach not a before b", None),
+    ("reach not a while b", None),
+    ("reach not a within 5 steps", None),
+    ("keep always a before b", None),
+    ("keep eventually a if b", None),
+    ("keep a if always b", None),
+    ("keep never a before b", None),
+    ("keep not a followed by b", None),
+    ("keep always a for 5 steps", None),
+    ("avoid always a while b", None),
+    ("avoid not a while b", None),
+    ("avoid not a unless b", None),
+    ("avoid not a within 5 steps", None),
+    ("keep not a before b", "require not a weak_until b"),
+    ("keep not a after b", "keep b implies always not a"),
+    ("keep not a while b", "keep b implies not a"),
+    ("keep not a unless b", "keep not a or b"),
+    ("keep not a for 5 steps", "require always for 5 steps not a"),
+    ("keep (eventually a) if b", "keep b implies eventually a"),
+    ("reach (eventually a) before b", None),
+    ("require (a then b) before c", None),
+    # Each word, alone.
+    ("reach a before b", "reach a then b"),
+    ("reach a after b", "reach b then a"),
+    ("reach a followed by b", "reach a then b"),
+    ("reach a without b", "reach a avoid b"),
+    ("reach a unless b", "reach a or b"),
+    ("reach a while b", "reach a and b"),
+    ("reach a if b", "reach a and b"),
+    ("reach a within 5 steps", "require eventually within 5 steps a"),
+    ("reach a for 2 steps", "reach (always for 2 steps a) and next after 1 step a"),
+    ("keep a before b", "require a weak_until b"),
+    ("keep a after b", "keep b implies always a"),
+    ("keep a followed by b", "keep a implies next eventually b"),
+    ("keep a without b", "keep a avoid b"),
+    ("keep a unless b", "keep a or b"),
+    ("keep a while b", "keep b implies a"),
+    ("keep a if b", "keep b implies a"),
+    ("keep a for 5 steps", "require always for 5 steps a"),
+    ("keep a within 5 steps", None),
+    ("avoid a before b", "require (not a) weak_until b"),
+    ("avoid a after b", "require always (b implies always not a)"),
+    ("avoid a followed by b", "avoid a then b"),
+    ("avoid a without b", "avoid a and not b"),
+    ("avoid a unless b", "avoid a and not b"),
+    ("avoid a while b", "avoid a and b"),
+    ("avoid a if b", "avoid a and b"),
+    ("avoid a within 5 steps", "require not eventually within 5 steps a"),
+    ("avoid a for 5 steps", "require always for 5 steps not a"),
+    ("require a before b", "require a then b"),
+    ("require a after b", "require b then a"),
+    ("require a without b", "require a and not b"),
+    ("require a unless b", "require a weak_until b"),
+    ("require a if b", "require b implies a"),
+    ("require a while b", None),
+    ("require a whenever b", None),
+    ("require while b, a", None),
+    ("require a within 5 steps", "require eventually within 5 steps a"),
+    # Between several operands.
+    ("reach c and a before b", None),
+    ("reach a before b and c", None),
+    ("keep a and b before c", None),
+    ("keep a and b while c", None),
+    ("keep a while b or c", None),
+    ("keep a or b while c", "keep c implies (a or b)"),
+    ("reach a or b while c", None),
+    ("reach a and b while c", "reach a and b and c"),
+    ("reach a or b without c", None),
+    ("reach a and b without c", None),
+    ("reach a then b without c", None),
+    ("keep a and b without c", "keep a and b avoid c"),
+    ("reach a after b then c", None),
+    ("reach a unless b then c", None),
+    ("reach a before b then c", "reach a then b then c"),
+    ("keep a if b then c", None),
+    ("keep a unless b or c", "keep a or (b or c)"),
+    ("keep a and b unless c", None),
+    # A clause that begins with an operator.
+    ("not a", "avoid a"),
+    ("not a or b", "require not a or b"),
+    ("not a and b", "require not a and b"),
+    ("not a until b", "require not a until b"),
+    ("not a implies b", "require not a implies b"),
+    ("always a", "keep a"),
+    ("always a and eventually b", "require always a and eventually b"),
+    ("always a or b", "require always a or b"),
+    ("always (a or b)", "keep a or b"),
+    ("eventually a", "reach a"),
+    ("eventually a and always b", "require eventually a and always b"),
+    ("eventually a or always b", "require eventually a or always b"),
+    ("eventually a implies eventually b", "require eventually a implies eventually b"),
+    ("never a", "avoid a"),
+    ("never a or b", None),
+    ("never a until b", None),
+    ("never a implies b", None),
+    ("never a then b", None),
+    ("never a and always b", None),
+    ("forbid a and b", "avoid a and b"),
+    ("forbid a until b", None),
+    ("stay a until b", None),
+    ("maintain a implies b", "keep a implies b"),
+    ("must a", None),
+    ("must always a", "require always a"),
+    ("if b then a", "keep b implies a"),
+    ("if b then not a", "keep b implies not a"),
+    ("if always b, a", None),
+    # A keyword or another word for it inside a formula.
+    ("require never a", "require always not a"),
+    ("require never a until b", None),
+    ("require never a or b", None),
+    ("require never a and always b", None),
+    ("keep a implies never b", "keep a implies always not b"),
+    ("keep a or never b", None),
+    ("reach a and never b", None),
+    ("keep no a", "keep not a"),
+    ("keep no a or b", None),
+    ("reach a then avoid b", None),
+    ("reach a then keep b", None),
+    ("reach a then never b", None),
+    ("reach a then b then avoid c", None),
+    ("reach a then reach b", "reach a then b"),
+    ("avoid a then keep b", None),
+    ("avoid a then reach b", None),
+    ("keep a then reach b", None),
+    ("keep a until reach b", None),
+    ("reach a implies reach b", None),
+    ("reach (a or keep b)", None),
+    ("require always a implies reach b", None),
+    ("reach a then b or keep c", None),
+    ("keep a or reach b", "require (always a) or (eventually b)"),
+    ("keep a and reach b", "keep a reach b"),
+    ("keep a or b and reach c", None),
+    ("keep a implies reach b", "keep a implies eventually b"),
+    # Words of logics and languages.
+    ("keep a nor b", "keep not (a or b)"),
+    ("keep a nand b", "keep not (a and b)"),
+    ("keep a xnor b", "keep a iff b"),
+    ("keep a xor b", "keep not (a iff b)"),
+    ("keep not a nor b", None),
+    ("keep a nor b or c", None),
+    ("keep a NOR b", None),
+    ("keep a NAND b", None),
+    ("keep a XOR b", None),
+    ("keep a else b", None),
+    ("keep a entails b", None),
+    ("unreach a", None),
+    # In brackets.
+    ("require eventually (a while b)", None),
+    ("require eventually (a if b)", None),
+    ("require eventually (if b then a)", None),
+    ("require eventually (a before b)", None),
+    ("require eventually (a within 5 steps)", None),
+    ("require not (a while b)", None),
+    ("require not (a before b)", None),
+    ("require not (a for 5 steps)", None),
+    ("require not (a within 5 steps)", "require not eventually within 5 steps a"),
+    ("require always not (a while b)", None),
+    ("require always (a before b)", None),
+    ("require always (a after b)", None),
+    ("require always (a followed by b)", None),
+    ("require always (a unless b)", None),
+    ("require always (a for 5 steps)", None),
+    ("require always (a after 5 steps)", None),
+    ("require always (a while b)", "require always (b implies a)"),
+    ("require always (if b, a)", "require always (b implies a)"),
+    ("require (a if b) and c", "require (b implies a) and c"),
+    ("require (a while b) and c", None),
+    ("require (a before b) and c", "require (a then b) and c"),
+    ("require (a before b) implies c", None),
+    ("require c until (a before b)", None),
+    ("keep not (a if b)", None),
+    ("keep (a while b)", "keep b implies a"),
+    ("keep (a while b) implies c", None),
+    ("keep (a before b)", None),
+    ("reach (a while b)", None),
+    ("reach (a without b)", "reach a and not b"),
+    ("avoid (a xor b)", "avoid not (a iff b)"),
+    ("avoid (a unless b)", None),
+    # Behind quantifiers.
+    (f"reach {ALL} before b", None),
+    (f"reach {ALL} without b", None),
+    (f"reach {ALL} within 5 steps", None),
+    (f"reach {ALL} while b", f"reach ({ALL}) and b"),
+    (f"keep {ALL} while b", f"keep b implies ({ALL})"),
+    (f"keep {ANY} if b", f"keep b implies ({ANY})"),
+    (f"keep {ALL} while q(x)", None),
+    (f"keep {ALL} before b", None),
+    (f"keep {ALL} for 5 steps", f"require always for 5 steps ({ALL})"),
+    ("keep all x in (k, d): (p(x) while q(x))", "keep all x in (k, d): (q(x) implies p(x))"),
+    ("keep all x in (k, d): (p(x) before b)", None),
+    (f"require {ALL} after b", None),
+    (f"require {ANY} unless b", None),
+    (f"require {ALL} within 5 steps", None),
+    ("require all x in (k, d): (p(x) before b)", "require all x in (k, d): (p(x) then b)"),
+]
+
+
+def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
+    module, said = parse(source)
+    return tuple(each for each in (*said, *resolve(module)[1]) if each.severity == "error")
+
+
+def offered(clause: str) -> list[str]:
+    """The texts of specs after the edits that are offered for a clause, and for what is wrong after these."""
+    waiting, done = [f"{HEAD}spec s {{ {clause}\n}}\n"], []
+    while waiting:
+        source = SourceFile("a.tltl", waiting.pop())
+        said = errors(source)
+        if not said:
+            done.append(source.text)
+        waiting += (after(source, offer.fix.edits).text for offer in of_errors(said, source, errors))
+    return done
+
+
+@pytest.mark.parametrize(("clause", "meant"), ROWS, ids=[clause for clause, _ in ROWS])
+def test_an_edit_is_what_was_meant(clause: str, meant: str | None) -> None:
+    texts = offered(clause)
+    assert bool(texts) == (meant is not None), texts
+    for text in texts:
+        (wanted,) = tltlc.compile_text(f"{HEAD}spec s {{ {meant} }}")
+        (given,) = tltlc.compile_text(text)
+        assert given.formula == wanted.formula, text
+
+
+# --- readings -------------------------------------------------------------------------------------
+
+CLAUSES = ("reach", "keep", "avoid", "require")
+OPERATORS: dict[str, Callable[[Here], Here]] = {
+    "": lambda one: one,
+    "not ": negated,
+    "never ": lambda one: throughout(negated(one)),
+    "always ": throughout,
+    "eventually ": lambda one: later(one, 0),
+}
+JOINS: dict[str, Callable[[Here], Here]] = {
+    "": lambda one: one,
+    "c and ": lambda one: both(c, one),
+    "c or ": lambda one: either(c, one),
+    "c implies ": lambda one: either(negated(c), one),
+}
+RIGHT: dict[str, tuple[Here, Callable[[Here], Here]]] = {
+    "b": (b, lambda one: one),
+    "b and c": (both(b, c), lambda one: both(one, c)),
+    "b or c": (either(b, c), lambda one: either(one, c)),
+}
+"""The right side, as one operand, and what follows where a word belongs to `b` alone."""
+WORDS = ("if", "while", "before", "after", "followed by", "unless", "without", "but", "xor", "nor", "nand")
+AROUND: dict[str, Callable[[Here], Here] | None] = {
+    "{}": None,
+    "not ({})": negated,
+    "always ({})": throughout,
+    "eventually ({})": lambda one: later(one, 0),
+    "({}) and c": lambda one: both(one, c),
+    "({}) implies c": lambda one: either(negated(one), c),
+}
+
+
+def of_word(word: str, one: Here, other: Here, clause: str) -> Here:
+    """The meaning of a word between two operands, as a formula in such a clause."""
+    joined = {
+        "but": both(one, other),
+        "without": both(one, negated(other)),
+        "xor": either(both(one, negated(other)), both(negated(one), other)),
+        "nor": negated(either(one, other)),
+        "nand": negated(both(one, other)),
+    }
+    if word in joined:
+        return joined[word]
+    if word in ("if", "while"):
+        return both(one, other) if clause in ("reach", "avoid") else either(one, negated(other))
+    if word == "unless":
+        of_step = {"reach": either(one, other), "keep": either(one, other), "avoid": both(one, negated(other))}
+        return of_step.get(clause, until(one, other))
+    first, then = (other, one) if word == "after" else (one, other)
+    return later(both(first, later(then, 1)), 0)
+
+
+def as_clause(word: str, one: Here, other: Here, clause: str) -> Whole:
+    """The meaning of a whole clause whose two sides a word joins."""
+    if word == "without" and clause in ("reach", "keep"):
+        asked, never = whole(clause, one), whole("avoid", other)
+        return lambda trace: asked(trace) and never(trace)
+    wanted = negated(one) if clause == "avoid" else one
+    if word == "before" and clause in ("keep", "avoid"):
+        return whole("require", until(wanted, other))
+    if word == "after" and clause in ("keep", "avoid"):
+        return whole("keep", either(negated(other), throughout(wanted)))
+    if word == "followed by" and clause == "keep":
+        return whole("keep", either(negated(one), later(other, 1)))
+    return whole(clause, of_word(word, one, other, clause))
+
+
+TRACES: list[Trace] = [trace for length in (1, 2, 3, 4) for trace in product(LETTERS, repeat=length)]
+SOME: list[Trace] = TRACES[::7]
+
+
+def reading(clause: str, around: str, join: str, operator: str, word: str, right: str) -> Whole | None:
+    """The one meaning of such a clause; None where it has more, or is not what was meant in any."""
+    outer = AROUND[around]
+    if clause == "require" and word == "while" and around != "always ({})":
+        return None
+    asked = clause
+    if outer is not None:
+        if word in ("if", "while"):
+            rule = clause == "keep" and around == "({}) and c"
+            rule = rule or (clause in ("keep", "require") and around == "always ({})")
+            if not rule and not (clause == "require" and around == "({}) and c" and word == "if"):
+                return None
+        elif word in ("before", "after", "followed by", "unless") and (
+            clause != "require" or around not in ("({}) and c",)
+        ):
+            return None
+        asked = "keep" if word in ("if", "while") else "require"
+    if operator in ("always ", "eventually ", "never "):
+        return None
+    tail, whole_right = RIGHT[right][1], RIGHT[right][0]
+    lefts: list[tuple[Here, Callable[[Here], Here] | None]] = [(JOINS[join](OPERATORS[operator](a)), None)]
+    if join:
+        lefts.append((OPERATORS[operator](a), JOINS[join]))
+    if operator == "not " and word != "but":
+        lefts.append((a, lambda one: JOINS[join](negated(one))))
+    found: list[Whole] = []
+    for (left, before), (other, behind) in product(lefts, [(whole_right, None), (b, tail)][: 1 if right == "b" else 2]):
+        if outer is None and before is None and behind is None:
+            found.append(as_clause(word, left, other, clause))
+            continue
+        if outer is None and not join and right == "b":
+            found.append(_negated_clause(word, left, other, clause))
+            continue
+        inner = "avoid" if before is not None and operator == "not " and left is a else asked
+        meaning = of_word(word, left, other, inner)
+        meaning = before(meaning) if before else meaning
+        meaning = behind(meaning) if behind else meaning
+        found.append(whole(clause, outer(meaning) if outer else meaning))
+    if any(one(trace) != found[0](trace) for one in found[1:] for trace in SOME):
+        return None
+    return found[0]
+
+
+def _negated_clause(word: str, left: Here, other: Here, clause: str) -> Whole:
+    """The meaning of `not a WORD b` where `not` stands before all of it, if ``left`` is ``a`` alone."""
+    if left is not a:
+        return as_clause(word, left, other, clause)
+    opposite = {"keep": "avoid", "avoid": "keep"}
+    if clause in opposite:
+        return as_clause(word, left, other, opposite[clause])
+    return whole(clause, negated(of_word(word, left, other, "avoid")))
+
+
+def test_drawn_clauses_with_one_reading_are_helped() -> None:
+    # Both kinds are among what is drawn, or the test of them would hold for nothing.
+    found = [(bool(offered(clause)), meaning is not None) for clause, meaning in drawn(400)]
+    assert sum(helped and clear for helped, clear in found) > 40
+    assert sum(not clear for _, clear in found) > 100
+
+
+def drawn(number: int) -> Iterator[tuple[str, Whole | None]]:
+    """So many clauses of any parts, and as many of those parts that leave more of them clear, with their readings."""
+    every = list(product(CLAUSES, AROUND, JOINS, OPERATORS, WORDS, RIGHT))
+    few = list(product(CLAUSES, list(AROUND)[::4], list(JOINS)[:3], list(OPERATORS)[:2], WORDS, list(RIGHT)[:2]))
+    source = random.Random(7)
+    for clause, around, join, operator, word, right in (*source.sample(every, number), *source.sample(few, number)):
+        text = around.format(f"{join}{operator}a {word} {right}")
+        yield f"{clause} {text}", reading(clause, around, join, operator, word, right)
+
+
+@pytest.mark.parametrize(
+    ("clause", "meaning"), list(drawn(400)), ids=lambda each: each if isinstance(each, str) else ""
+)
+def test_an_edit_of_a_drawn_clause_has_its_one_reading(clause: str, meaning: Whole | None) -> None:
+    for text in offered(clause):
+        assert meaning is not None, text
+        body = text.removeprefix(HEAD)
+        wrong = [trace for trace, accepted in verdicts(compiled(body)) if accepted != meaning(trace)]
+        assert not wrong, f"{text}: {[sorted(letter) for letter in wrong[0]]}"

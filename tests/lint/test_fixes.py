@@ -1,0 +1,91 @@
+"""Fixes that can be taken at once, as editors and the playground offer them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from tltlc.diagnostics.diagnostic import Diagnostic, Edit
+from tltlc.grammar.parser import parse
+from tltlc.grammar.tree import Module
+from tltlc.lint.fixes import Offer, of_errors, of_findings
+from tltlc.lint.run import findings, lint, view_of
+from tltlc.lint.scopes import after, keeping_scopes
+from tltlc.pipeline import CompileOptions
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
+
+
+def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
+    module, found = parse(source)
+    return (*found, *resolve(module)[1])
+
+
+def offers(text: str) -> list[Offer]:
+    source = SourceFile("x.tltl", text)
+    return list(of_errors(errors(source), source, errors))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("spec x { kepe alive }", {"Write `keep`": "spec x { keep alive }"}),
+        ("spec x = F alive", {"Add `import stealth`": "import stealth\nspec x = F alive"}),
+        (
+            "/// Loud.\r\nspec x = F loud",
+            {"Declare `signal loud: bool`": "signal loud: bool\r\n/// Loud.\r\nspec x = F loud"},
+        ),
+        ("signal a: bool\nspec x = F a &", {}),
+    ],
+)
+def test_fixes_of_errors(text: str, expected: dict[str, str]) -> None:
+    source = SourceFile("x.tltl", text)
+    assert {each.fix.title: after(source, each.fix.edits).text for each in offers(text)} == expected
+
+
+def test_what_leaves_as_much_to_be_mended_is_not_offered() -> None:
+    # Its import would not have it either.
+    source = SourceFile("x.tltl", "spec x = F alive")
+    told = errors(source)
+    assert told[0].fixes
+    assert list(of_errors(told, source, lambda _: told)) == []
+
+
+def test_a_fix_is_named_by_what_it_does() -> None:
+    source = SourceFile("x.tltl", "import core\nsignal a: bool\nentity e\nspec x = F a")
+    assert [each.fix.title for each in of_findings(lint(source), parse(source)[0])] == [
+        "Remove the import",
+        "Remove it",
+    ]
+
+
+def test_a_fix_keeps_the_comments_that_allow_something() -> None:
+    allow = "// tltlc: allow TLT0419\n"
+    source = SourceFile("x.tltl", f"/// Old.\n{allow}import core\nsignal a: bool\nspec x {{\n    reach a\n}}\n")
+    (offer,) = of_findings(lint(source), parse(source)[0])
+    assert after(source, offer.fix.edits).text == f"{allow}signal a: bool\nspec x {{\n    reach a\n}}\n"
+
+
+def test_the_same_fix_of_many_findings_is_tried_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[Sequence[Edit]] = []
+
+    def noted(module: Module, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
+        tried.append(edits)
+        return keeping_scopes(module, edits)
+
+    monkeypatch.setattr("tltlc.lint.fixes.keeping_scopes", noted)
+    source = SourceFile("example.tltl", f"// tltlc: allow{' TLT0421' * 50}\nsignal a: bool\nspec s = F a\n")
+    view = view_of(source, CompileOptions())
+    found = [each for each in findings(view) if each.diagnostic.code == "TLT0427"]
+    assert (len(list(of_findings(found, view.module))), len(tried)) == (50, 1)
+
+
+def test_after_some_fixes_no_more_are_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tltlc.lint.fixes.WORK", {"fixes tried": 5})
+    many = 9
+    lets = "".join(f"let l{number} = F a\n" for number in range(many))
+    source = SourceFile("example.tltl", f"signal a: bool\nspec s = F a  // tltlc: allow TLT0420\n{lets}")
+    view = view_of(source, CompileOptions())
+    found = [each for each in findings(view) if each.diagnostic.code == "TLT0421"]
+    assert (len(found), len(list(of_findings(found, view.module)))) == (many, 5)

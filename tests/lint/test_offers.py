@@ -1,0 +1,226 @@
+"""What the fixes of errors do to a text: over all golden messages, and over what people write by mistake."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import tltlc
+from tltlc.diagnostics.diagnostic import Diagnostic, Fix, TltlError
+from tltlc.grammar.parser import parse
+from tltlc.lint.fixes import Offer, of_errors
+from tltlc.lint.scopes import after
+from tltlc.resolve.program import resolve
+from tltlc.source import SourceFile
+
+GOLDEN = sorted((Path(__file__).parents[1] / "golden" / "error").glob("TLT0[123]*/input.tltl"))
+HEAD = """clock 10 Hz
+import stealth
+entity key, chest
+signal a: bool
+signal b: bool
+signal c: bool
+signal d: bool
+signal at(x: entity): bool
+signal coins in [0, 50]
+signal hp: ratio
+signal width: length in [0 m, 10 m]
+signal turn: angle in [0 rad, 4 rad]
+signal pace: speed in [0 m/s, 9 m/s]
+let both(p, q) = p and q
+"""
+MEANT = {
+    # Brackets around one operand of `then`.
+    "keep a and b then c": ["keep (a and b) then c", "keep a and (b then c)"],
+    "keep a then b and c": ["keep a then (b and c)", "keep (a then b) and c"],
+    "require a then b implies c": ["require a then (b implies c)", "require (a then b) implies c"],
+    "require a or b then c or d": ["require (a or b) then (c or d)"],
+    "require a and b then c then d": ["require (a and b) then c then d"],
+    "require a then b and c then d": ["require a then (b and c) then d"],
+    "avoid a until b then c": ["avoid (a until b) then c", "avoid a until (b then c)"],
+    "require F a then b": ["require (F a) then b", "require F (a then b)"],
+    "require a then F b": ["require a then (F b)"],
+    "reach a then F b then c": ["reach a then (F b) then c"],
+    "reach G a then F b": ["reach (G a) then (F b)"],
+    "require a then all x in (key, chest): F at(x)": ["require a then (all x in (key, chest): F at(x))"],
+    # What holds always or never.
+    "keep coins < 0": ["keep false"],
+    "reach coins > 60": ["reach false"],
+    "avoid coins >= 0": ["avoid true"],
+    "require a or coins > 50": ["require a or false"],
+    "require not coins < 0 and a": ["require not false and a"],
+    "keep 1 < 2 implies a": ["keep true implies a"],
+    "keep hp > 50": ["keep hp > 50 %"],
+    # Signs from elsewhere.
+    "reach ~a": ["reach not a"],
+    "keep a|~b": ["keep a|not b"],
+    "keep ~(a | b)": ["keep not(a | b)"],
+    "keep a=>b": ["keep a implies b"],
+    "keep coins =< 3": ["keep coins <= 3"],
+    "keep coins=>3": ["keep coins>=3"],
+    "keep coins × 2 > 3": ["keep coins * 2 > 3"],
+    "keep coins − 2 > 3": ["keep coins - 2 > 3"],
+    "keep turn > 90°and a": ["keep turn > 90 deg and a"],
+    "keep coins > .5": ["keep coins > 0.5"],
+    "keep coins == 3": ["keep coins >= 3 and coins <= 3"],
+    "keep a == false": ["keep not a"],
+    "keep 3 < coins < 9": ["keep 3 < coins and coins < 9"],
+    "keep a -- a comment": ["keep a // a comment"],
+    "keep a -- why not b?": ["keep a // why not b?"],
+    "keep a -- the player's": ["keep a // the player's"],
+    "keep coins --3 > 1 a": [],
+    "keep coins ≠ 3": [],
+    "keep a – b": [],
+    # Numbers.
+    "keep coins > 1,5": ["keep coins > 1.5"],
+    "keep coins > 0,125": ["keep coins > 0.125"],
+    "keep coins > 12,50": ["keep coins > 12.50"],
+    "keep coins > 1,000": [],
+    "keep coins < 20,000": [],
+    "keep coins < 1,000,000": [],
+    "keep coins < 1,234.5": [],
+    "keep coins² > 4": ["keep coins^2 > 4"],
+    "keep 3² > coins": ["keep 3^2 > coins"],
+    "keep coins > 2 and coins³ < 99": ["keep coins > 2 and coins^3 < 99"],
+    "require eventually within 20 a": ["require eventually within 20 steps a"],
+    "require eventually within 20 seconds a": ["require eventually within 20 s a"],
+    "limit 400 reach a": ["limit 400 steps reach a"],
+    "keep width > 3": ["keep width > 3 m"],
+    "keep pace > 3 m": ["keep pace > 3 m/s"],
+    "keep pace > 3 km": [],
+    "keep width > 3 s": [],
+    "keep turn > 90": [],
+    "keep coins > 3 m": ["keep coins > 3"],
+    # Operators that stick to a name.
+    "reach Fa": ["reach F a"],
+    "require !Fa": ["require !F a"],
+    "require Fat(key)": ["require F at(key)"],
+    "require FGa & b": ["require F G a & b"],
+    "require FG a": ["require F G a"],
+    "keep Falive": ["keep F alive"],
+    # Commas.
+    "reach a, b": ["reach a then b"],
+    "keep a, b or c": ["keep a and (b or c)"],
+    "reach all x in (key, chest): at(x), a": ["reach (all x in (key, chest): at(x)) then a"],
+    "reach a then any x in (key, chest): at(x), b": ["reach a then (any x in (key, chest): at(x)) then b"],
+    "reach not all x in (key, chest): at(x), b": ["reach not (all x in (key, chest): at(x)) then b"],
+    "avoid any x in (key, chest): at(x), a": ["avoid (any x in (key, chest): at(x)) or a"],
+    # Names and words.
+    "keep aliev": ["keep alive"],
+    "kepe a": ["keep a"],
+    "keep NOT a": ["keep not a"],
+    "keep a adn b": ["keep a and b"],
+    "keep both(a, z = b)": [],
+    "keep both(a, qq = b)": ["keep both(a, q = b)"],
+    "keep a()": ["keep a"],
+    "keep at key": ["keep at(key)"],
+    'keep at("key")': ["keep at(key)"],
+    "judge goal keep a": ["judge at goal keep a"],
+    "judge at goall keep a": ["judge at goal keep a"],
+    "keep ä or b": ["keep a or b"],
+    "reach alive(key)": [],
+    "reach at": [],
+    "reach a and then b": ["reach a then b"],
+    "keep a and then b": [],
+    "keep a not b": ["keep a and not b"],
+    "keep a and b not c": ["keep a and b and not c"],
+    "keep a or b not c": [],
+    "keep a not b or c": [],
+    "reach a or b next c": ["reach a or b then c"],
+    "keep a and keep b": ["keep a keep b"],
+    "keep coins is more than 3": ["keep coins > 3"],
+}  # fmt: skip
+"""Mistakes in a clause, and what the fixes make of it that leave no error; none where it is not clear what is meant."""
+
+
+def errors(source: SourceFile) -> tuple[Diagnostic, ...]:
+    module, said = parse(source)
+    return tuple(each for each in (*said, *resolve(module)[1]) if each.severity == "error")
+
+
+def all_fixes(source: SourceFile) -> Iterator[tuple[Diagnostic, Fix]]:
+    """Every fix of an error of a text, whether it would be offered or not."""
+    for each in errors(source):
+        for fix in each.fixes:
+            yield each, fix
+
+
+def offers(source: SourceFile) -> list[Offer]:
+    return list(of_errors(errors(source), source, errors))
+
+
+def in_spec(clause: str) -> SourceFile:
+    return SourceFile("a.tltl", f"{HEAD}spec s {{\n    {clause}\n}}\n")
+
+
+def check(source: SourceFile) -> None:
+    """Edits lie in the text and do not overlap; each fix that is offered leaves fewer errors."""
+    for diagnostic, fix in all_fixes(source):
+        if diagnostic.labels[0].source == source:
+            spans = sorted((edit.span.start, edit.span.end) for edit in fix.edits)
+            flat = [offset for span in spans for offset in span]
+            assert flat == sorted(flat)
+            assert 0 <= flat[0] <= flat[-1] <= len(source.text)
+            assert len(set(fix.edits)) == len(fix.edits) > 0
+    for offer in offers(source):
+        fixed = after(source, offer.fix.edits)
+        assert (len(parse(fixed)[1]), len(errors(fixed))) < (len(parse(source)[1]), len(errors(source)))
+
+
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.parent.name)
+def test_fixes_of_golden_messages(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(path.parent)
+    check(SourceFile(path.name, path.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize(("clause", "meant"), MEANT.items(), ids=MEANT)
+def test_fixes_of_a_clause(clause: str, meant: list[str]) -> None:
+    source = in_spec(clause)
+    check(source)
+    fixed = [after(source, offer.fix.edits) for offer in offers(source)]
+    assert [each.text for each in fixed] == [in_spec(each).text for each in meant]
+    for each, clause_ in zip(fixed, meant, strict=True):
+        assert formula(each) == formula(in_spec(clause_))
+
+
+def formula(source: SourceFile) -> str:
+    (fspa,) = tltlc.compile_text(source.text)
+    return fspa.formula.ascii
+
+
+def test_what_is_offered_is_rarely_refused() -> None:
+    """The trial of a fix is a second look: whoever makes a diagnostic says what mends it."""
+    refused = {
+        (clause, fix.title)
+        for clause in MEANT
+        for _, fix in all_fixes(in_spec(clause))
+        if fix not in [offer.fix for offer in offers(in_spec(clause))]
+    }
+    assert not refused
+
+
+def test_the_table_has_many_rows() -> None:
+    assert len(MEANT) >= 60
+
+
+def test_no_fix_of_a_definition_is_that_of_one_use() -> None:
+    """What is wrong with these arguments alone is not written into the body."""
+    text = f"{HEAD}let more(n) = coins > n\nspec s {{\n    keep more(3)\n    keep more(60)\n}}\n"
+    (said,) = errors(SourceFile("a.tltl", text))
+    assert (said.code, said.fixes) == ("TLT0310", ())
+
+
+def test_words_stay_apart() -> None:
+    with pytest.raises(TltlError):
+        tltlc.compile_text(f"{HEAD}spec s = a|~b")
+    ((_, fix),) = all_fixes(SourceFile("a.tltl", f"{HEAD}spec s = a|~b"))
+    assert fix.title == "Write `not`"
+    assert fix.edits[0].text == "not "
+
+
+def test_a_meaning_that_is_kept_is_safe() -> None:
+    for clause, applicability in (("keep coins < 0", "safe"), ("keep aliev", "maybe")):
+        ((_, fix),) = all_fixes(in_spec(clause))
+        assert fix.applicability == applicability

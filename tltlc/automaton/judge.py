@@ -1,0 +1,45 @@
+"""When a spec is judged that does not say so itself (semantics, section 4; docs/adr/0009)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tltlc.logic.bounded import bounded, with_bounds
+from tltlc.logic.formula import Formula, and_
+from tltlc.logic.normal_form import negation_normal_form
+from tltlc.resolve.spec import Judge, Part
+
+
+def judge_of(parts: Iterable[Part]) -> Judge:
+    """When a spec over finite traces is judged that has these parts and no clause ``judge``."""
+    return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
+
+
+def default_judge(formula: Formula) -> Judge:
+    """``limit`` where the formula is true of "nothing yet", else ``goal``."""
+    normal = negation_normal_form(formula)
+    value: dict[Formula, bool] = {}
+    stack = [normal]
+    while stack:
+        node = stack[-1]
+        waiting = [part for part in _at_once(node) if part not in value]
+        if waiting:
+            stack.extend(waiting)
+        else:
+            value[stack.pop()] = _of_nothing_yet(node, value)
+    return "limit" if value[normal] else "goal"
+
+
+def _at_once(node: Formula) -> list[Formula]:
+    """The operands of an ``and`` or ``or``; of no other operator, nor of ``F[0,n] p``, which is ``p | X(p | …)``."""
+    if node.op == "or":
+        return [] if bounded(node) else with_bounds(node)
+    return list(node.args) if node.op == "and" else []
+
+
+def _of_nothing_yet(node: Formula, value: dict[Formula, bool]) -> bool:
+    if node.op == "and":
+        return all(value[operand] for operand in _at_once(node))
+    if node.op == "or":
+        return any(value[operand] for operand in _at_once(node))
+    return node.op not in ("false", "F", "U", "M", "X")
