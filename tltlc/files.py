@@ -121,15 +121,15 @@ def note_read(path: str | os.PathLike[str]) -> None:
         notes.read.add(os.fspath(path))
 
 
-def read_as(path: str | os.PathLike[str]) -> str | None:
-    """The path by which the file at ``path`` was read since the outermost :func:`noted` began; None if it was not."""
+def was_read(path: str | os.PathLike[str]) -> bool:
+    """Whether the file at a path, under this name or another, was read since the outermost :func:`noted` began."""
     if not _noted:
-        return None
+        return False
     now, notes = stamp(os.fspath(path)), _noted[0]
     if now is None:
-        return None
+        return False
     # The number of the file comes first: to compare paths takes calls of the system.
-    return next((name for name in notes.read if (notes[name] or ())[2:] == now[2:] and is_same(name, path)), None)
+    return any((notes[name] or ())[2:] == now[2:] and is_same(name, path) for name in notes.read)
 
 
 def stamp(path: str) -> Stamp:

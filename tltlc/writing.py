@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import read_as, reason
+from tltlc.files import reason, was_read
 from tltlc.limits import SOURCE
 from tltlc.temporary import new_folders, temporaries
 
@@ -59,9 +59,8 @@ def write_file(
 
 def check_not_read(path: Path, advice: str = _OPTION) -> None:
     """Raise TLT0700 if the command has read the file at this path: no output takes the place of an input."""
-    name = read_as(path)
-    if name is not None:
-        raise TltlError([Diagnostic("TLT0700", f"`{name}` would be written over: it is an input", help=advice)])
+    if was_read(path):
+        raise TltlError([Diagnostic("TLT0700", f"`{path}` would be written over: it is an input", help=advice)])
 
 
 def rewrite(path: Path, content: str) -> None:

@@ -99,3 +99,14 @@ def test_the_work_of_comments_above_one_line_grows_with_the_text() -> None:
         return calls(lambda: keeping(module, text, NOTHING))
 
     assert work(400) < 2.5 * work(200)
+
+
+@pytest.mark.parametrize(
+    "entities",
+    [
+        "entity a,\n    b, // tltlc: allow TLT0421\n    c\n",
+        "entity a,\n    // tltlc: allow TLT0421\n    b,\n    c\n",
+    ],
+)
+def test_a_comment_in_a_list_of_entities_allows_no_more_than_before(entities: str) -> None:
+    assert entities in format_text(f"{entities}signal x: bool\nspec s = F x\n", "words")

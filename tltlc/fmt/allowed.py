@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from typing import Final
 
 from tltlc.grammar.allowed import spoken_of, statements
 from tltlc.grammar.parser import parse
-from tltlc.grammar.tree import Comment, Module
+from tltlc.grammar.tree import Comment, EntityDecl, Module
 from tltlc.record import record
 from tltlc.source import SourceFile, Span
 
@@ -29,7 +29,9 @@ def keeping(module: Module, text: str, kept: Kept) -> Kept:
     First that the statements of a line share one, and where that is not enough their declarations as they are.
     """
     before = spoken_of(module)
-    if not any(_may_change(comment, places or (), module.source.text) for comment, places in before):
+    lists = [each for each in module.declarations if isinstance(each, EntityDecl) and len(each.names) > 1]
+    listed = {span for list_ in lists for span in (list_.span, *(name.span for name in list_.names))}
+    if not any(_may_change(comment, places or (), module.source.text, listed) for comment, places in before):
         return kept
     laid_out, _ = parse(SourceFile("<layout>", text))
     back = dict(zip(statements(laid_out), statements(module), strict=True))
@@ -48,12 +50,14 @@ def keeping(module: Module, text: str, kept: Kept) -> Kept:
     return Kept(joints, kept.declarations | starts)
 
 
-def _may_change(comment: Comment, places: tuple[Span, ...], text: str) -> bool:
-    """Whether a comment speaks of several statements, or stands in the block of which it speaks.
+def _may_change(comment: Comment, places: tuple[Span, ...], text: str, listed: Container[Span]) -> bool:
+    """Whether a comment speaks of several statements, of one in a list, or stands in the block of which it speaks.
 
     Others stay above, behind or within the one that they speak of, and need no second look.
     """
-    return len(places) > 1 or any(place.covers(comment.span) and text[place.end - 1] == "}" for place in places)
+    if len(places) > 1 or any(place.covers(comment.span) and text[place.end - 1] == "}" for place in places):
+        return True
+    return any(place in listed for place in places)
 
 
 def _outer(places: Iterable[Span]) -> set[Span]:
