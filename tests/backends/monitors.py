@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from hypothesis import HealthCheck, Phase, settings
 
+from tests.conformance.runner import Outcome, Runner, built
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
 from tltlc.expression import Expression
@@ -29,8 +31,18 @@ batches = settings(
 )
 
 Sample = Mapping[str, float]
-Outcome = tuple[int, str, str]
-"""Exit status, standard output, standard error."""
+
+
+class Programs:
+    """The programs of several automata, built as one, so that their files also lie side by side."""
+
+    def __init__(self, runner: Runner, folder: Path, fspas: Sequence[Fspa]) -> None:
+        self.fspas = [replace(fspa, name=f"spec{number}") for number, fspa in enumerate(fspas)]
+        self._run = built(runner, self.fspas, folder)
+
+    def run(self, *runs: tuple[int, str]) -> list[Outcome]:
+        """What they do with ``--full``, by the number of the automaton and the trace."""
+        return self._run([(self.fspas[number].name, trace.encode()) for number, trace in runs])
 
 
 def trace_of(samples: Sequence[Sample], names: Sequence[str]) -> str:

@@ -9,17 +9,18 @@ import re
 import shutil
 import subprocess
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.backends.monitors import Outcome, Sample, batches, expected, one_atom, trace_of
+from tests.backends.monitors import Programs, Sample, batches, expected, one_atom, trace_of
 from tests.backends.strategies import HOSTILE, hostile_automata
+from tests.conformance.runners.c import CPP, RUNNERS, SANITIZED, C, linked
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
-from tests.waiting import HANG_S
 from tltlc.automaton.blowup import recursion_room
 from tltlc.automaton.build import build, spec_from_formula
 from tltlc.automaton.fspa import Fspa
@@ -31,11 +32,8 @@ from tltlc.monitor import Monitor
 from tltlc.record import replace
 from tltlc.resolve import spec
 
-COMPILERS = {"gcc": ("gcc", "-x", "c", "-std=c99"), "g++": ("g++", "-x", "c++", "-std=c++17")}
-STRICT = (
-    *("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wfloat-conversion", "-Werror"),
-    *("-fsanitize=address,undefined", "-fno-sanitize-recover=all"),
-)
+COMPILERS = {"gcc": C, "g++": CPP}
+STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wfloat-conversion", "-Werror")
 
 pytestmark = pytest.mark.skipif(not (shutil.which("gcc") and shutil.which("g++")), reason="there is no C compiler here")
 compilers = pytest.mark.parametrize("compiler", COMPILERS)
@@ -49,38 +47,29 @@ def header_of(fspa: Fspa) -> str:
     return text
 
 
-class Programs:
-    """The programs of several automata, compiled as one, so that headers also lie side by side."""
-
-    def __init__(self, folder: Path, compiler: str, fspas: Sequence[Fspa]) -> None:
-        self.fspas = [replace(fspa, name=f"spec{number}") for number, fspa in enumerate(fspas)]
-        lines = ["#define TLTL_MAIN"]
-        for fspa in self.fspas:
-            (folder / f"{fspa.name}_monitor.h").write_text(header_of(fspa))
-            lines += [f"#define main main_of_{fspa.name}", f'#include "{fspa.name}_monitor.h"', "#undef main"]
-        lines += ["int main(int argc, char **argv) {", "    switch (atoi(argv[1])) {"]
-        for number, fspa in enumerate(self.fspas):
-            lines.append(f"        case {number}: return main_of_{fspa.name}(argc - 1, argv + 1);")
-        (folder / "programs.c").write_text("\n".join([*lines, "    }", "    return 70;", "}", ""]))
-        self._path = folder / "programs"
-        compiled(folder, compiler, "programs.c", self._path)
-
-    def run(self, number: int, trace: str) -> Outcome:
-        command = [str(self._path), str(number), "--full", "-"]
-        done = subprocess.run(command, input=trace.encode(), capture_output=True, timeout=HANG_S)
-        return done.returncode, done.stdout.decode(), done.stderr.decode()
+def programs_of(folder: Path, compiler: str, fspas: Sequence[Fspa]) -> Programs:
+    """Their programs; those that ``gcc`` makes have sanitizers, which take long to compile."""
+    command = (*COMPILERS[compiler], *STRICT, *(SANITIZED if compiler == "gcc" else ()))
+    (runner,) = (runner for runner in RUNNERS if runner.name == ("c" if compiler == "gcc" else "c++"))
+    programs = Programs(replace(runner, build_all=partial(linked, command)), folder, fspas)
+    assert all((folder / f"{fspa.name}_monitor.h").read_bytes().isascii() for fspa in programs.fspas)
+    return programs
 
 
 def compiled(folder: Path, compiler: str, source: str, path: Path, *options: str) -> None:
-    command = [*COMPILERS[compiler], *STRICT, *options, source, "-o", str(path), "-lm"]
+    command = [*COMPILERS[compiler], *STRICT, *SANITIZED, *options, source, "-o", str(path), "-lm"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
 
 
 def check(programs: Programs, traces: Sequence[Sequence[Sample]]) -> None:
-    for number, (fspa, samples) in enumerate(zip(programs.fspas, traces, strict=True)):
-        trace = trace_of(samples, [signal.name for signal in fspa.signals])
-        found, wanted = programs.run(number, trace), expected(fspa, samples)
+    texts = [
+        trace_of(samples, [signal.name for signal in fspa.signals])
+        for fspa, samples in zip(programs.fspas, traces, strict=True)
+    ]
+    outcomes = programs.run(*enumerate(texts))
+    for fspa, samples, trace, found in zip(programs.fspas, traces, texts, outcomes, strict=True):
+        wanted = expected(fspa, samples)
         assert (*found[:2], comparable(found[2])) == (*wanted[:2], comparable(wanted[2])), trace
 
 
@@ -109,7 +98,7 @@ def test_the_same_steps_on_random_automata(compiler: str, tmp_path: Path, data: 
         names = [atom.name for atom in fspa.atoms]
         rows = data.draw(atom_traces(fspa, max_size=12))
         traces.append([dict(zip(names, row, strict=True)) for row in rows])
-    check(Programs(tmp_path, compiler, fspas), traces)
+    check(programs_of(tmp_path, compiler, fspas), traces)
 
 
 @compilers
@@ -133,7 +122,7 @@ def test_the_same_values_of_atoms(compiler: str, tmp_path: Path, data: st.DataOb
         )
         rows = data.draw(st.lists(st.tuples(numbers, numbers), min_size=3, max_size=3))
         traces.append([dict(zip(SIGNALS, row, strict=True)) for row in rows])
-    check(Programs(tmp_path, compiler, fspas), traces)
+    check(programs_of(tmp_path, compiler, fspas), traces)
 
 
 @compilers
@@ -171,10 +160,10 @@ def test_the_same_on_special_cases(compiler: str, tmp_path: Path) -> None:
     ]
     with recursion_room():
         fspas.append((one_atom(deep, number), [{"x": 0.5}]))
-    programs = Programs(tmp_path, compiler, [fspa for fspa, _ in fspas])
-    for place, (fspa, samples) in enumerate(fspas):
-        found = programs.run(place, trace_of(samples, [signal.name for signal in fspa.signals]))
-        status, out, err = expected(programs.fspas[place], samples)
+    programs = programs_of(tmp_path, compiler, [fspa for fspa, _ in fspas])
+    traces = [trace_of(samples, [signal.name for signal in fspa.signals]) for fspa, samples in fspas]
+    for fspa, (_, samples), found in zip(programs.fspas, fspas, programs.run(*enumerate(traces)), strict=True):
+        status, out, err = expected(fspa, samples)
         # The program reads cells, and says what stood there.
         err = err.replace("step 3: the signal `open` is 0.5, not", "line 4: the signal `open` is `0.5`, not")
         err = err.replace("the signal `x` is inf, not a finite number", "no finite number for the signal `x`")
@@ -197,15 +186,15 @@ NAMES = (
 @given(data=st.data())
 def test_hostile_texts_are_no_code(compiler: str, tmp_path: Path, data: st.DataObject) -> None:
     fspas = [data.draw(hostile_automata()) for _ in range(6)]
-    programs = Programs(tmp_path, compiler, fspas)
+    programs = programs_of(tmp_path, compiler, fspas)
+    # A program is sure to find a column whose name is its own first signal's.
+    assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(6)))} == {1}
     for number, fspa in enumerate(programs.fspas):
-        # The program is sure to find a column whose name is its own first signal's.
-        assert programs.run(number, "nothing\n1\n")[0] == 1
         if fspa.signals[0].name.strip() and "\0" not in fspa.signals[0].name:
             samples = [{fspa.signals[0].name: value, "health": 1.0} for value in (-1.0, 0.0, 1.0)]
             trace = '"{}",health\n'.format(fspa.signals[0].name.replace('"', '""'))
             trace += "".join(f"{sample[fspa.signals[0].name]},1.0\n" for sample in samples)
-            found, wanted = programs.run(number, trace), expected(fspa, samples)
+            (found,), wanted = programs.run((number, trace)), expected(fspa, samples)
             assert found[0] == wanted[0]
             assert found[1] == wanted[1]
             assert found[2] == wanted[2].replace("\0", "")
@@ -224,10 +213,10 @@ def test_hostile_names_stay_apart(compiler: str, tmp_path: Path) -> None:
         params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
         atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
     )
-    programs = Programs(tmp_path, compiler, [fspa])
+    programs = programs_of(tmp_path, compiler, [fspa])
     samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
     check(programs, [samples])
-    _, out, _ = programs.run(0, trace_of(samples, names))
+    ((_, out, _),) = programs.run((0, trace_of(samples, names)))
     assert [row["limiting"] for row in csv.DictReader(io.StringIO(out, newline=""))] == names
 
 
@@ -255,7 +244,7 @@ def test_names_of_macros(compiler: str, tmp_path: Path) -> None:
     assert not [name for name in names if f"double {name};" in text]
     (tmp_path / "all_monitor.h").write_text(text)
     for options in ((), ("-DTLTL_MAIN",), ("-DTLTL_MAIN", "-std=gnu++17" if compiler == "g++" else "-std=gnu17")):
-        compiled(tmp_path, compiler, "all_monitor.h", tmp_path / "all", "-c", *options)
+        compiled(tmp_path, compiler, "all_monitor.h", tmp_path / "all", "-fsyntax-only", *options)
 
 
 def test_names_of_headers_do_not_clash() -> None:

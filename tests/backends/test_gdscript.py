@@ -23,8 +23,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.backends.monitors import Outcome, Sample, batches, expected, one_atom, trace_of
+from tests.backends.monitors import Programs, Sample, batches, expected, one_atom, trace_of
 from tests.backends.strategies import HOSTILE, hostile_automata
+from tests.conformance.runner import Outcome
+from tests.conformance.runners.gdscript3 import RUNNERS
 from tests.fixtures import cover_and_hide
 from tests.monitor.strategies import PARAMS, SIGNALS, atom_traces, automata, expressions, numbers
 from tests.waiting import HANG_S
@@ -78,10 +80,14 @@ def comparable(text: str) -> str:
     return text.replace("\0", "")
 
 
-def check(folder: Path, fspa: Fspa, samples: Sequence[Sample]) -> None:
-    trace = trace_of(samples, [signal.name for signal in fspa.signals])
-    found, wanted = monitored(folder, fspa, trace), expected(fspa, samples)
-    assert (*found[:2], comparable(found[2])) == (*wanted[:2], comparable(wanted[2])), trace
+def check(folder: Path, *cases: tuple[Fspa, Sequence[Sample]]) -> None:
+    """Automata, run by one engine over a trace each."""
+    programs = Programs(*RUNNERS, folder, [fspa for fspa, _ in cases])
+    traces = [trace_of(samples, [signal.name for signal in fspa.signals]) for fspa, samples in cases]
+    outcomes = programs.run(*enumerate(traces))
+    for fspa, (_, samples), trace, found in zip(programs.fspas, cases, traces, outcomes, strict=True):
+        wanted = expected(fspa, samples)
+        assert (*found[:2], comparable(found[2])) == (*wanted[:2], comparable(wanted[2])), trace
 
 
 # --- equality -------------------------------------------------------------------------------------
@@ -91,11 +97,13 @@ def check(folder: Path, fspa: Fspa, samples: Sequence[Sample]) -> None:
 @batches
 @given(data=st.data())
 def test_the_same_steps_on_random_automata(tmp_path: Path, data: st.DataObject) -> None:
+    cases = []
     for _ in range(6):
         fspa = data.draw(automata())
         names = [atom.name for atom in fspa.atoms]
         rows = data.draw(atom_traces(fspa, max_size=12))
-        check(tmp_path, fspa, [dict(zip(names, row, strict=True)) for row in rows])
+        cases.append((fspa, [dict(zip(names, row, strict=True)) for row in rows]))
+    check(tmp_path, *cases)
 
 
 @runs
@@ -103,6 +111,7 @@ def test_the_same_steps_on_random_automata(tmp_path: Path, data: st.DataObject) 
 @given(data=st.data())
 def test_the_same_values_of_atoms(tmp_path: Path, data: st.DataObject) -> None:
     """Values, clamped values with their notices, and failures."""
+    cases = []
     whole = build(spec_from_formula(f.eventually(f.and_(f.atom("a"), f.atom("b")))))
     for _ in range(14):
         params = data.draw(st.tuples(numbers, numbers))
@@ -115,7 +124,8 @@ def test_the_same_values_of_atoms(tmp_path: Path, data: st.DataObject) -> None:
             atoms=(spec.Atom("a", data.draw(expressions())), spec.Atom("b", Signal(SIGNALS[0]))),
         )
         rows = data.draw(st.lists(st.tuples(numbers, numbers), min_size=3, max_size=3))
-        check(tmp_path, fspa, [dict(zip(SIGNALS, row, strict=True)) for row in rows])
+        cases.append((fspa, [dict(zip(SIGNALS, row, strict=True)) for row in rows]))
+    check(tmp_path, *cases)
 
 
 NUMBER = spec.Signal("x", "number", None, None)
@@ -160,8 +170,7 @@ def test_the_same_on_special_cases(tmp_path: Path) -> None:
     ]
     with recursion_room():
         fspas.append((one_atom(deep, NUMBER), [{"x": 0.5}]))
-    for fspa, samples in fspas:
-        check(tmp_path, fspa, samples)
+    check(tmp_path, *fspas)
 
 
 # --- numbers --------------------------------------------------------------------------------------
@@ -177,7 +186,7 @@ def _values() -> list[float]:
 @runs
 def test_numbers_are_read_and_printed_exactly(tmp_path: Path) -> None:
     samples: list[Sample] = [{"x": -value} for value in _values()]
-    check(tmp_path, one_atom(X, replace(NUMBER, low=-1.0, high=0.0)), samples)
+    check(tmp_path, (one_atom(X, replace(NUMBER, low=-1.0, high=0.0)), samples))
 
 
 def half_way(odd: int, power: int) -> list[str]:
@@ -264,12 +273,18 @@ def test_hostile_names_stay_apart(tmp_path: Path) -> None:
 @batches
 @given(data=st.data())
 def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
-    for _ in range(5):
-        fspa = data.draw(hostile_automata())
-        signal = fspa.signals[0].name
-        assert monitored(tmp_path, fspa, "nothing\n1\n")[0] == 1
-        if signal == signal.strip() and "\0" not in signal:
-            check(tmp_path, fspa, [{signal: value, "health": 1.0} for value in (-1.0, 0.0, 1.0)])
+    fspas = [data.draw(hostile_automata()) for _ in range(5)]
+    programs = Programs(*RUNNERS, tmp_path, fspas)
+    assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(5)))} == {1}
+    names = [fspa.signals[0].name for fspa in fspas]
+    check(
+        tmp_path,
+        *(
+            (fspa, [{name: value, "health": 1.0} for value in (-1.0, 0.0, 1.0)])
+            for fspa, name in zip(fspas, names, strict=True)
+            if name == name.strip() and "\0" not in name
+        ),
+    )
 
 
 def test_capitals_are_left_to_the_engine() -> None:

@@ -7,17 +7,17 @@ import io
 import re
 import shutil
 import subprocess
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.backends.monitors import Outcome, batches, expected, one_atom, trace_of
+from tests.backends.monitors import Programs, batches, expected, one_atom, trace_of
 from tests.backends.strategies import hostile_automata
 from tests.backends.test_c import NAMES
-from tests.conformance.runners.rust import STRICT, linked
+from tests.conformance.runner import Outcome
+from tests.conformance.runners.rust import RUNNERS, STRICT
 from tests.fixtures import cover_and_hide
 from tests.waiting import HANG_S
 from tltlc.automaton.build import build, spec_from_formula
@@ -51,33 +51,19 @@ def ran(program: Path, *words: str, stdin: bytes = b"") -> Outcome:
     return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 
-class Programs:
-    """The programs of several automata, compiled as one."""
-
-    def __init__(self, folder: Path, fspas: Sequence[Fspa]) -> None:
-        self.fspas = [replace(fspa, name=f"spec{number}") for number, fspa in enumerate(fspas)]
-        self._folder = folder
-        for fspa in self.fspas:
-            written(fspa, folder)
-        linked(folder, [fspa.name for fspa in self.fspas])
-
-    def run(self, number: int, trace: str) -> Outcome:
-        return ran(self._folder / "monitors", f"spec{number}", "--full", "-", stdin=trace.encode())
-
-
 # --- names and texts ------------------------------------------------------------------------------
 
 
 @batches
 @given(data=st.data())
 def test_hostile_texts_are_no_code(tmp_path: Path, data: st.DataObject) -> None:
-    programs = Programs(tmp_path, [data.draw(hostile_automata()) for _ in range(6)])
+    programs = Programs(*RUNNERS, tmp_path, [data.draw(hostile_automata()) for _ in range(6)])
+    assert {status for status, _, _ in programs.run(*((number, "nothing\n1\n") for number in range(6)))} == {1}
     for number, fspa in enumerate(programs.fspas):
-        assert programs.run(number, "nothing\n1\n")[0] == 1
         name = fspa.signals[0].name
         if name == name.strip() and "\0" not in name:
             samples = [{name: value, "health": 1.0} for value in (-1.0, 0.0, 1.0)]
-            assert programs.run(number, trace_of(samples, [name, "health"])) == expected(fspa, samples)
+            assert programs.run((number, trace_of(samples, [name, "health"]))) == [expected(fspa, samples)]
 
 
 def test_hostile_names_stay_apart(tmp_path: Path) -> None:
@@ -92,9 +78,9 @@ def test_hostile_names_stay_apart(tmp_path: Path) -> None:
         params=tuple(spec.Param(name, "number", 0.0, None, None, name) for name in names),
         atoms=tuple(spec.Atom(name, Op("+", (Signal(name), Const(0.0))), name) for name in names),
     )
-    programs = Programs(tmp_path, [fspa])
+    programs = Programs(*RUNNERS, tmp_path, [fspa])
     samples = [{other: -0.25 if other == name else 0.5 for other in names} for name in names]
-    _, out, err = programs.run(0, trace_of(samples, names))
+    ((_, out, err),) = programs.run((0, trace_of(samples, names)))
     assert [row["limiting"] for row in csv.DictReader(io.StringIO(out, newline=""))] == names, err
 
 

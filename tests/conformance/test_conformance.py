@@ -9,11 +9,13 @@ from typing import Any
 
 import pytest
 
-from tests.conformance.runner import Runner, build, problems, runners, write
+from tests.conformance.runner import Outcome, Runner, build, built, problems, ran, runners, write
 from tltlc.conformance.case import Case
 from tltlc.conformance.corpus import CASES, is_exact
 from tltlc.conformance.expected import Expected, expected
-from tltlc.record import replace
+
+ALONE = ("by_zero", "exclusive_many", "names_of_code")
+"""Cases whose programs are built, and started for each trace, as a person does it; ``test_programs`` has one more."""
 
 
 @cache
@@ -22,44 +24,41 @@ def made(name: str) -> tuple[Case, tuple[Expected, ...]]:
     return case, tuple(expected(case.fspa, trace) for trace in case.traces)
 
 
-@pytest.fixture(scope="session")
-def folders() -> dict[str, Path]:
-    """Per runner a folder; one that builds all cases at once has done so when it is in here."""
-    return {}
-
-
-def _folder(runner: Runner, name: str, folders: dict[str, Path], factory: pytest.TempPathFactory) -> Path:
-    """The folder in which the monitor of a case lies, built."""
-    folder = folders.get(runner.name)
-    if folder is None:
-        folder = folders[runner.name] = factory.mktemp("monitors")
-        if runner.build_all is not None:
-            for each in CASES:
-                write(runner, made(each)[0], folder)
-            runner.build_all(folder, tuple(CASES))
-    if runner.build_all is None:
-        write(runner, made(name)[0], folder)
-        build(runner, name, folder)
-    return folder
-
-
-def _runs() -> Iterator[Any]:
-    """Each runner with each case; one that cannot be used here is skipped once, and says why."""
+def _usable() -> Iterator[Any]:
+    """Each runner; one that cannot be used here is skipped, and says why."""
     for runner in runners():
         reason = runner.missing()
-        if reason is None:
-            yield from (pytest.param(runner, name, id=f"{runner.name}-{name}") for name in CASES)
-        else:
-            yield pytest.param(runner, "", id=runner.name, marks=pytest.mark.skip(reason=reason))
+        marks = [pytest.mark.skip(reason=reason)] if reason else []
+        yield pytest.param(runner, id=runner.name, marks=marks)
 
 
-@pytest.mark.parametrize(("runner", "name"), list(_runs()))
-def test_conformance(
-    runner: Runner, name: str, folders: dict[str, Path], tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    case, outcomes = made(name)
-    runner = replace(runner, tolerance=0.0) if is_exact(case.fspa) else runner
-    folder = _folder(runner, name, folders, tmp_path_factory)
-    for number, (trace, outcome) in enumerate(zip(case.traces, outcomes, strict=True), start=1):
-        found = list(problems(runner, name, folder, trace, outcome))
-        assert not found, f"{name}.{number}.csv\n" + "\n".join(found[:10])
+def _differences(runner: Runner, name: str, outcomes: list[Outcome]) -> Iterator[str]:
+    """What is otherwise than expected in the outcomes of all traces of a case."""
+    case, wanted = made(name)
+    tolerance = 0.0 if is_exact(case.fspa) else runner.tolerance
+    for number, (outcome, right) in enumerate(zip(outcomes, wanted, strict=True), start=1):
+        found = list(problems(outcome, right, tolerance))
+        if found:
+            yield f"{runner.name}, {name}.{number}.csv\n" + "\n".join(found[:10])
+
+
+@pytest.mark.parametrize("runner", list(_usable()))
+def test_conformance(runner: Runner, tmp_path: Path) -> None:
+    """All cases, by one program."""
+    cases = {name: made(name)[0] for name in CASES}
+    runs = [(name, trace) for name, case in cases.items() for trace in case.traces]
+    outcomes = iter(built(runner, [case.fspa for case in cases.values()], tmp_path)(runs))
+    found: list[str] = []
+    for name, case in cases.items():
+        found += _differences(runner, name, [next(outcomes) for _ in case.traces])
+    assert not found, f"{len(found)} of {len(runs)} traces differ\n" + "\n".join(found)
+
+
+@pytest.mark.parametrize("name", ALONE)
+@pytest.mark.parametrize("runner", list(_usable()))
+def test_programs_alone(runner: Runner, name: str, tmp_path: Path) -> None:
+    case, _ = made(name)
+    write(runner, case.fspa, tmp_path)
+    build(runner, name, tmp_path)
+    found = list(_differences(runner, name, [ran(runner, name, tmp_path, trace) for trace in case.traces]))
+    assert not found, "\n".join(found)

@@ -82,7 +82,7 @@ def test_a_folder_holds_a_case_and_the_index_tells_of_all() -> None:
 
 def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     """As its page says, with a monitor that is right, and with one that is not."""
-    write_files(tmp_path / "corpus", files())
+    write_files(tmp_path / "corpus", corpus())
     names = ("cells", "functions", "ranges", "trace_lines")
     for name in names:
         fspa = CASES[name]().fspa
@@ -93,6 +93,7 @@ def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (0, f"{count} traces, 0 of them not as expected\n"), done.stderr
     monitor = tmp_path / "build" / "ranges_monitor.py"
     monitor.write_text(monitor.read_text().replace("reward", "rewards"))
+    command[3], count = "ranges,cells", sum(len(CASES[name]().traces) for name in ("ranges", "cells"))
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 1
     assert done.stdout.endswith(f"{count} traces, 1 of them not as expected\n")
@@ -109,7 +110,7 @@ def test_the_corpus_checks_monitors_by_itself(tmp_path: Path) -> None:
     ],
 )
 def test_what_the_check_refuses(words: list[str], message: str, tmp_path: Path) -> None:
-    write_files(tmp_path, {name: text for name, text in files().items() if name in ("check.py", "index.json")})
+    write_files(tmp_path, {name: corpus()[name] for name in ("check.py", "index.json")})
     command = [sys.executable, "check.py", *words]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (2, "")

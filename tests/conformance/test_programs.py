@@ -8,14 +8,14 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from threading import Timer
 
 import pytest
 
-from tests.backends.monitors import FAR, HEAD, Outcome, expected, trace_of
-from tests.conformance.runner import LONGEST_RUN_S, Runner, build, runners, write
+from tests.backends.monitors import FAR, HEAD, expected, trace_of
+from tests.conformance.runner import LONGEST_RUN_S, Outcome, Runner, build, built, runners, write
 from tltlc.conformance.case import Case
 from tltlc.conformance.corpus import CASES
 from tltlc.limits import TRACE_LINE
@@ -70,6 +70,7 @@ ERRORS = [
 USAGE = [[], ["--full"], ["-", "--full"], ["--full", "a", "b"], ["--what", "a"]]
 
 Run = Callable[..., Outcome]
+RunAll = Callable[[Sequence[bytes]], list[Outcome]]
 Program = tuple[Runner, Path, list[str]]
 
 
@@ -89,17 +90,31 @@ UNAWARE = {"gdscript", "gdscript3"}
 REOPENING = {"csharp", "javascript", "rust"}
 
 
+# Their programs read many traces in one process.
+SLOW_TO_START = ("gdscript3", "node")
+
+
+@pytest.fixture(scope="session")
+def programs() -> dict[str, Program]:
+    """Those that have been built, by the name of the runner: in a random order, its tests do not follow one another."""
+    return {}
+
+
 @pytest.fixture(scope="session", params=USABLE, ids=lambda runner: runner.name)
-def program(request: pytest.FixtureRequest, case: Case, tmp_path_factory: pytest.TempPathFactory) -> Program:
+def program(
+    request: pytest.FixtureRequest,
+    case: Case,
+    programs: dict[str, Program],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Program:
     """The program of a language: the runner, the folder in which it lies, and how it is started there."""
     runner: Runner = request.param
-    folder = tmp_path_factory.mktemp(runner.name)
-    write(runner, case, folder)
-    if runner.build_all is None:
+    if runner.name not in programs:
+        folder = tmp_path_factory.mktemp(runner.name)
+        write(runner, case.fspa, folder)
         build(runner, NAME, folder)
-    else:
-        runner.build_all(folder, (NAME,))
-    return runner, folder, [word.format(name=NAME) for word in runner.run]
+        programs[runner.name] = runner, folder, [word.format(name=NAME) for word in runner.run]
+    return programs[runner.name]
 
 
 @pytest.fixture(scope="session")
@@ -120,6 +135,16 @@ def run(program: Program) -> Run:
     return run
 
 
+@pytest.fixture
+def outcomes(program: Program, run: Run, case: Case, tmp_path: Path) -> RunAll:
+    """Runs the program of a language on many traces, with ``--full``."""
+    runner, _, _ = program
+    if runner.name in SLOW_TO_START:
+        together = built(runner, [case.fspa], tmp_path)
+        return lambda traces: together([(NAME, trace) for trace in traces])
+    return lambda traces: [run("--full", "trace.csv", trace=trace) for trace in traces]
+
+
 def test_files_and_standard_input(run: Run, case: Case) -> None:
     samples = [{**FAR, "distance(s1)": 0.3}, {**FAR, "distance(s2)": 7.7}, {**FAR, "health": -1.0}]
     status, out, err = expected(case.fspa, samples)
@@ -130,17 +155,18 @@ def test_files_and_standard_input(run: Run, case: Case) -> None:
     assert run("-", trace=trace) == (status, short, err)
 
 
-@pytest.mark.parametrize("trace", WAYS, ids=range(len(WAYS)))
-def test_ways_to_write_a_trace(run: Run, case: Case, trace: bytes) -> None:
-    assert run("--full", "trace.csv", trace=trace) == expected(case.fspa, [FAR])
+def test_ways_to_write_a_trace(outcomes: RunAll, case: Case) -> None:
+    wanted = expected(case.fspa, [FAR])
+    for trace, outcome in zip(WAYS, outcomes(WAYS), strict=True):
+        assert outcome == wanted, trace[:200]
 
 
-@pytest.mark.parametrize(("trace", "message"), ERRORS, ids=range(len(ERRORS)))
-def test_traces_that_are_refused(run: Run, trace: str, message: str) -> None:
-    status, out, err = run("trace.csv", trace=trace)
-    assert (status, out) == (1, "")
-    begins, _, holds = f"error: {message}".partition("…")
-    assert err.startswith(begins) and holds in err and err.count("\n") == 1
+def test_traces_that_are_refused(outcomes: RunAll) -> None:
+    traces = [trace.encode() for trace, _ in ERRORS]
+    for trace, (_, message), (status, out, err) in zip(traces, ERRORS, outcomes(traces), strict=True):
+        begins, _, holds = f"error: {message}".partition("…")
+        assert (status, out) == (1, ""), trace[:200]
+        assert err.startswith(begins) and holds in err and err.count("\n") == 1, (trace[:200], err[:200])
 
 
 def test_rows_come_before_an_error(run: Run) -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
-from tests.conformance.runner import Runner, problems, runners
+from tests.conformance.runner import Runner, built, problems, ran, runners
+from tltlc.automaton.build import build, spec_from_formula
 from tltlc.conformance.expected import COLUMNS, Expected, Refusal
+from tltlc.logic import formula as f
 
 RIGHT = ("1", "0", "pending", "false", "false", "0.10000000000000001", "0", "0.5", "a, b")
 HEADER = ",".join(COLUMNS)
@@ -21,8 +24,8 @@ def found(out: str, err: str, status: int, expected: Expected, folder: Path, tol
     """The problems with a program that says this."""
     program = f"import sys; sys.stdout.write({out!r}); sys.stderr.write({err!r}); sys.exit({status})"
     (folder / "spec.py").write_text(program)
-    runner = Runner(name="it", target="python", run=(sys.executable, "{name}.py"), tolerance=tolerance)
-    return list(problems(runner, "spec", folder, b"", expected))
+    runner = Runner(name="it", target="python", run=(sys.executable, "{name}.py"))
+    return list(problems(ran(runner, "spec", folder, b""), expected, tolerance))
 
 
 @pytest.mark.parametrize(
@@ -80,3 +83,42 @@ def test_runners_have_names_of_their_own_and_say_why_they_are_left_out() -> None
     absent = Runner(name="x", target="python", run=("x",), tools=("no-such-tool",))
     assert absent.missing() == "x: no-such-tool is not installed"
     assert "no target" in str(Runner(name="x", target="nothing", run=("x",)).missing())
+
+
+TOGETHER = """
+import sys
+for name, trace in zip(sys.argv[1::2], sys.argv[2::2]):
+    print("@@", trace)
+    print("@@", trace, file=sys.stderr)
+    print("rows of", name)
+    print(open(trace).read(), file=sys.stderr)
+    if open(trace).read() == "end":
+        sys.exit(1)
+    print("@@status", len(name), file=sys.stderr)
+sys.exit(STATUS)
+"""
+
+
+def together(folder: Path, *traces: str, status: int = 0) -> list[tuple[int, str, str]]:
+    """The outcomes of a program of two monitors, ``one`` and ``other``, that reads traces in turns."""
+
+    def build_all(folder: Path, names: Sequence[str]) -> None:
+        assert names == ["one", "other"]
+        (folder / "it.py").write_text(TOGETHER.replace("STATUS", str(status)))
+
+    runner = Runner("it", "python", run=(), build_all=build_all, run_all=(sys.executable, "it.py"))
+    fspas = [build(spec_from_formula(f.TRUE, name)) for name in ("one", "other")]
+    runs = [(fspas[number % 2].name, trace.encode()) for number, trace in enumerate(traces)]
+    return built(runner, fspas, folder)(runs)
+
+
+def test_outcomes_of_many_are_told_apart(tmp_path: Path) -> None:
+    wanted = [(3, "rows of one\n", "a\n"), (5, "rows of other\n", "b\n"), (3, "rows of one\n", "c\n")]
+    assert together(tmp_path, "a", "b", "c") == wanted
+
+
+def test_a_program_of_many_that_ends_is_told_by_the_monitor_at_which_it_did(tmp_path: Path) -> None:
+    with pytest.raises(AssertionError, match=r"^it, other, 1.csv: the program ended within it: end\n"):
+        together(tmp_path, "a", "end", "c")
+    with pytest.raises(AssertionError):
+        together(tmp_path, "a", status=1)

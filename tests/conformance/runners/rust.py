@@ -1,36 +1,47 @@
-"""Rust, edition 2021, with warnings as errors: one crate of all monitors, since compiler starts are slow."""
+"""Rust, edition 2021, with warnings as errors."""
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.conformance.runner import LONGEST_BUILD_S, Runner
+from tests.conformance.runner import Runner, execute
 
 STRICT = ("--edition", "2021", "-D", "warnings", "-C", "debuginfo=0", "--cfg", "tltl_main")
 
+_DRIVER = """
+fn main() {
+    let mut words = std::env::args_os().skip(1);
+    while let (Some(name), Some(trace)) = (words.next(), words.next()) {
+        println!("@@ {}", trace.to_string_lossy());
+        eprintln!("@@ {}", trace.to_string_lossy());
+        let rest = vec!["--full".into(), trace];
+        let status = match name.to_str() {
+@@cases@@
+            _ => 70,
+        };
+        eprintln!("@@status {status}");
+    }
+}
+"""
+
 
 def linked(folder: Path, names: Sequence[str]) -> None:
-    """The program ``monitors``, whose first argument says which monitor runs."""
-    lines = ["#![allow(non_snake_case)]", "", *(f"mod {name}_monitor;" for name in names), ""]
-    lines += ["fn main() -> std::process::ExitCode {", "    let mut words = std::env::args_os().skip(1);"]
-    lines += ["    let name = words.next().unwrap_or_default();", "    let rest = words.collect();"]
-    lines += ["    std::process::ExitCode::from(match name.to_str() {"]
-    lines += [f'        Some("{name}") => {name}_monitor::program::run(rest),' for name in names]
-    lines += ["        _ => 70,", "    })", "}", ""]
-    (folder / "monitors.rs").write_text("\n".join(lines))
-    command = ["rustc", *STRICT, "monitors.rs"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, timeout=LONGEST_BUILD_S)
-    assert done.returncode == 0, (done.stdout + done.stderr).decode(errors="replace")
+    """The program ``monitors``, one crate of all monitors."""
+    lines = ["#![allow(non_snake_case)]", "", *(f"mod {name}_monitor;" for name in names)]
+    cases = [f'            Some("{name}") => {name}_monitor::program::run(rest),' for name in names]
+    (folder / "monitors.rs").write_text("\n".join(lines) + "\n" + _DRIVER.replace("@@cases@@", "\n".join(cases)))
+    execute(["rustc", *STRICT, "-C", "codegen-units=1", "monitors.rs"], folder)
 
 
 RUNNERS = (
     Runner(
         name="rust",
         target="rust",
+        build=("rustc", *STRICT, "{name}_monitor.rs"),
+        run=("./{name}_monitor",),
         build_all=linked,
-        run=("./monitors", "{name}"),
+        run_all=("./monitors",),
         tools=("rustc",),
     ),
 )
