@@ -25,6 +25,6 @@ def at_top(module: Module, line: str) -> Edit:
 
 
 def _line_end(source: SourceFile, offset: int) -> int:
-    """The offset behind the last character of the line of another."""
+    """Return the offset at which the line of ``offset`` ends."""
     number, column = source.position(offset)
     return offset - column + 1 + len(source.line(number))
