@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -78,23 +78,30 @@ def test_only_files_are_replaced_by_what_is_written(tmp_path: Path) -> None:
         assert not was_read(os.devnull)
 
 
-def test_folders_of_any_depth_are_walked(tmp_path: Path) -> None:
+@pytest.fixture
+def deep(tmp_path: Path) -> Iterator[Path]:
+    """A folder with a thousand folders in each other, more than Python's stack has room for."""
     before = Path.cwd()
     os.chdir(tmp_path)
     try:
         for _ in range(1200):
             Path("d").mkdir()
             os.chdir("d")
+        os.chdir(before)
+        yield tmp_path
     finally:
         os.chdir(before)
-    (tmp_path / "b").mkdir()
-    (tmp_path / "b" / "file").touch()
-    (tmp_path / "link").symlink_to(tmp_path)
+        # Nothing of Python's removes it.
+        subprocess.run(["rm", "-rf", str(tmp_path / "d")], check=False)
+
+
+def test_folders_of_any_depth_are_walked(deep: Path) -> None:
+    (deep / "b").mkdir()
+    (deep / "b" / "file").touch()
+    (deep / "link").symlink_to(deep)
     refused: list[OSError] = []
-    walked = list(walk(tmp_path, refused.append))
-    assert len(walked) > 1000
-    assert (str(tmp_path), ["b", "d", "link"], []) == (walked[0][0], sorted(walked[0][1]), walked[0][2])
-    assert (str(tmp_path / "b"), [], ["file"]) in walked
+    walked = list(walk(deep, refused.append))
+    assert (str(deep), ["b", "d", "link"], []) == (walked[0][0], sorted(walked[0][1]), walked[0][2])
+    assert (str(deep / "b"), [], ["file"]) in walked
     # Where a path may have some thousand characters only, the last folders are refused.
-    assert len(refused) <= 1
-    subprocess.run(["rm", "-rf", str(tmp_path / "d")], check=False)
+    assert len(walked) > 1000 or len(refused) == 1

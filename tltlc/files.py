@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from typing import Final, Union
+from typing import BinaryIO, Final, Union
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError
 from tltlc.limits import ARTEFACT, SOURCE
@@ -26,12 +26,12 @@ Stamp = Union[tuple[int, ...], None]
 class Notes(dict[str, Stamp]):
     """The paths that were looked for or read, with their states before that.
 
-    ``read`` are those that were read, by the number that the system has for the file; a device or a pipe has none.
+    ``read`` identifies the regular files that were read, by their device and their number there.
     """
 
     def __init__(self) -> None:
         super().__init__()
-        self.read: dict[tuple[int, ...], set[str]] = {}
+        self.read: set[tuple[int, int]] = set()
 
 
 _noted: Final[list[Notes]] = []
@@ -120,22 +120,35 @@ def note(path: str | os.PathLike[str]) -> None:
 def note_read(path: str | os.PathLike[str]) -> None:
     """Tell those who asked by :func:`noted` that this file is about to be read."""
     note(path)
-    for notes in _noted:
-        name = os.fspath(path)
-        notes.read.setdefault(_number(notes[name]), set()).add(name)
+    _note_identity(path)
+
+
+def note_stream(stream: BinaryIO) -> None:
+    """Tell those who asked by :func:`noted` that a stream is about to be read, which may come from a file."""
+    with suppress(OSError, ValueError):
+        _note_identity(stream.fileno())
 
 
 def was_read(path: str | os.PathLike[str]) -> bool:
     """Whether the file at a path, under this name or another, was read since the outermost :func:`noted` began."""
-    if not _noted:
-        return False
-    number = _number(stamp(os.fspath(path)))
     # What is written to a device or a pipe replaces nothing.
-    return bool(number) and any(is_same(name, path) for name in _noted[0].read.get(number, ()))
+    return bool(_noted) and _identity(path) in _noted[0].read
 
 
-def _number(state: Stamp) -> tuple[int, ...]:
-    return (state or ())[2:]
+def _note_identity(file: str | os.PathLike[str] | int) -> None:
+    identity = _identity(file) if _noted else None
+    if identity is not None:
+        for notes in _noted:
+            notes.read.add(identity)
+
+
+def _identity(file: str | os.PathLike[str] | int) -> tuple[int, int] | None:
+    """The device of a regular file, and its number there; None for anything else."""
+    try:
+        found = os.stat(file)  # noqa: PTH116
+    except (OSError, ValueError):
+        return None
+    return (found.st_dev, found.st_ino) if stat.S_ISREG(found.st_mode) else None
 
 
 def stamp(path: str) -> Stamp:

@@ -9,7 +9,7 @@ from errno import EBADF
 from typing import TYPE_CHECKING, Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, note_read, read_bytes, reading_error
+from tltlc.files import MAX_ARTEFACT_BYTES, MAX_SOURCE_BYTES, decode, note_read, note_stream, read_bytes, reading_error
 from tltlc.source import SourceFile
 
 if TYPE_CHECKING:
@@ -52,7 +52,9 @@ def read(path: str) -> tuple[SourceFile, bool]:
     name = STDIN_NAME if path == STDIN else path
     try:
         if path == STDIN:
-            return _read_stream(standard_input(), STDIN_NAME)
+            stream = standard_input()
+            note_stream(stream)
+            return _read_stream(stream, STDIN_NAME)
         note_read(path)
         with open(path, "rb") as file:  # noqa: PTH123 (pathlib costs the start of a command 5 ms)
             return _read_stream(file, path)
@@ -70,7 +72,9 @@ def read_data(path: str, max_bytes: int) -> tuple[bytes, str]:
     """The bytes of a file or of standard input, and what messages call it; errors as of :func:`read_bytes`."""
     if path == STDIN:
         try:
-            return standard_input().read(max_bytes + 1), STDIN_NAME
+            stream = standard_input()
+            note_stream(stream)
+            return stream.read(max_bytes + 1), STDIN_NAME
         except OSError as error:
             raise input_error(STDIN_NAME, error) from None
     return read_bytes(path, path, max_bytes), path

@@ -110,6 +110,19 @@ def test_no_output_takes_the_place_of_an_input(
     assert before == {path: path.read_bytes() for path in inside.rglob("*") if path.is_file()}
 
 
+def test_standard_input_from_a_file_is_an_input(process: Callable[..., Outcome], inside: Path) -> None:
+    (inside / "a.tltl").write_text("param most in [0, 5] = 1\nsignal x in [0, 9]\nspec a = F x > most\n")
+    process("compile", inside / "a.tltl", "-o", inside, "-t", "json")
+    artefact = inside / "a.fspa.json"
+    before = artefact.read_bytes()
+    command = [sys.executable, "-m", "tltlc", "compile", "-", "-p", "most=3", "-t", "json"]
+    with artefact.open("rb") as stdin:
+        done = subprocess.run(command, stdin=stdin, capture_output=True, cwd=inside, text=True, check=False)
+    assert done.returncode == 2
+    assert "`a.fspa.json` would be written over: it is an input" in done.stderr
+    assert artefact.read_bytes() == before
+
+
 def test_an_input_that_would_not_change_may_be_written(tltlc: Callable[..., Outcome], inside: Path) -> None:
     tltlc("compile", "hide.tltl", "-t", "json")
     done = tltlc("compile", "hide.fspa.json", "-t", "json,dot")

@@ -39,8 +39,8 @@ def actions(
             kind=types.CodeActionKind.QuickFix,
             diagnostics=[remark(offer.diagnostic, document, encoding, uri_of)],
             edit=edit_of({uri: [text_edit(document.source, edit, encoding) for edit in offer.fix.edits]}),
-            # Of two readings, whoever wrote the text chooses one.
-            is_preferred=len(offer.diagnostic.fixes) == 1,
+            # Editors apply a preferred action unasked, so it must not be a guess.
+            is_preferred=offer.fix.applicability == "safe",
         )
         for offer in (*of_findings(near, document.module), *of_errors(told, document.source, errors))
     ]
