@@ -204,3 +204,11 @@ def test_a_problem_deep_inside_lets_passes_through_all_of_them() -> None:
 def test_an_unused_let_hands_its_parameters_on_whatever_they_are() -> None:
     lets = "let low(x) = d < x let never_low(x) = G !low(x) let both(x) = low(x) & F low(1 - x)"
     assert formula(f"signal d in [0, 1] {lets} spec s = F low(0.5)") == "F(d < 0.5)"
+
+
+def test_defaults_that_use_each_other_are_refused_before_they_fill_the_memory() -> None:
+    formulas = ", ".join(f"a{number + 1} = (a{number} & a{number})" for number in range(60))
+    assert codes(f"signal y: bool let p(a0 = y, {formulas}) = a0 spec s = F p") == ["TLT0315"]
+    numbers = ", ".join(f"a{number + 1} = (a{number} + a{number}) / 2" for number in range(40))
+    assert codes(f"signal x in [0, 1] predicate p(a0 = x, {numbers}) in [-1, 1] = a40 spec s = F p") == ["TLT0315"]
+    assert codes(f"signal x in [0, 1] let p(a0 = x, {numbers}) = a40 > 0 spec s = F p") == ["TLT0315"]

@@ -188,15 +188,15 @@ class Context:
         return formula
 
 
-def too_large(what: str, source: SourceFile, span: Span) -> ResolutionError:
-    """The problem of an expansion past the limit; ``what`` names the bound, let or quantifier."""
+def too_large(what: str, source: SourceFile, span: Span, most: int = LARGEST_EXPANSION) -> ResolutionError:
+    """The problem of an expansion to more than ``most`` parts; ``what`` names what expands, e.g. a bound or a let."""
     if what.startswith("the bound"):
         advice = "choose a smaller bound or a slower clock, or let a signal count the time"
     else:
         advice = "it multiplies with each use inside another: say the same with fewer of them"
     return problem(
         "TLT0315",
-        f"{what} expands to more than {LARGEST_EXPANSION:,} parts",
+        f"{what} expands to more than {most:,} parts",
         source,
         span,
         advice=advice,

@@ -150,7 +150,12 @@ def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:
         if isinstance(local, Unknown):
             values[parameter.name] = local
         elif parameter.type == "formula" or (parameter.type is None and kind_of(given, where) == "formula"):
-            values[parameter.name] = yield _formula(given, where)
+            formula = yield _formula(given, where)
+            if not env.unbounded:
+                # A default may use the parameters before it, and so double at each of them.
+                what = f"`{parameter.name}` of `{declaration.name}`"
+                env.context.checked_size(formula, what, where.scope.source, given.span)
+            values[parameter.name] = formula
         else:
             values[parameter.name] = argument_value(parameter, given, where, binding, 0)
     try:
