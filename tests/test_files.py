@@ -10,7 +10,7 @@ from typing import NoReturn
 
 import pytest
 
-from tltlc.files import exists, is_dir, is_file, noted, read_source, stamp, walk
+from tltlc.files import exists, is_dir, is_file, note_read, noted, read_source, stamp, walk, was_read
 
 
 def test_what_is_there(tmp_path: Path) -> None:
@@ -66,6 +66,16 @@ def test_notes_within_notes(tmp_path: Path) -> None:
             pass
         exists(tmp_path)
     assert [*outer] == [str(tmp_path)]
+
+
+def test_only_files_are_replaced_by_what_is_written(tmp_path: Path) -> None:
+    file = tmp_path / "a"
+    file.touch()
+    with noted():
+        note_read(file)
+        note_read(os.devnull)
+        assert was_read(file)
+        assert not was_read(os.devnull)
 
 
 def test_folders_of_any_depth_are_walked(tmp_path: Path) -> None:

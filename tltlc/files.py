@@ -126,10 +126,12 @@ def was_read(path: str | os.PathLike[str]) -> bool:
     if not _noted:
         return False
     now, notes = stamp(os.fspath(path)), _noted[0]
-    if now is None:
+    number = (now or ())[2:]
+    # A device or a pipe has none: what is written to it replaces nothing.
+    if not number:
         return False
-    # The number of the file comes first: to compare paths takes calls of the system.
-    return any((notes[name] or ())[2:] == now[2:] and is_same(name, path) for name in notes.read)
+    # The number comes first: to compare paths takes calls of the system.
+    return any((notes[name] or ())[2:] == number and is_same(name, path) for name in notes.read)
 
 
 def stamp(path: str) -> Stamp:

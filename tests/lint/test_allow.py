@@ -31,6 +31,9 @@ BEFORE = "signal seen: bool\n"
         "        then (seen implies heard)  // tltlc: allow TLT0412\n}",
         "signal heard: bool\nspec go {\n    limit 9 steps\n    reach seen\n        then (seen implies heard)\n"
         "}  // tltlc: allow TLT0412",
+        # A rule whose findings are errors can be silenced; the compiler cannot.
+        "signal x in [0, 50]\npredicate never in [-1, 0] = -x / 50\n"
+        "spec go {\n    limit 9 steps\n    reach never or seen  // tltlc: allow TLT0416\n}",
         # Empty lines do not matter.
         "signal heard: bool\n// tltlc: allow TLT0419\n\nspec hide { avoid seen or heard }",
     ],

@@ -124,12 +124,18 @@ MEANT = {
     "reach at": [],
     "reach a and then b": ["reach a then b"],
     "keep a and then b": [],
+    "require always (a and then b)": [],
+    "reach a or then b": [],
+    "reach a until then b": [],
     "keep a not b": ["keep a and not b"],
     "keep a and b not c": ["keep a and b and not c"],
     "keep a or b not c": [],
     "keep a not b or c": [],
     "reach a or b next c": ["reach a or b then c"],
     "keep a and keep b": ["keep a keep b"],
+    "require always a and reach b": [],
+    "require not a and reach b": [],
+    "keep all x in (key, chest): at(x) and reach a": [],
     "keep coins is more than 3": ["keep coins > 3"],
 }  # fmt: skip
 """Mistakes in a clause, and what the fixes make of it that leave no error; none where it is not clear what is meant."""

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
-from tltlc.grammar.clear import TEMPORAL, UNCLEAR, has, is_of_one_step
+from tltlc.grammar.clear import QUANTIFIERS, TEMPORAL, UNCLEAR, has, is_of_one_step
 from tltlc.grammar.english import conditional
 from tltlc.grammar.lexer import BAD, END, Token
-from tltlc.grammar.place import INFIX, KEYWORDS, NOUNS, OPENING, UNTILS, Place, shown
+from tltlc.grammar.place import BEFORE_ONE, INFIX, KEYWORDS, NOUNS, OPENING, UNTILS, Place, shown
 from tltlc.grammar.rewording import formula_start, formula_stop, operand, reworded, span_of, written
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, DECLARATIONS, JUDGE, OPERATORS, SYNONYMS, TEST_ITEMS, UNITS_ELSEWHERE, closest
@@ -137,7 +137,8 @@ def joined_clauses(place: Place) -> Diagnostic | None:
     if place.start != "clause" or word not in CLAUSES or before is None or before.type != "AND" or place.open_brackets:
         return None
     title, span = f"clauses are not joined by {shown(before)}", span_of([before, place.found])
-    if has(place, 1, place.stop.index, UNCLEAR | {"OR"}):
+    # `always a and reach b` may mean `always (a and eventually b)`, and a quantifier reaches over the `and`.
+    if has(place, 1, place.stop.index, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"}):
         return place.error("TLT0101", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
     return place.error("TLT0101", title, f"write `{word}` alone: all clauses count", span=span, write=word)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.clear import clause_asked
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
 from tltlc.grammar.place import (
@@ -132,8 +133,9 @@ def doubled(place: Place) -> Diagnostic | None:
         return None
     title = f"{shown(before)} and {shown(found)} stand side by side"
     word = found.text if (before.type, found.type) == ("AND", "THEN") else before.text
-    # `keep a then b` asks for `b` after the last step.
-    is_order = found.type == "THEN" and place.tokens[0].text != "keep"
+    # `keep a then b` asks for `b` after the last step, and `a or then b` may be about an order or a choice.
+    is_order = found.type == "THEN" and before.type in ("AND", "IMPLIES")
+    is_order = is_order and clause_asked(place, place.stop.index) != "keep"
     write = word if found.type == before.type or is_order else None
     help_ = f"write `{write}` alone" if write else "leave one of the two out"
     return place.error("TLT0101", title, help_, span=span_of([before, found]), write=write)

@@ -17,7 +17,7 @@ def unsilenced(modules: Iterable[Module], found: Iterable[Diagnostic]) -> tuple[
     if not said:
         return said
     comments = Silencing(modules)
-    return tuple(one for one in said if not comments.silences(one))
+    return tuple(one for one in said if one.severity == "error" or not comments.silences(one))
 
 
 class Silencing:
@@ -39,9 +39,7 @@ class Silencing:
         return file.allowed if file else ()
 
     def silences(self, diagnostic: Diagnostic) -> bool:
-        """Whether a comment allows a diagnostic, which is no error: each one that does has then silenced something."""
-        if diagnostic.severity == "error":
-            return False
+        """Whether a comment allows a diagnostic: each one that does has then silenced something."""
         label = diagnostic.labels[0] if diagnostic.labels else None
         file = self._files.get(label.source) if label else None
         return label is not None and file is not None and file.silences(diagnostic.code, label.span.start)

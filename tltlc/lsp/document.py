@@ -10,11 +10,10 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.files import Stamp, noted, stamp, unsaved
 from tltlc.grammar.lexer import Token, Tokens, tokenize
 from tltlc.grammar.parser import parse
+from tltlc.grammar.silencing import unsilenced
 from tltlc.grammar.tree import Module
-from tltlc.lint.allow import CODE, silenced
 from tltlc.lint.rule import Finding
 from tltlc.lint.run import levelled
-from tltlc.lint.view import View
 from tltlc.lsp.names import Occurrence, occurrences
 from tltlc.lsp.paths import path_of
 from tltlc.lsp.unread import unread
@@ -86,9 +85,8 @@ class Document:
             missing = unread(self.module, self.tokens)
             return (*self._parsed[1], *(each for each in errors if not missing.may_mend(each)))
         found = self.resolution
-        view = View(self.module, found.env, found.modules, (), found.diagnostics)
-        left = silenced(view, [Finding(each) for each in found.diagnostics])
-        kept = levelled([each for each in left if each.diagnostic.code != CODE], self.project.lint)
+        left = unsilenced((loaded.module for loaded in found.modules), found.diagnostics)
+        kept = levelled(map(Finding, left), self.project.lint)
         return tuple(each.diagnostic for each in kept)
 
     @property

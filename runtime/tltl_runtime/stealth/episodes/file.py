@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Mapping
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -80,7 +80,7 @@ def file_stem(episode: Episode) -> str:
     return f"{episode.level.name}-{episode.level.variant}-{episode.seed}"
 
 
-def new_path(folder: Path, stem: str, content: bytes | None = None, pictures: Iterable[str] = ()) -> Path:
+def new_path(folder: Path, stem: str, content: bytes | None = None, pictures: Collection[str] = ()) -> Path:
     """Return a path for an episode that overwrites nothing: ``STEM.episode.npz``, else ``STEM-2`` and so on.
 
     ``pictures`` are the endings of files that are written beside the episode, such as ``.png``.  A file that holds
@@ -93,7 +93,7 @@ def new_path(folder: Path, stem: str, content: bytes | None = None, pictures: It
     return folder / f"{name}{SUFFIX}"
 
 
-def _is_free(folder: Path, name: str, content: bytes | None, pictures: Iterable[str]) -> bool:
+def _is_free(folder: Path, name: str, content: bytes | None, pictures: Collection[str]) -> bool:
     path = folder / f"{name}{SUFFIX}"
     if os.path.lexists(path):
         return path.is_file() and path.read_bytes() == content
