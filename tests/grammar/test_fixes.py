@@ -92,7 +92,8 @@ def mended(text: str) -> str:
         ("reach: a", "reach a"),
         # A limit.
         ("400 steps limit", "limit 400 steps"),
-        ("within 400 steps", "limit 400 steps"),
+        ("timeout 400 steps", "limit 400 steps"),
+        ("limit to at most 400 steps", "limit 400 steps"),
         ("limit of 400 steps", "limit 400 steps"),
         ("limit = 20 seconds", "limit 20 s"),
         ("limits 400 steps", "limit 400 steps"),

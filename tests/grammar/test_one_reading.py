@@ -49,6 +49,21 @@ signal q(e): bool
 
 ALL, ANY = "all x in (k, d): p(x)", "any x in (k, d): p(x)"
 
+TIMES = (
+    *(f"a {word} 3 steps" for word in ("for", "within", "after", "until")),
+    *(f"{word} 3 steps" for word in ("a", "for", "after", "until", "within", "every", "from", "over", "under", "at")),
+    *(f"{word} 3 steps" for word in ("not", "never", "always", "eventually", "next", "minimum", "max", "wait", "hold")),
+    *(f"{words} 3 steps" for words in ("at least", "at most", "more than", "limit not", "limit no", "limit at least")),
+    *(f"{words} 3 steps" for words in ("no limit", "not limit", "guard delay", "a limit", "limit a", "limit over")),
+    "3 steps",
+    "a = 3 steps",
+    "3 steps a",
+    "a = 50 %",
+    "a 3 m",
+)
+"""Lines with a time that are no limit, or may be something else."""
+LIMITS = ("limit of 30 steps", "limit: 30", "timeout 30 turns", "30 steps limit", "max time 30 steps")
+
 ROWS: list[tuple[str, str | None]] = [
     # Behind an operator.
     ("require always a before b", None),
@@ -220,6 +235,12 @@ ROWS: list[tuple[str, str | None]] = [
     ("keep a else b", None),
     ("keep a entails b", None),
     ("unreach a", None),
+    # A time on a line of its own.
+    *((f"{line}\nreach b", None) for line in TIMES),
+    *((f"{line} reach b", None) for line in TIMES),
+    *((f"{line}\nreach b", "reach b") for line in LIMITS),
+    ("timeout 30 steps reach b", None),
+    ("limit of 30 steps reach b", "reach b"),
     # In brackets.
     ("require eventually (a while b)", None),
     ("require eventually (a if b)", None),
