@@ -102,7 +102,8 @@ MEANT = {
     "keep Falive": ["keep F alive"],
     # Commas.
     "reach a, b": ["reach a then b"],
-    "keep a, b or c": ["keep a and (b or c)"],
+    "keep a, b or c": [],
+    "keep a, b and c": ["keep a and (b and c)"],
     "reach all x in (key, chest): at(x), a": ["reach (all x in (key, chest): at(x)) then a"],
     "reach a then any x in (key, chest): at(x), b": ["reach a then (any x in (key, chest): at(x)) then b"],
     "reach not all x in (key, chest): at(x), b": ["reach not (all x in (key, chest): at(x)) then b"],
