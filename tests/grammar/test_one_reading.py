@@ -49,6 +49,21 @@ signal q(e): bool
 
 ALL, ANY = "all x in (k, d): p(x)", "any x in (k, d): p(x)"
 
+TIMES = (
+    *(f"a {word} 3 steps" for word in ("for", "within", "after", "until")),
+    *(f"{word} 3 steps" for word in ("a", "for", "after", "until", "within", "every", "from", "over", "under", "at")),
+    *(f"{word} 3 steps" for word in ("not", "never", "always", "eventually", "next", "minimum", "max", "wait", "hold")),
+    *(f"{words} 3 steps" for words in ("at least", "at most", "more than", "limit not", "limit no", "limit at least")),
+    *(f"{words} 3 steps" for words in ("no limit", "not limit", "guard delay", "a limit", "limit a", "limit over")),
+    "3 steps",
+    "a = 3 steps",
+    "3 steps a",
+    "a = 50 %",
+    "a 3 m",
+)
+"""Lines with a time that are no limit, or may be something else."""
+LIMITS = ("limit of 30 steps", "limit: 30", "timeout 30 turns", "30 steps limit", "max time 30 steps")
+
 ROWS: list[tuple[str, str | None]] = [
     # Behind an operator.
     ("require always a before b", None),
@@ -220,6 +235,50 @@ ROWS: list[tuple[str, str | None]] = [
     ("keep a else b", None),
     ("keep a entails b", None),
     ("unreach a", None),
+    # A condition first, with more behind it.
+    ("if a then avoid b until c", None),
+    ("if a then avoid b weak_until c", None),
+    ("if a, avoid b until c", None),
+    ("whenever a, avoid b release c", None),
+    ("when a then keep b until c", None),
+    ("if a then reach b or c", None),
+    ("if a then b until c", None),
+    ("if a then b implies c", None),
+    ("keep if a then b until c", None),
+    ("require if a then b iff c", None),
+    ("if a until b then c", "keep (a until b) implies c"),
+    ("if a then (b until c)", "keep a implies (b until c)"),
+    ("if a then avoid (b until c)", "keep a implies always not (b until c)"),
+    ("if a then avoid b", "keep a implies always not b"),
+    ("if a then b or c", "keep a implies (b or c)"),
+    # A time on a line of its own.
+    *((f"{line}\nreach b", None) for line in TIMES),
+    *((f"{line} reach b", None) for line in TIMES),
+    *((f"{line}\nreach b", "reach b") for line in LIMITS),
+    ("timeout 30 steps reach b", None),
+    ("limit of 30 steps reach b", "reach b"),
+    # Commas.
+    ("reach a, b, then c", "reach a then b then c"),
+    ("reach a and b, c", "reach (a and b) then c"),
+    *((f"reach a, b{joint} c", None) for joint in (" or", ", or", " and", ", and", " until", " implies")),
+    *((f"{clause} a, b{joint} c", None) for clause in ("keep", "require") for joint in (" or", ", or", " until")),
+    *((f"avoid a, b{joint} c", None) for joint in (" and", ", and", " until")),
+    ("keep a, b, and c", "keep a and b and c"),
+    ("avoid a, b, or c", "avoid a or b or c"),
+    ("keep a or b, c", None),
+    ("keep a implies b, c", None),
+    ("keep not a, b", None),
+    ("keep a, not b", "keep a and not b"),
+    ("require always a, b", None),
+    ("require a, always b", "require a and always b"),
+    ("avoid a, reach b", "avoid a reach b"),
+    ("avoid a, keep b", "avoid a keep b"),
+    ("keep a, reach b", "keep a reach b"),
+    ("keep a or b, reach c", None),
+    ("keep always a, reach b", None),
+    ("reach a, keep b", None),
+    ("reach a, reach b", None),
+    ("avoid a, b, reach c", None),
     # In brackets.
     ("require eventually (a while b)", None),
     ("require eventually (a if b)", None),

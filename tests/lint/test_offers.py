@@ -102,7 +102,8 @@ MEANT = {
     "keep Falive": ["keep F alive"],
     # Commas.
     "reach a, b": ["reach a then b"],
-    "keep a, b or c": ["keep a and (b or c)"],
+    "keep a, b or c": [],
+    "keep a, b and c": ["keep a and (b and c)"],
     "reach all x in (key, chest): at(x), a": ["reach (all x in (key, chest): at(x)) then a"],
     "reach a then any x in (key, chest): at(x), b": ["reach a then (any x in (key, chest): at(x)) then b"],
     "reach not all x in (key, chest): at(x), b": ["reach not (all x in (key, chest): at(x)) then b"],
@@ -230,3 +231,50 @@ def test_a_meaning_that_is_kept_is_safe() -> None:
     for clause, applicability in (("keep coins < 0", "safe"), ("keep aliev", "maybe")):
         ((_, fix),) = all_fixes(in_spec(clause))
         assert fix.applicability == applicability
+
+
+OPPOSITES = [
+    *(("seen", f"{word}seen") for word in ("un", "not", "not_", "non", "no_", "never_", "isnt_", "dis", "in")),
+    ("locked", "unlocked"),
+    ("active", "inactive"),
+    ("legal", "illegal"),
+    ("possible", "impossible"),
+    ("enabled", "disabled"),
+    ("increasing", "decreasing"),
+    ("has_key", "has_no_key"),
+    ("is_open", "is_not_open"),
+    ("is_open", "isnt_open"),
+    ("enemy_near", "enemy_not_near"),
+    ("min_speed", "max_speed"),
+    ("left_door", "right_door"),
+    ("red_open", "red_closed"),
+    ("near_key", "far_key"),
+    ("door_1", "door_2"),
+    ("door1", "door12"),
+]
+
+
+@pytest.mark.parametrize(("known", "other"), [*OPPOSITES, *((b, a) for a, b in OPPOSITES)])
+def test_a_name_that_says_otherwise_is_no_misspelling(known: str, other: str) -> None:
+    source = SourceFile("a.tltl", f"signal {known}: bool\nspec s {{ keep {other} }}\n")
+    # It is declared, or imported where a library has it.
+    assert not [fix.title for _, fix in all_fixes(source) if fix.title.startswith("Write")]
+
+
+@pytest.mark.parametrize("other", ["sen", "seeen", "Seen", "sene", "eseen"])
+def test_a_misspelt_name_is_known(other: str) -> None:
+    ((_, fix),) = all_fixes(SourceFile("a.tltl", f"signal seen: bool\nspec s {{ keep {other} }}\n"))
+    assert fix.title == "Write `seen`"
+
+
+@pytest.mark.parametrize(
+    "clause",
+    ["keepnot a", "dontreach a", "neverreach a", "keep a andnot b", "require a untilnot b"],
+)
+def test_a_word_that_says_otherwise_is_no_misspelt_keyword(clause: str) -> None:
+    assert not [*all_fixes(in_spec(clause))]
+
+
+def test_a_name_with_other_first_letters_is_no_operator() -> None:
+    assert [fix.title for _, fix in all_fixes(in_spec("reach exit a"))] == ["Write `exit(a)`"]
+    assert [fix.title for _, fix in all_fixes(in_spec("require nxt a"))] == ["Write `next`"]

@@ -22,6 +22,23 @@ _BEHIND_THEN: Final = (
     "`then` joins the goals of `reach`; what holds, or comes, after `a` is a clause of its own: "
     "`keep a implies always b`, `keep a implies always not b`, `keep a implies eventually b`"
 )
+_IN_TIME: Final = (
+    "`{limit}` ends every episode then; a time of what is asked for stands behind its operator: "
+    "`require eventually within {time} a`, `require always for {time} a`, `require next after {time} a`"
+)
+_LIMITS: Final = frozenset(
+    (
+        *(f"{word}{joint} N" for word in ("limit", "timeout") for joint in ("", " of", " is", " at")),
+        *(f"limit {words} N" for words in ("to", "time", "time to", "max", "maximum", "at most", "to at most")),
+        *("max time N", "maximum time N", "N limit", "N timeout"),
+    )
+)
+"""The words beside the number ``N``, without its unit, that mean a limit of the episode and nothing else."""
+_LONGEST_LIMIT: Final = 7
+_FEW: Final = 4
+"""Of how many words and signs a line with a time is most likely nothing but a time."""
+_TIMES: Final = frozenset(("step", "steps", "ms", "s", "min", "h"))
+"""The units that a limit can have."""
 _OF_OPERATOR: Final = {"EVENTUALLY": "reach", "ALWAYS": "keep", "NOT": "avoid"}
 """The clauses that operators at the beginning of a line stand for."""
 
@@ -227,22 +244,40 @@ def _no_clause(place: Place, title: str) -> Diagnostic | None:
 
 
 def _limit(place: Place, title: str) -> Diagnostic | None:
-    """A piece that is a number and its unit, and at most two words beside them, as the limit that it means."""
+    """A piece that is a number, its unit and a few words: as a limit where it can be nothing else, else with a help."""
     tokens = [token for token in place.tokens[:-1] if token.text not in (":", "=", ",")]
-    if len(tokens) > 4:
+    if len(tokens) > _LONGEST_LIMIT:
         return None
     numbers = [token for token in tokens if token.type == "NUMBER"]
     units = [token for token in tokens if token.type == "UNIT" or token.text in load().units]
     units = units or [token for token in tokens if token.text.lower() in UNITS_ELSEWHERE]
     others = [token for token in tokens if token not in (*numbers, *units)]
-    if len(numbers) != 1 or len(units) > 1 or len(others) > 2 or not all(map(_is_word, others)):
+    if len(numbers) != 1 or len(units) > 1 or not all(map(_is_word, others)):
         return None
     named = [token.type == "LIMIT" for token in others if token.text in CLAUSES]
     if not all(named) or not (named or units):
         return None
     unit = UNITS_ELSEWHERE.get(units[0].text.lower(), units[0].text) if units else "steps"
-    code = "TLT0101" if place.stop.index else "TLT0107"
-    return reworded(place, 0, len(place.tokens) - 1, f"limit {numbers[0].text} {unit}", title, code=code)
+    if unit not in _TIMES:
+        return None
+    words = " ".join(token.text.lower() for token in tokens if token not in units)
+    text, code = f"limit {numbers[0].text} {unit}", "TLT0101" if place.stop.index else "TLT0107"
+    if words.replace(numbers[0].text, "N") in _LIMITS and (place.tokens[0].type == "LIMIT" or _is_own_line(place)):
+        found = reworded(place, 0, len(place.tokens) - 1, text, title, code=code)
+        if found:
+            return found
+    first = tokens[0]
+    if len(tokens) > _FEW or (first.type == "NAME" and closest(first.text, tuple(CLAUSES))):
+        return None
+    return place.error(code, title, _IN_TIME.format(limit=text, time=f"{numbers[0].text} {unit}"))
+
+
+def _is_own_line(place: Place) -> bool:
+    """Whether nothing but a brace or a comment stands beside the piece on its lines."""
+    text, tokens = place.source.text, place.tokens
+    before = text[: tokens[0].start].rpartition("\n")[2].rpartition("{")[2]
+    behind = text[tokens[-1].end :].partition("\n")[0].partition("//")[0].partition("}")[0]
+    return not before.strip() and not behind.strip()
 
 
 def _is_word(token: Token) -> bool:

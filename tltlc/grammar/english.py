@@ -237,6 +237,9 @@ def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic
     is_clear = is_clear and is_clear_here(place, place.tokens[at].text)
     is_clear = is_clear and not has(place, formula_start(place), split, TEMPORAL)
     is_clear = is_clear and not (_kind(place) in ("reach", "avoid") and has(place, behind, stop, TEMPORAL))
+    # `if a then b until c` may be a rule until `c`; a keyword would take the `until` and the `or` behind it, too.
+    is_clear = is_clear and not has(place, behind, stop, UNCLEAR)
+    is_clear = is_clear and not (place.tokens[behind].text in OPERATORS and has(place, behind, stop, INFIX))
     wrapped = form if previous in (None, "THEN") else f"({form})"
     return _told(place, at, (at, stop), wrapped, said if is_clear else None)
 

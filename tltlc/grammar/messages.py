@@ -170,6 +170,8 @@ def _misspelt_operator(place: Place) -> Diagnostic | None:
         prefixes = (word for word, terminal in load().words.items() if terminal in {*BEFORE_ONE, "WHEN"})
         known = tuple(word for word in prefixes if len(word) > 3) if token.type == "NAME" else ()
         meant = closest(before.text, known) or ""
+        # Names such as `exit` are as like to `next` as its misspellings, but begin with another letter.
+        meant = meant if before.text[:1].lower() == meant[:1] or before.text.lower() == meant[1:] else ""
     if not meant or before.type != "NAME":
         return None
     title = f"`{before.text}` is no operator"

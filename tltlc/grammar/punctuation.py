@@ -7,11 +7,12 @@ from collections.abc import Callable
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.grammar.clear import QUANTIFIERS, UNCLEAR, has
 from tltlc.grammar.lexer import END
 from tltlc.grammar.pieces import is_first_on_line
-from tltlc.grammar.place import INFIX, OPENING, Place, outside, touch
+from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, Place, outside, touch
 from tltlc.grammar.rewording import formula_start, formula_stop, operand, reworded, span_of, written
-from tltlc.grammar.words import TEST_ITEMS
+from tltlc.grammar.words import CLAUSES, TEST_ITEMS
 
 NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
 _COMMA: Final = {
@@ -21,7 +22,6 @@ _COMMA: Final = {
 """What joins the formulas of a clause, where it is not `and`."""
 _NUMBER: Final = re.compile(r"[0-9]+\.[0-9]+(?:[eE][+-]?[0-9]+)?")
 _IN_THOUSANDS: Final = re.compile(r"[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]+)?")
-_QUANTIFIERS: Final = frozenset(("ALL", "ANY"))
 
 
 def comma(place: Place) -> Diagnostic | None:
@@ -34,11 +34,45 @@ def comma(place: Place) -> Diagnostic | None:
         return _comma_in_number(place)
     if after.type == END:
         return place.error("TLT0104", "`,` means nothing here", left_out(place))
+    if place.start == "clause" and after.text in CLAUSES and after.type != "NAME":
+        return _comma_before_clause(place)
     word, reason = _COMMA.get(place.tokens[0].text, ("and", ""))
     title = "`,` joins no formulas"
     start, stop = formula_start(place), formula_stop(place)
+    if not _is_clear_list(place, start, stop, word):
+        help_ = "write `and`, `or` or `then` in its place, with brackets around what belongs together"
+        return place.error("TLT0104", title, help_)
     found = reworded(place, start, stop, _joined(place, start, stop, word), title, reason, "TLT0104")
     return found or place.error("TLT0104", title, f"in its place, `{word}` is written{reason}")
+
+
+def _comma_before_clause(place: Place) -> Diagnostic:
+    """``avoid a, reach b``: two clauses."""
+    at, first = place.stop.index, place.tokens[0].text
+    word, title, span = place.tokens[at + 1].text, "`,` joins no clauses", span_of(place.tokens[at : at + 2])
+    # What is kept or avoided behind a goal may begin there, and what follows `or` may be a choice.
+    is_clear = first != "reach" and not has(place, 1, at, UNCLEAR | BEFORE_ONE | QUANTIFIERS | {"OR"})
+    if not is_clear:
+        return place.error("TLT0104", title, f"let `{word}` begin a line of its own: all clauses count", span=span)
+    return place.error("TLT0104", title, f"write `{word}` alone: all clauses count", span=span, write=word)
+
+
+def _is_clear_list(place: Place, start: int, stop: int, word: str) -> bool:
+    """Whether commas can stand for this word alone, by the operators that stand beside them.
+
+    In English, the operator before the last part is that of the whole list: `a, b or c` is `a or b or c`.
+    """
+    tokens, operator = place.tokens, word.upper()
+    kinds = [(index, tokens[index].type) for index in outside(tokens, start, stop)]
+    commas = [index for index, kind in kinds if kind == "COMMA"]
+    if any(token.text in CLAUSES and token.type != "NAME" for token in tokens[start:stop]):
+        return False
+    if operator == "THEN":
+        last = [kind for index, kind in kinds if index > commas[-1] and kind in INFIX]
+        begun = [tokens[index + 1].type for index in commas if tokens[index + 1].type in INFIX]
+        return set(last) <= {"THEN"} and set(begun) <= {"THEN"} and not has(place, start, stop, UNCLEAR - {"THEN"})
+    # `not a, b` and `always a, b` may be about both.
+    return not has(place, start, stop, INFIX - {operator}) and not has(place, start, commas[-1], BEFORE_ONE)
 
 
 def _comma_in_number(place: Place) -> Diagnostic:
@@ -83,7 +117,7 @@ def _joined(place: Place, start: int, stop: int, word: str) -> str:
 
 def _goal(place: Place, start: int, stop: int) -> str:
     """Tokens before `then`: a quantifier in brackets, as it reaches as far as it can, over the `then` too."""
-    quantifiers = (index for index in outside(place.tokens, start, stop) if place.tokens[index].type in _QUANTIFIERS)
+    quantifiers = (index for index in outside(place.tokens, start, stop) if place.tokens[index].type in QUANTIFIERS)
     at = next(quantifiers, None)
     if at is None:
         return written(place, start, stop)

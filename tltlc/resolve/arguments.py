@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.grammar.tree import Argument, Call, Expr, Name, Parameter
+from tltlc.grammar.words import says_otherwise
 from tltlc.resolve.problem import problem
 from tltlc.resolve.scope import Binding, Scope
 from tltlc.source import Span
@@ -50,7 +51,7 @@ def _parameter_for(
             return argument.name
         from difflib import get_close_matches
 
-        close = get_close_matches(argument.name, names, n=1)
+        close = [n for n in get_close_matches(argument.name, names, n=1) if not says_otherwise(argument.name, n)]
         hint = f"did you mean `{close[0]}`?" if close else ""
         listed = ", ".join(f"`{name}`" for name in names)
         advice = None if close else f"it takes {listed}" if names else "it takes no arguments"

@@ -7,6 +7,7 @@ from typing import Literal, Union
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
+from tltlc.grammar.words import says_otherwise
 from tltlc.limits import IMPORTED
 from tltlc.record import record, replace
 from tltlc.resolve.imports import Loaded
@@ -76,14 +77,17 @@ def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
 
 
 def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str | None:
-    """The visible name of one of these kinds that is most like a name that is not known, if any is."""
+    """The visible name of one of these kinds that an unknown name is most likely a misspelling of, if any is."""
     from difflib import get_close_matches
 
     wanted = set(kinds)
     known = [n for n, binding in scope.names.items() if binding.kind in wanted]
     names = [*local, *known]
-    close = [n for n in names if n.lower() == name.lower()] or get_close_matches(name, names, n=1, cutoff=0.6)
-    return close[0] if close else None
+    alike = [n for n in names if n.lower() == name.lower()]
+    if alike:
+        return alike[0]
+    close = get_close_matches(name, names, n=1, cutoff=0.6)
+    return close[0] if close and not says_otherwise(name, close[0]) else None
 
 
 class _Room:
@@ -201,7 +205,7 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
 def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str, Binding]) -> Diagnostic | None:
     from difflib import get_close_matches
 
-    close = get_close_matches(wanted.name, list(offered), n=1)
+    close = [n for n in get_close_matches(wanted.name, list(offered), n=1) if not says_otherwise(wanted.name, n)]
     hint = f"did you mean `{close[0]}`?" if close else ""
     fixes = tuple(instead(scope.source, wanted.span, name) for name in close)
     title = f"{library} offers no `{wanted.name}`"
