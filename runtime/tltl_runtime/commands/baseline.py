@@ -58,8 +58,8 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
 
         read = read_suite(suite or SHIPPED)
         wrote = path or written_to(read.path)
-        check_writable({"--output": wrote})
         check_apart({"--output": wrote}, files_of(read) - {read.baseline.resolve()})
+        check_writable({"--output": wrote})
         there, older = exists(wrote), _older(wrote)
         try:
             with RegressionDisplay() as display:
