@@ -13,6 +13,7 @@ from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.level_faults import level_faults
 from tltl_runtime.commands.options import output_file
 from tltl_runtime.commands.plain import plain
+from tltl_runtime.commands.suite_argument import check_there
 from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import check_apart, check_writable
@@ -48,6 +49,7 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
     levels that come with tltlc are played, and `shipped.baseline.json` is written.
     """
     with Report() as report, learning_for("`tltlc baseline`"), on_without_readers():
+        check_there(suite)
         from tltl_runtime.commands.regression_display import RegressionDisplay
         from tltl_runtime.regression.baseline import written_to
         from tltl_runtime.regression.baseline_run import kept_at, write_recorded
@@ -56,8 +58,8 @@ def command(suite: Path | None, path: Path | None, fresh: bool, workers: Any) ->
 
         read = read_suite(suite or SHIPPED)
         wrote = path or written_to(read.path)
-        check_writable({"--output": wrote})
         check_apart({"--output": wrote}, files_of(read) - {read.baseline.resolve()})
+        check_writable({"--output": wrote})
         there, older = exists(wrote), _older(wrote)
         try:
             with RegressionDisplay() as display:

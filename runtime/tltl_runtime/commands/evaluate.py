@@ -96,9 +96,10 @@ def command(
     if recorded and not folder:
         raise click.UsageError("--record needs the folder for the recordings: --out DIR")
     with Report() as report, learning_for("`tltlc evaluate`"):
-        from tltl_runtime.commands.level_argument import check_no_toml
+        from tltl_runtime.commands.level_argument import check_named, check_no_toml
 
         check_no_toml(spec)
+        check_named(policy, level)
         from tltl_runtime.commands.evaluation_files import EvaluationFiles
         from tltl_runtime.commands.policy_path import check_known, policy_place
         from tltl_runtime.evaluation.evaluate import results, set_up

@@ -9,11 +9,11 @@ from shlex import quote
 
 import click
 
-from tltl_runtime.stealth.levels.file import level_names
+from tltl_runtime.stealth.levels.file import level_names, load_level
 from tltl_runtime.stealth.levels.place import level_place
 from tltl_runtime.task import read_spec
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import exists, is_file
+from tltlc.files import exists, is_file, read_bytes
 from tltlc.spec_file import split
 
 
@@ -29,6 +29,18 @@ def check_spelling(text: str) -> None:
     if close and re.fullmatch(r"[\w-]+", name) and not exists(text):
         title = f"there is neither a file nor a level `{text}`"
         raise TltlError([Diagnostic("TLT0001", title, help=f"did you mean the level `{close[0]}`?")])
+
+
+def check_named(policy: Path | None, level: str | None) -> None:
+    """Raise the TltlError that is raised where a policy or a level is read which is not there, before torch is loaded,
+    which takes seconds.
+    """
+    if policy is not None and not names_level(str(policy)) and not exists(policy):
+        check_spelling(str(policy))
+        read_bytes(policy, str(policy), 0)
+    if level is not None:
+        name, variant = level_place(level)
+        load_level(name, variant or "v0")
 
 
 def check_no_toml(spec: str | None, settings: str = "") -> None:

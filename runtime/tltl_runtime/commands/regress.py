@@ -12,6 +12,7 @@ import click
 from tltl_runtime.commands.changed_option import ChangedCommand
 from tltl_runtime.commands.learning import learning_for
 from tltl_runtime.commands.options import Function, output_folder
+from tltl_runtime.commands.suite_argument import check_there
 from tltl_runtime.commands.unread import on_without_readers
 from tltl_runtime.commands.workers import all_cores_option
 from tltl_runtime.commands.writable import is_output
@@ -104,6 +105,7 @@ def command(
     if suite is None and (swallowed := next(filter(_is_suite, changed or ()), None)):
         raise click.UsageError(f"`{swallowed}` is taken as a word of --changed: put the suite before it")
     with Report() as report, learning_for("`tltlc regress`"), on_without_readers():
+        check_there(suite)
         from tltl_runtime.commands.regression_run import Wanted, run
 
         wanted = Wanted(

@@ -5,10 +5,12 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.context import BaseContext
 from typing import Final
 
 from tltl_runtime.evaluation.player import Plays, Result, Task
@@ -23,8 +25,7 @@ class Process:
     """
 
     def __init__(self, make: Callable[[], Plays]) -> None:
-        context = multiprocessing.get_context("spawn")
-        self._executor = ProcessPoolExecutor(1, context, initializer=_begin, initargs=(make,))
+        self._executor = ProcessPoolExecutor(1, _context(), initializer=_begin, initargs=(make,))
 
     def play(self, task: Task) -> Future[Result]:
         """Begin an episode."""
@@ -41,6 +42,19 @@ class Process:
         """Wait until the process has played its episode, and end it; others play theirs meanwhile."""
         # An executor that still ends when Python does may fail, or never end.
         self._executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _context() -> BaseContext:
+    """How processes are started: on Linux as copies of one that has loaded torch, once for all of them.
+
+    A copy has the locks of all threads, and not the threads: that process computes nothing, so torch has none there,
+    and OpenBLAS ends its own before a copy is made.
+    """
+    if sys.platform != "linux":
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["tltl_runtime.evaluation.player"])
+    return context
 
 
 _ENDED: Final = "its process ended; where it said nothing before, it was perhaps killed for want of memory"

@@ -18,6 +18,9 @@ from numpy.typing import NDArray
 _POINTS: Final = 32
 """So many rates are bet on, between the one that is to be refuted and 1."""
 
+_PLACES: Final = (np.arange(_POINTS) + 0.5) / _POINTS
+"""Where they lie between the two, from 0 to 1 on the scale of arcsine and root."""
+
 _SHARES: Final = (0.05, 0.2, 0.5, 0.9)
 """What bets on a mean risk, of what no value can make them lose: great shares win sooner, small ones by less.
 
@@ -79,7 +82,7 @@ def _lower_end(successes: int, failures: int, error: float) -> float:
 def _log_stake(successes: int, failures: int, rate: float) -> float:
     """The logarithm of what has become of a stake of 1 against ``rate``, in (0, 1), on those above it."""
     start = asin(sqrt(rate))
-    rates = np.sin(start + (pi / 2 - start) * (np.arange(_POINTS) + 0.5) / _POINTS) ** 2
+    rates = np.sin(start + (pi / 2 - start) * _PLACES) ** 2
     stakes = successes * np.log(rates / rate) + failures * np.log((1.0 - rates) / (1.0 - rate))
     return float(_log_means(stakes))
 
@@ -87,5 +90,6 @@ def _log_stake(successes: int, failures: int, rate: float) -> float:
 def _log_means(logarithms: NDArray[np.float64]) -> NDArray[np.float64]:
     """The logarithm of the mean over the first axis of what logarithms are given of."""
     greatest = logarithms.max(axis=0)
-    means: NDArray[np.float64] = greatest + np.log(np.mean(np.exp(logarithms - greatest), axis=0))
+    # As `np.mean`, which takes much longer for a few values.
+    means: NDArray[np.float64] = greatest + np.log(np.exp(logarithms - greatest).sum(axis=0) / len(logarithms))
     return means

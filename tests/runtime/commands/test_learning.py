@@ -1,4 +1,4 @@
-"""Commands that learn, or play what was learned, where what learns is not installed."""
+"""Commands that learn, or play what was learned, where what learns is not installed, or is not needed yet."""
 
 from __future__ import annotations
 
@@ -24,3 +24,24 @@ def test_the_extra_that_is_missing_is_named(command: str, tmp_path: Path) -> Non
         f"error[TLT0730]: `tltlc {name}` needs `torch`, which is not installed\n"
         "  help: in the clone of tltlc: pip install -c constraints.txt '.[rl]'\n"
     )
+
+
+def test_what_is_not_there_is_told_before_what_learns_is_loaded(tmp_path: Path) -> None:
+    program = """
+import sys
+from tltlc.cli.main import main
+
+for command in sys.argv[1:]:
+    try:
+        main(command.split())
+    except SystemExit as ended:
+        print(ended.code, "torch" in sys.modules)
+"""
+    commands = ["evaluate --level gone", "evaluate --level gone.toml", "evaluate gone.safetensors"]
+    commands += ["evaluate --level branching:v9", "regress gone.toml", "baseline gone.toml"]
+    done = subprocess.run(
+        [sys.executable, "-c", program, *commands], cwd=tmp_path, capture_output=True, text=True, timeout=HANG_S
+    )
+    assert done.stdout.splitlines() == ["2 False", "3 False", "3 False", "2 False", "3 False", "3 False"], done.stderr
+    codes = [line.partition("]")[0] for line in done.stderr.splitlines() if line.startswith("error[")]
+    assert codes == [f"error[TLT0{each}" for each in ("800", "001", "001", "800", "001", "001")]

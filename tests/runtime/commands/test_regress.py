@@ -21,6 +21,7 @@ from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
 from tltl_runtime.regression.run import CASES, case_folder
 from tltl_runtime.regression.suite import read_suite
+from tltlc.cli.main import main
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
 
 Run = Callable[..., Outcome]
@@ -33,10 +34,12 @@ def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A game with its baseline and what a first run of its suite has left."""
     folder = tmp_path_factory.mktemp("recorded") / "game"
     write_game(folder)
-    for command in ("baseline", "regress"):
-        words = [sys.executable, "-m", "tltlc", command, "game.toml", *ONE]
-        done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
-        assert done.returncode == (command == "regress"), done.stderr
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for command, status in (("baseline", 0), ("regress", 1)):
+            with pytest.raises(SystemExit) as ended:
+                main([command, "game.toml", *ONE])
+            assert ended.value.code == status
     return folder
 
 

@@ -16,7 +16,7 @@ import pytest
 from tests.cli.conftest import tltlc  # noqa: F401
 from tests.runtime.commands.test_regress import ONE, Run
 from tests.runtime.evaluation.untrained import untrained
-from tests.runtime.regression.game import NEVER, edit, with_baseline, write_game
+from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
 from tests.runtime.regression.made import several
 from tests.runtime.regression.recorded_game import _game  # noqa: F401
 from tests.waiting import HANG_S
@@ -39,6 +39,11 @@ def _recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_policy(folder / "soon.safetensors", untrained(NEVER, str(folder / "room.toml")))
     with_baseline(folder / "game.toml")
     return folder
+
+
+@pytest.fixture(autouse=True)
+def _few_environments(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_few_environments(monkeypatch)
 
 
 def test_it_says_whether_there_is_a_way(tltlc: Run, game: Path) -> None:  # noqa: F811

@@ -6,10 +6,12 @@ import json
 import os
 import pty
 import re
+import shutil
 import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
@@ -21,8 +23,10 @@ from tests.runtime.training.test_settings import GOLDEN
 from tests.waiting import HANG_S
 from tltl_runtime.policies.file import read_policy
 from tltl_runtime.training.metrics import METRICS, read_metrics
+from tltl_runtime.training.runner import Iteration, Runner
 from tltl_runtime.training.search import Searched
 from tltl_runtime.training.settings import default_text, read_settings
+from tltlc.cli.main import main
 from tltlc.record import replace
 
 TltlcFunction = Callable[..., Outcome]
@@ -56,11 +60,42 @@ SOON = "import stealth\nspec soon { level cover_and_hide\n limit 8 steps\n keep 
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty folder but for small settings, made the current one."""
-    (tmp_path / "small.toml").write_text(SMALL)
-    (tmp_path / "soon.tltl").write_text(SOON)
+    """An empty folder but for small settings and a spec, made the current one."""
+    _write_inputs(tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+def _write_inputs(folder: Path) -> None:
+    (folder / "small.toml").write_text(SMALL)
+    (folder / "soon.tltl").write_text(SOON)
+
+
+@pytest.fixture(scope="module")
+def over(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with two trainings that are over: ``run``, which its limit of steps has ended, and ``it``, whose spec is
+    met."""
+    folder = tmp_path_factory.mktemp("over")
+    _write_inputs(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for spec, name, status in ((str(EXAMPLE), "run", 1), ("soon.tltl", "it", 0)):
+            with pytest.raises(SystemExit) as ended:
+                main(["train", spec, "--config", "small.toml", "--out", name])
+            assert ended.value.code == status
+    return folder
+
+
+@pytest.fixture
+def run(over: Path, here: Path) -> Path:
+    """A copy of the training that its limit has ended, as ``run`` in the current folder."""
+    return shutil.copytree(over / "run", here / "run")
+
+
+@pytest.fixture
+def it(over: Path, here: Path) -> Path:
+    """A copy of the training whose spec is met, as ``it`` in the current folder."""
+    return shutil.copytree(over / "it", here / "it")
 
 
 def test_to_its_limit_and_on(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
@@ -89,9 +124,8 @@ def test_to_its_limit_and_on(tltlc: TltlcFunction, here: Path) -> None:  # noqa:
     assert json.loads((folder / "record.json").read_text())["iterations"] == 3
 
 
-def test_a_training_that_is_over_when_it_is_resumed(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    run = ("train", EXAMPLE, "--config", "small.toml", "--out", "run")
-    assert tltlc(*run).status == 1
+@pytest.mark.usefixtures("run")
+def test_a_training_that_is_over_when_it_is_resumed(tltlc: TltlcFunction) -> None:  # noqa: F811
     folder = Path("run")
     before, begun = (folder / "checkpoint.pt").read_bytes(), (folder / "run.json").read_bytes()
     tltlc("train", "--resume", "run", "--steps", "256")
@@ -110,8 +144,8 @@ def test_a_training_that_is_over_when_it_is_resumed(tltlc: TltlcFunction, here: 
     assert [event.step for event in events.Scalars("time/episodes")] == [64, 128]
 
 
-def test_a_limit_that_is_passed_already(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    assert tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run").status == 1
+@pytest.mark.usefixtures("run")
+def test_a_limit_that_is_passed_already(tltlc: TltlcFunction) -> None:  # noqa: F811
     # As where it was broken off.
     Path("run/record.json").unlink()
     kept = Path("run/run.json").read_bytes()
@@ -127,8 +161,8 @@ def test_a_limit_that_is_passed_already(tltlc: TltlcFunction, here: Path) -> Non
     assert "its limit is 0.001 minutes; to go on" in over.out
 
 
-def test_a_checkpoint_that_is_missing(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    assert tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run").status == 1
+@pytest.mark.usefixtures("run")
+def test_a_checkpoint_that_is_missing(tltlc: TltlcFunction) -> None:  # noqa: F811
     Path("run/checkpoint.pt").unlink()
     found = tltlc("train", "--resume", "run", "--steps", "192")
     assert found.err.splitlines()[:2] == [
@@ -153,8 +187,8 @@ def test_senses_that_differ_are_named(tltlc: TltlcFunction, here: Path) -> None:
     assert tltlc("train", "--resume", "it", "--no-map", "--steps", "128").status == 1
 
 
-def test_a_training_that_has_ended_stays_as_it_is(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    assert tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run").status == 1
+@pytest.mark.usefixtures("run")
+def test_a_training_that_has_ended_stays_as_it_is(tltlc: TltlcFunction) -> None:  # noqa: F811
     times = {path: path.stat().st_mtime_ns for path in Path("run").iterdir() if path.name != ".lock"}
     found = tltlc("train", "--resume", "run", "--steps", "100")
     assert found == Outcome(
@@ -185,8 +219,8 @@ def test_a_level_whose_file_was_moved(tltlc: TltlcFunction, here: Path) -> None:
     assert "TLT0870" in other.err and "not on `cover_and_hide:v0`" in other.err
 
 
-def test_a_spec_of_the_same_name_is_told_apart(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    assert tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it").status == 0
+@pytest.mark.usefixtures("it")
+def test_a_spec_of_the_same_name_is_told_apart(tltlc: TltlcFunction) -> None:  # noqa: F811
     Path("soon.tltl").write_text(SOON.replace("8 steps", "9 steps"))
     found = tltlc("train", "soon.tltl", "--resume", "it")
     assert found.err.startswith(
@@ -225,8 +259,8 @@ def test_a_search_is_announced(tltlc: TltlcFunction, here: Path) -> None:  # noq
     assert "Ctrl-C stops it and keeps what was learned; to go on: tltlc train --resume it" in lines
 
 
-def test_a_folder_holds_one_training(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    assert tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it").status == 0
+@pytest.mark.usefixtures("it")
+def test_a_folder_holds_one_training(tltlc: TltlcFunction) -> None:  # noqa: F811
     again = tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it")
     assert again == Outcome(
         1,
@@ -381,16 +415,25 @@ def test_asked_to_end_it_can_go_on(tltlc: TltlcFunction, here: Path, name: str, 
     assert [line["iteration"] for line in read_metrics(here / "run" / METRICS)] == list(range(1, done + 2))
 
 
-def test_a_worker_that_is_killed(here: Path) -> None:
-    with _training(here, "--steps", "100000000") as process:
-        assert process.stderr is not None
-        assert [process.stderr.readline() for _ in range(3)][-1].startswith("iteration 1: ")
-        (worker,) = _workers(process.pid)
-        os.kill(worker, signal.SIGKILL)
-        _, err = process.communicate(timeout=HANG_S)
-    assert process.returncode == 1
-    assert "error[TLT0871]: the training broke off: worker 0 was killed by SIGKILL\n" in err
-    assert "to go on from the last checkpoint: tltlc train --resume run" in err
+def test_a_worker_that_is_killed(
+    tltlc: TltlcFunction,  # noqa: F811
+    here: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    iterations = Runner.iterations
+
+    def with_a_kill(runner: Runner) -> Iterator[Iteration]:
+        for iteration in iterations(runner):
+            yield iteration
+            (worker,) = active_children()
+            worker.kill()
+
+    monkeypatch.setattr(Runner, "iterations", with_a_kill)
+    found = tltlc("train", EXAMPLE, "--config", "small.toml", "--out", "run", "--steps", "100000000")
+    assert found.status == 1
+    assert found.err.splitlines()[2].startswith("iteration 1: ")
+    assert "error[TLT0871]: the training broke off: worker 0 was killed by SIGKILL\n" in found.err
+    assert "to go on from the last checkpoint: tltlc train --resume run" in found.err
     assert (here / "run" / "checkpoint.pt").is_file()
 
 
@@ -408,8 +451,8 @@ def test_a_terminal_shows_a_picture(here: Path) -> None:
     assert "128 of at most 128 steps" in last
 
 
-def test_the_page_names_the_keys_of_the_record(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
-    assert tltlc("train", "soon.tltl", "--config", "small.toml", "--out", "it").status == 0
+@pytest.mark.usefixtures("it")
+def test_the_page_names_the_keys_of_the_record() -> None:
     page = (DOCS / "training.md").read_text(encoding="utf-8")
     section = page.partition("## The record")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
@@ -427,12 +470,6 @@ def _command(*options: str) -> list[str]:
 
 def _training(folder: Path, *options: str) -> subprocess.Popen[str]:
     return subprocess.Popen(_command(*options), cwd=folder, stderr=subprocess.PIPE, text=True)
-
-
-def _workers(pid: int) -> list[int]:
-    """The processes that play for a training: its children, but for that which watches over shared memory."""
-    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
-    return [int(child) for child in children if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
 
 
 def _output(terminal: int) -> Iterator[bytes]:

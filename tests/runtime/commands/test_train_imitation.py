@@ -71,7 +71,7 @@ def test_named_demonstrations_and_going_on(tltlc: TltlcFunction, here: Path) -> 
     assert [line["steps"] for line in read_metrics(here / "run" / METRICS)] == [64, 128, 192]
 
 
-def test_killed_it_goes_on_from_its_checkpoint(here: Path) -> None:
+def test_killed_it_goes_on_from_its_checkpoint(tltlc: TltlcFunction, here: Path) -> None:  # noqa: F811
     kept(here / "mine", played(1))
     (here / "small.toml").write_text(f"checkpoint_s = 0.0\n{ENDLESS}")
     begun = [sys.executable, "-m", "tltlc", *BEGUN, "--demonstrations", "mine", "--out", "run"]
@@ -81,10 +81,8 @@ def test_killed_it_goes_on_from_its_checkpoint(here: Path) -> None:
     checkpoint = read_checkpoint(here / "run" / "checkpoint.pt")
     assert checkpoint is not None
     steps = str(checkpoint.steps + 128)
-    done = subprocess.run(
-        [sys.executable, "-m", "tltlc", "train", "--resume", "run", "--steps", steps], capture_output=True, text=True
-    )
-    assert f"ended by the limit of steps after {steps} steps" in done.stdout, done.stderr
+    on = tltlc("train", "--resume", "run", "--steps", steps)
+    assert f"ended by the limit of steps after {steps} steps" in on.out, on.err
     numbers = [line["iteration"] for line in read_metrics(here / "run" / METRICS)]
     assert numbers == list(range(1, len(numbers) + 1))
 

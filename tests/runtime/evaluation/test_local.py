@@ -6,11 +6,14 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any, cast
 
 import pytest
 
 from tests.docs.blocks import ROOT
 from tests.waiting import HANG_S
+from tltl_runtime.evaluation.local import Process
+from tltl_runtime.evaluation.player import Plays, Task
 
 _MAIN = """
 import os, signal
@@ -54,3 +57,25 @@ def test_a_worker_that_begins_does_not_hear_of_ctrl_c(tmp_path: Path) -> None:
         check=False,
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "played\n", "")
+
+
+class Origin:
+    """Tells which process its own is a copy of, how many threads that one has, and whether torch is loaded here."""
+
+    def play(self, task: Task) -> Any:
+        return os.getppid(), len([*Path(f"/proc/{os.getppid()}/task").iterdir()]), "torch" in sys.modules
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are started otherwise")
+def test_workers_are_copies_of_one_process_that_has_loaded_torch_and_has_no_threads() -> None:
+    workers = [Process(cast("type[Plays]", Origin)) for _ in range(2)]
+    try:
+        one, other = (worker.play(Task(0)).result() for worker in workers)
+    finally:
+        for worker in workers:
+            worker.close()
+    parent, *told = cast(Any, one)
+    assert one == other and parent != os.getpid() and told == [1, True]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.runtime.evaluation.untrained import SOON, untrained
 from tests.runtime.regression.made import ROOM
 from tltl_runtime.policies.file import write_policy
@@ -11,6 +13,8 @@ from tltl_runtime.regression.account import Account
 from tltl_runtime.regression.baseline import write_baseline
 from tltl_runtime.regression.baseline_run import record_baseline
 from tltl_runtime.regression.suite import Case, Suite, baseline_path, read_suite
+from tltl_runtime.training.settings import read_settings
+from tltlc.record import replace
 
 EASY = """\
 import stealth
@@ -69,6 +73,13 @@ class Played:
         assert count == self.counts.get(case.name, 0) + 1
         assert last.index == count - 1
         self.counts[case.name] = count
+
+
+def with_few_environments(patch: pytest.MonkeyPatch) -> None:
+    """Have trainings that begin with the policies of cases play in few environments, so that an iteration is short."""
+    settings = read_settings()
+    few = replace(settings, rollout=replace(settings.rollout, envs=4))
+    patch.setattr("tltl_runtime.regression.retrain.read_settings", lambda: few)
 
 
 def edit(name: str, old: str, new: str) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from tests.runtime.evaluation.deadly import Deadly, killed
 from tests.runtime.evaluation.untrained import untrained
-from tests.runtime.regression.game import NEVER, edit, with_baseline, write_game
+from tests.runtime.regression.game import NEVER, edit, with_baseline, with_few_environments, write_game
 from tltl_runtime.evaluation.evaluate import Pool
 from tltl_runtime.policies.file import read_policy, write_policy
 from tltl_runtime.regression.account import Account
@@ -60,6 +60,7 @@ def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A game whose cases are judged, with a training for the hopeless one and one for what needs none."""
     folder = tmp_path_factory.mktemp("made") / "game"
     with pytest.MonkeyPatch.context() as patch:
+        with_few_environments(patch)
         write_game(folder)
         patch.chdir(folder)
         write_policy("soon.safetensors", untrained(NEVER, "room.toml"))
@@ -72,6 +73,7 @@ def _made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 @pytest.fixture(name="game")
 def _game(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Suite:
+    with_few_environments(monkeypatch)
     shutil.copytree(made, tmp_path / "game")
     monkeypatch.chdir(tmp_path / "game")
     return read_suite(Path("game.toml"))
