@@ -75,7 +75,6 @@ def mended(text: str) -> str:
         ("require eventually within 20 a", "require eventually within 20 steps a"),
         # A clause in a formula, a formula for a clause.
         ("keep a implies reach b", "keep a implies eventually b"),
-        ("keep a implies avoid b or c", "keep a implies always not (b or c)"),
         ("keep a implies reach b then c", "keep a implies eventually (b then c)"),
         ("reach a then reach b", "reach a then b"),
         ("keep a or keep b", "require (always a) or (always b)"),
@@ -84,7 +83,6 @@ def mended(text: str) -> str:
         ("F a", "reach a"),
         ("! a", "avoid a"),
         ("always for 3 steps a", "require always for 3 steps a"),
-        ("p(x)", "reach p(x)"),
         ("never a", "avoid a"),
         ("avoids a", "avoid a"),
         ("- reach a", "reach a"),

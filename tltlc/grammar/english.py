@@ -98,6 +98,11 @@ _PREFIX: Final = {"reach": "{b} and {a}", "avoid": "{b} and {a}", "": "{b} impli
 _PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)
 """What `WORD b, a` and `WORD b then a` are."""
 
+_FROM_THEN_ON: Final = {
+    "keep": "`keep b implies a` asks for `a` wherever `b` holds, `keep b implies always a` from then on, too",
+    "avoid": "`avoid a and b` forbids `a` wherever `b` holds, `keep b implies always not a` from then on, too",
+}
+"""What `if b, keep a` and `if b, avoid a` may be."""
 _REASONS: Final = {
     ("if", "reach"): " for both at one step, `{b} then {a}` for one after the other",
     ("when", "reach"): " for both at one step, `{b} then {a}` for one after the other",
@@ -239,7 +244,16 @@ def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic
     is_clear = is_clear and not (_kind(place) in ("reach", "avoid") and has(place, behind, stop, TEMPORAL))
     # `if a then b until c` may be a rule until `c`; a keyword would take the `until` and the `or` behind it, too.
     is_clear = is_clear and not has(place, behind, stop, UNCLEAR)
-    is_clear = is_clear and not (place.tokens[behind].text in OPERATORS and has(place, behind, stop, INFIX))
+    asked = place.tokens[behind].text
+    if asked in _FROM_THEN_ON:
+        title = (
+            f"{shown(place.tokens[at])} is no operator" if at else f"no clause begins with {shown(place.tokens[at])}"
+        )
+        code = "TLT0101" if at else "TLT0107"
+        return place.error(code, title, _FROM_THEN_ON[asked], span=place.tokens[at].span)
+    if asked in OPERATORS:
+        is_clear = is_clear and asked == "reach" and place.tokens[at].text != "while"
+        is_clear = is_clear and not has(place, behind, stop, INFIX)
     wrapped = form if previous in (None, "THEN") else f"({form})"
     return _told(place, at, (at, stop), wrapped, said if is_clear else None)
 
