@@ -132,7 +132,7 @@ MEANT = {
     "keep a and b not c": ["keep a and b and not c"],
     "keep a or b not c": [],
     "keep a not b or c": [],
-    "reach a or b next c": ["reach a or b then c"],
+    "reach a or b next c": [],
     "keep a and keep b": ["keep a keep b"],
     "require always a and reach b": [],
     "require not a and reach b": [],

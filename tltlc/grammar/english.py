@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
@@ -25,6 +25,8 @@ from tltlc.grammar.words import CASES, CLAUSES, CONDITIONS, OPERATORS, UNITS_ELS
 from tltlc.record import record
 
 _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
+_JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
+"""Fillers that say something behind another word, as `next to` and `not either`, with the operators beside them."""
 _COMPARISONS: Final = {
     ("at", "least"): ">=",
     ("at", "most"): "<=",
@@ -157,11 +159,27 @@ def filler(place: Place) -> Diagnostic | None:
         word = place.tokens[index]
         if place.wants_operator and index > 0 and word.type == "NAME" and word.text in _FILLERS:
             title, next_ = f"{shown(word)} says nothing here", place.tokens[index + 1]
-            if next_.type == "NAME":
+            if next_.type == "NAME" and _is_clear_filler(place, index):
                 return reworded(place, index, index + 2, next_.text, title, " alone") or place.error(
                     "TLT0101", title, "leave it out", span=word.span
                 )
+            if next_.type == "NAME":
+                help_ = "say it with a predicate, as in `near(a)`"
+                if word.text in ("either", "both"):
+                    help_ = "say what it joins by brackets: `not (a or b)`, `c and (a or b)`"
+                return place.error("TLT0101", f"{shown(word)} is no operator", help_, span=word.span)
     return None
+
+
+def _is_clear_filler(place: Place, at: int) -> bool:
+    """Whether a word can be left out: it stands alone, or first, before operators that join what it speaks of."""
+    word, kind = place.tokens[at].text, _kind(place)
+    if word not in _JOINED:
+        return True
+    # `reach both a and b` may be met one after the other, and `avoid both` may forbid each of the two.
+    if at != formula_start(place) or (word == "both" and kind not in ("keep", "require")):
+        return False
+    return not has(place, at, formula_stop(place), INFIX - {*_JOINED[word]})
 
 
 def conditional(place: Place) -> Diagnostic | None:

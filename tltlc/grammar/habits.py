@@ -87,7 +87,10 @@ def arrow(place: Place) -> Diagnostic | None:
     meant = "<=" if sign == "=<" else ">=" if number else "implies"
     help_ = f"write `{meant}`" + (" or `->`" if meant == "implies" else "")
     span = span_of(place.tokens[at : at + 2])
-    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span, write=meant)
+    # Between goals, an arrow may be one of their order.
+    write = None if meant == "implies" and place.tokens[0].type == "REACH" else meant
+    help_ = help_ if write else "write `then` for an order, `implies` for a condition"
+    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span, write=write)
 
 
 def comment(place: Place) -> Diagnostic | None:
@@ -153,9 +156,9 @@ def prefix_between(place: Place) -> Diagnostic | None:
     goal = keyword == "reach" and found.type in ("NEXT", "EVENTUALLY")
     meant = "then" if goal else f"and {found.text}"
     title = f"{shown(found)} stands before one formula, not between two"
-    # Beside another operator, `and` may take too little.
+    # Beside another operator, `and` may take too little; `next` and `always` may follow `and`, `implies` or `then`.
     stops = outside(place.tokens, formula_start(place), formula_stop(place))
-    is_clear = goal or all(place.tokens[index].type not in INFIX - {"AND"} for index in stops)
+    is_clear = found.type == "NOT" and all(place.tokens[index].type not in INFIX - {"AND"} for index in stops)
     return place.error("TLT0101", title, f"write `{meant}`", write=meant if is_clear else None)
 
 
