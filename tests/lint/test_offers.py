@@ -278,3 +278,12 @@ def test_a_word_that_says_otherwise_is_no_misspelt_keyword(clause: str) -> None:
 def test_a_name_with_other_first_letters_is_no_operator() -> None:
     assert [fix.title for _, fix in all_fixes(in_spec("reach exit a"))] == ["Write `exit(a)`"]
     assert [fix.title for _, fix in all_fixes(in_spec("require nxt a"))] == ["Write `next`"]
+
+
+@pytest.mark.parametrize(
+    "clause",
+    ["reach a // why\n, b", "keep (a == // why\n true)", "reach a, b // why\n, c", "keep hp is more // why\n than 3"],
+)
+def test_no_comment_is_dropped(clause: str) -> None:
+    assert not [*all_fixes(in_spec(clause))]
+    assert [*all_fixes(in_spec(clause.replace("// why", "")))]
