@@ -150,7 +150,10 @@ def _let(expr: Name | Call, binding: Binding, env: Env) -> Steps:
         if isinstance(local, Unknown):
             values[parameter.name] = local
         elif parameter.type == "formula" or (parameter.type is None and kind_of(given, where) == "formula"):
-            values[parameter.name] = yield _formula(given, where)
+            value = yield _formula(given, where)
+            # A default can use each parameter before it more than once.
+            what = f"`{parameter.name}` of the let `{declaration.name}`"
+            values[parameter.name] = env.context.checked_size(value, what, where.scope.source, given.span)
         else:
             values[parameter.name] = argument_value(parameter, given, where, binding, 0)
     try:

@@ -108,6 +108,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
     if type_ == "bool" and isinstance(argument, tree.Constant):
         return constant(float(argument.value), units.PLAIN)
     value = quantity(argument, env, depth)
+    env.context.arithmetic_of(value.expression, env.scope.source, argument.span)
     if type_ is None or value.dimension is None:
         return value
     wanted = units.TYPES[type_]
