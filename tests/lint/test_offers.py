@@ -42,7 +42,9 @@ MEANT = {
     "avoid a until b then c": ["avoid (a until b) then c", "avoid a until (b then c)"],
     "require F a then b": ["require (F a) then b", "require F (a then b)"],
     "require a then F b": ["require a then (F b)"],
-    "reach a then F b then c": ["reach a then (F b) then c"],
+    "reach a then F b then c": [],
+    "require F a then F b": [],
+    "reach F a then b then c": [],
     "reach G a then F b": ["reach (G a) then (F b)"],
     "require a then all x in (key, chest): F at(x)": ["require a then (all x in (key, chest): F at(x))"],
     # What holds always or never.
@@ -65,6 +67,12 @@ MEANT = {
     "keep turn > 90°and a": ["keep turn > 90 deg and a"],
     "keep coins > .5": ["keep coins > 0.5"],
     "keep coins == 3": ["keep coins >= 3 and coins <= 3"],
+    "keep alive == hidden": ["keep alive >= hidden and alive <= hidden", "keep alive iff hidden"],
+    "keep near(key) != near(chest)": [
+        "keep near(key) < near(chest) or near(key) > near(chest)",
+        "keep not (near(key) iff near(chest))",
+    ],
+    "keep near(key) == 0": ["keep near(key) >= 0 and near(key) <= 0", "keep not near(key)"],
     "keep a == false": ["keep not a"],
     "keep 3 < coins < 9": ["keep 3 < coins and coins < 9"],
     "keep a -- a comment": ["keep a // a comment"],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.diagnostics.diagnostic import Diagnostic, instead
 from tltlc.grammar.clear import clause_asked
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
@@ -21,10 +21,10 @@ from tltlc.grammar.place import (
     shown,
     touch,
 )
-from tltlc.grammar.punctuation import NAME
 from tltlc.grammar.rewording import formula_start, formula_stop, reworded, span_of, written
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import UNITS_ELSEWHERE
+from tltlc.record import replace
 
 _VALUE: Final = {"NAME", "NUMBER", "UNIT", "TRUE", "FALSE", *ARITHMETIC} - COMPARISONS
 _SAME, _OTHER = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
@@ -42,7 +42,7 @@ def equality(place: Place) -> Diagnostic | None:
         return place.error("TLT0110", title, "compare with `<`, `<=`, `>` or `>=`")
     start, stop = side(place.tokens, at, -1), side(place.tokens, at, 1)
     a, b = written(place, start, at), written(place, at + 1, stop)
-    unequal = _EQUAL[sign] == _OTHER
+    unequal, alike = _EQUAL[sign] == _OTHER, ""
     if b in ("true", "false"):
         text, reason = a if (b == "true") != unequal else f"not {a}", ": a `bool` signal is an atom by itself"
     else:
@@ -52,12 +52,23 @@ def equality(place: Place) -> Diagnostic | None:
         if b in ("0", "1"):
             alike = a if (b == "1") != unequal else f"not {a}"
             reason = f", or `{alike}` where it is true or false"
-        elif NAME.fullmatch(b):
+        elif _is_atom(place, start, at) and _is_atom(place, at + 1, stop):
             alike = f"({a} iff {b})" if is_part or unequal else f"{a} iff {b}"
-            reason = f", or `{'not ' * unequal}{alike}` where both are true or false"
+            alike = f"{'not ' * unequal}{alike}"
+            reason = f", or `{alike}` where both are true or false"
     general = f"write `{_EQUAL[sign].format(a='a', b='b')}`; a `bool` signal is an atom by itself"
     found = reworded(place, start, stop, text, title, reason, "TLT0110") if a and b else None
+    if found and found.fixes and alike:
+        # A predicate can be compared as a number and as what holds or does not.
+        found = replace(found, fixes=(*found.fixes, instead(place.source, span_of(place.tokens[start:stop]), alike)))
     return found or place.error("TLT0110", title, general)
+
+
+def _is_atom(place: Place, start: int, stop: int) -> bool:
+    """Whether some tokens are a name, with or without arguments."""
+    kinds = [token.type for token in place.tokens[start:stop]]
+    behind = outside(place.tokens, start + 1, stop)
+    return kinds[:1] == ["NAME"] and all(place.tokens[index].type in ("LPAR", "RPAR") for index in behind)
 
 
 def chained(place: Place) -> Diagnostic | None:
