@@ -295,3 +295,15 @@ def test_a_name_with_other_first_letters_is_no_operator() -> None:
 def test_no_comment_is_dropped(clause: str) -> None:
     assert not [*all_fixes(in_spec(clause))]
     assert [*all_fixes(in_spec(clause.replace("// why", "")))]
+
+
+@pytest.mark.parametrize(
+    ("declared", "unit"),
+    [("length in [0 {}, 5 {}]", unit) for unit in ("m", "km", "cm")]
+    + [("time in [0 {}, 500 {}]", unit) for unit in ("s", "ms", "min")]
+    + [("speed in [0 {}, 50 {}]", unit) for unit in ("m/s", "km/h", "m/min")],
+)
+def test_a_number_without_a_unit_has_none_where_others_are_declared(declared: str, unit: str) -> None:
+    text = f"signal it: {declared.replace('{}', unit)}\nspec s {{ reach it > 3 }}\n"
+    given = [fix.title for _, fix in all_fixes(SourceFile("a.tltl", text))]
+    assert given == ([f"Write `3 {unit}`"] if unit in ("m", "s", "m/s") else [])
