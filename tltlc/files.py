@@ -24,11 +24,14 @@ Stamp = Union[tuple[int, ...], None]
 
 
 class Notes(dict[str, Stamp]):
-    """The paths that were looked for or read, with their states before that; ``read`` are those that were read."""
+    """The paths that were looked for or read, with their states before that.
+
+    ``read`` are those that were read, by the number that the system has for the file; a device or a pipe has none.
+    """
 
     def __init__(self) -> None:
         super().__init__()
-        self.read: set[str] = set()
+        self.read: dict[tuple[int, ...], set[str]] = {}
 
 
 _noted: Final[list[Notes]] = []
@@ -118,20 +121,21 @@ def note_read(path: str | os.PathLike[str]) -> None:
     """Tell those who asked by :func:`noted` that this file is about to be read."""
     note(path)
     for notes in _noted:
-        notes.read.add(os.fspath(path))
+        name = os.fspath(path)
+        notes.read.setdefault(_number(notes[name]), set()).add(name)
 
 
 def was_read(path: str | os.PathLike[str]) -> bool:
     """Whether the file at a path, under this name or another, was read since the outermost :func:`noted` began."""
     if not _noted:
         return False
-    now, notes = stamp(os.fspath(path)), _noted[0]
-    number = (now or ())[2:]
-    # A device or a pipe has none: what is written to it replaces nothing.
-    if not number:
-        return False
-    # The number comes first: to compare paths takes calls of the system.
-    return any((notes[name] or ())[2:] == number and is_same(name, path) for name in notes.read)
+    number = _number(stamp(os.fspath(path)))
+    # What is written to a device or a pipe replaces nothing.
+    return bool(number) and any(is_same(name, path) for name in _noted[0].read.get(number, ()))
+
+
+def _number(state: Stamp) -> tuple[int, ...]:
+    return (state or ())[2:]
 
 
 def stamp(path: str) -> Stamp:

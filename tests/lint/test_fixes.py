@@ -36,6 +36,10 @@ def offers(text: str) -> list[Offer]:
             "/// Loud.\r\nspec x = F loud",
             {"Declare `signal loud: bool`": "signal loud: bool\r\n/// Loud.\r\nspec x = F loud"},
         ),
+        (
+            "import core spec x {\n    keep loud\n}",
+            {"Declare `signal loud: bool`": "import core\nsignal loud: bool\n spec x {\n    keep loud\n}"},
+        ),
         ("signal a: bool\nspec x = F a &", {}),
     ],
 )

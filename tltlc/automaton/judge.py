@@ -1,4 +1,4 @@
-"""When a spec is judged that does not say so itself (semantics, section 4; docs/adr/0009)."""
+"""When to judge a spec that has no ``judge`` clause (semantics, section 4; docs/adr/0009)."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tltlc.resolve.spec import Judge, Part
 
 
 def judge_of(parts: Iterable[Part]) -> Judge:
-    """When a spec over finite traces is judged that has these parts and no clause ``judge``."""
+    """Return when to judge a spec over finite traces that has these parts and no ``judge`` clause."""
     return default_judge(and_(*(part.unbounded or part.formula for part in parts)))
 
 
 def default_judge(formula: Formula) -> Judge:
-    """``limit`` where the formula is true of "nothing yet", else ``goal``."""
+    """Return ``limit`` if the formula is true of "nothing yet", else ``goal``."""
     normal = negation_normal_form(formula)
     value: dict[Formula, bool] = {}
     stack = [normal]

@@ -10,7 +10,7 @@ from tltlc.source import SourceFile, Span
 
 Severity = Literal["error", "warning", "note"]
 Applicability = Literal["safe", "maybe"]
-"""Whether a fix keeps what the text asks of the game, or is what was meant most likely."""
+"""A ``safe`` fix keeps what the text asks of the game; one that is ``maybe`` right is a guess, and may change that."""
 
 
 @record
@@ -32,7 +32,7 @@ class Edit:
 
 @record
 class Fix:
-    """What can be done about a message, in a few words, and how it changes the text: edits that do not overlap."""
+    """One way to mend the text that a message is about: a short title, and edits that do not overlap."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -56,7 +56,7 @@ class Diagnostic:
 
 
 def instead(source: SourceFile, span: Span, text: str, applicability: Applicability = "maybe") -> Fix:
-    """The fix that writes a text in place of a span; a word stays apart from those beside it."""
+    """Return the fix that writes a text in place of a span, with a space wherever two words would touch."""
     before, behind = source.text[max(0, span.start - 1) : span.start], source.text[span.end : span.end + 1]
     start = " " if _is_word(before) and _is_word(text[:1]) else ""
     end = " " if _is_word(behind) and _is_word(text[-1:]) else ""
@@ -64,7 +64,7 @@ def instead(source: SourceFile, span: Span, text: str, applicability: Applicabil
 
 
 def around(span: Span, opening: str = "(", closing: str = ")") -> tuple[Edit, ...]:
-    """The edits that put brackets around a span."""
+    """Return the edits that put brackets around a span."""
     return Edit(Span(span.start, span.start), opening), Edit(Span(span.end, span.end), closing)
 
 

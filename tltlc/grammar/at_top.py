@@ -13,8 +13,12 @@ def at_top(module: Module, line: str) -> Edit:
     newline = "\r\n" if "\r\n" in source.text else "\n"
     imports = [each for each in module.declarations if isinstance(each, Import)]
     if imports:
-        end = _line_end(source, imports[-1].span.end)
-        return Edit(Span(end, end), f"{newline}{line}")
+        start = imports[-1].span.end
+        end = _line_end(source, start)
+        if source.text[start:end].lstrip().startswith("//") or not source.text[start:end].strip():
+            return Edit(Span(end, end), f"{newline}{line}")
+        # The line goes on, perhaps with a spec of several lines.
+        return Edit(Span(start, start), f"{newline}{line}{newline}")
     first = min((each.span.start for each in module.declarations), default=len(source.text))
     number, column = source.position(first)
     start = first - column + 1
@@ -25,6 +29,6 @@ def at_top(module: Module, line: str) -> Edit:
 
 
 def _line_end(source: SourceFile, offset: int) -> int:
-    """The offset behind the last character of the line of another."""
+    """Return the offset at which the line of ``offset`` ends."""
     number, column = source.position(offset)
     return offset - column + 1 + len(source.line(number))

@@ -21,7 +21,7 @@ _NEGATED: Final = {
     "keep": ("before", "after", "unless", *CONDITIONS, "during"),
     "require": ("if",),
 }
-"""Words behind `not a` that leave the meaning the same, whichever of both the `not` belongs to, by their clause."""
+"""By clause, the words for which `not a WORD b` means the same whether the `not` covers `a` alone or all of it."""
 _AS_WRITTEN: Final = ("but", "xor", "xnor")
 """Such words in every clause."""
 _IN_RULES: Final = frozenset(("AND", "OR", "IMPLIES", *QUANTIFIERS))
@@ -33,7 +33,7 @@ def has(place: Place, start: int, stop: int, kinds: Collection[str]) -> bool:
 
 
 def is_of_one_step(place: Place, start: int, stop: int) -> bool:
-    """Whether no temporal operator stands in a part, in brackets neither."""
+    """Whether a part has no temporal operator, not even in brackets."""
     return not any(token.type in TEMPORAL | UNTILS | {"THEN"} for token in place.tokens[start:stop])
 
 
@@ -83,7 +83,7 @@ def is_clear_here(place: Place, word: str) -> bool:
 
 
 def is_clear_time_here(place: Place, *, may_be_negated: bool, may_be_kept: bool) -> bool:
-    """Whether a time can be that of what stands in these brackets, by what stands around them."""
+    """Whether a time may belong to the formula in the open brackets, judged by what stands around them."""
     if place.tokens[0].type == "LET" or _in_call(place):
         return False
     kinds = {*_IN_RULES, *(("NOT",) if may_be_negated else ()), *(("ALWAYS",) if may_be_kept else ())}

@@ -39,7 +39,7 @@ class Silencing:
         return file.allowed if file else ()
 
     def silences(self, diagnostic: Diagnostic) -> bool:
-        """Whether a comment allows a diagnostic: each one that does has then silenced something."""
+        """Whether a comment allows a diagnostic; every comment that allows it counts as used from then on."""
         label = diagnostic.labels[0] if diagnostic.labels else None
         file = self._files.get(label.source) if label else None
         return label is not None and file is not None and file.silences(diagnostic.code, label.span.start)

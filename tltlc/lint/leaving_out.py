@@ -1,4 +1,4 @@
-"""What is to be done about a clause that may go: leave it out, and say when the spec is judged if that changes."""
+"""Advice on a clause that the spec does not need: leave it out, and say when to judge if that changes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tltlc.resolve.spec import Part
 
 
 def leave_out(left: Sequence[Part], spec: SpecView) -> str:
-    """The advice to leave a clause out, of which ``left`` are the parts that remain of the spec."""
+    """Return the advice to leave a clause out; ``left`` are the parts of the spec that remain."""
     if changes_judge(left, spec):
         return f"leave it out and say `judge at {spec.fspa.judge}`"
     return "leave it out"

@@ -53,5 +53,5 @@ class Finding:
 
 
 def removal(title: str, spans: Iterable[Span]) -> Fix:
-    """The fix that leaves out what needs not be there."""
+    """Return the safe fix that removes these spans."""
     return Fix(title, tuple(Edit(span, "") for span in spans), "safe")

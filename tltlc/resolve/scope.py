@@ -59,7 +59,7 @@ class Scope:
 def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
     """One scope per module, in the same order, which has imported modules first.
 
-    Behind an import with which all of them offer too many names (TLT0012), no further one brings names.
+    The import that exceeds the limit of names (TLT0012) brings none, and neither does any later import.
     """
     scopes: dict[int, Scope] = {}
     room = _Room()

@@ -53,7 +53,7 @@ def _brought(used: Container[str], view: View) -> dict[str, list[str]]:
 
 
 def _brings_any(declaration: Import, names: Sequence[str]) -> bool:
-    """Whether an import makes one of these names visible, which are sorted."""
+    """Whether an import makes any of these sorted names visible."""
     if declaration.names is not None:
         return any(_first(names, each.name) == each.name for each in declaration.names)
     prefix = _prefix(declaration)
