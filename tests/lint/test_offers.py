@@ -42,7 +42,9 @@ MEANT = {
     "avoid a until b then c": ["avoid (a until b) then c", "avoid a until (b then c)"],
     "require F a then b": ["require (F a) then b", "require F (a then b)"],
     "require a then F b": ["require a then (F b)"],
-    "reach a then F b then c": ["reach a then (F b) then c"],
+    "reach a then F b then c": [],
+    "require F a then F b": [],
+    "reach F a then b then c": [],
     "reach G a then F b": ["reach (G a) then (F b)"],
     "require a then all x in (key, chest): F at(x)": ["require a then (all x in (key, chest): F at(x))"],
     # What holds always or never.
@@ -65,6 +67,12 @@ MEANT = {
     "keep turn > 90°and a": ["keep turn > 90 deg and a"],
     "keep coins > .5": ["keep coins > 0.5"],
     "keep coins == 3": ["keep coins >= 3 and coins <= 3"],
+    "keep alive == hidden": ["keep alive >= hidden and alive <= hidden", "keep alive iff hidden"],
+    "keep near(key) != near(chest)": [
+        "keep near(key) < near(chest) or near(key) > near(chest)",
+        "keep not (near(key) iff near(chest))",
+    ],
+    "keep near(key) == 0": ["keep near(key) >= 0 and near(key) <= 0", "keep not near(key)"],
     "keep a == false": ["keep not a"],
     "keep 3 < coins < 9": ["keep 3 < coins and coins < 9"],
     "keep a -- a comment": ["keep a // a comment"],
@@ -132,7 +140,7 @@ MEANT = {
     "keep a and b not c": ["keep a and b and not c"],
     "keep a or b not c": [],
     "keep a not b or c": [],
-    "reach a or b next c": ["reach a or b then c"],
+    "reach a or b next c": [],
     "keep a and keep b": ["keep a keep b"],
     "require always a and reach b": [],
     "require not a and reach b": [],
@@ -278,3 +286,24 @@ def test_a_word_that_says_otherwise_is_no_misspelt_keyword(clause: str) -> None:
 def test_a_name_with_other_first_letters_is_no_operator() -> None:
     assert [fix.title for _, fix in all_fixes(in_spec("reach exit a"))] == ["Write `exit(a)`"]
     assert [fix.title for _, fix in all_fixes(in_spec("require nxt a"))] == ["Write `next`"]
+
+
+@pytest.mark.parametrize(
+    "clause",
+    ["reach a // why\n, b", "keep (a == // why\n true)", "reach a, b // why\n, c"],
+)
+def test_no_comment_is_dropped(clause: str) -> None:
+    assert not [*all_fixes(in_spec(clause))]
+    assert [*all_fixes(in_spec(clause.replace("// why", "")))]
+
+
+@pytest.mark.parametrize(
+    ("declared", "unit"),
+    [("length in [0 {}, 5 {}]", unit) for unit in ("m", "km", "cm")]
+    + [("time in [0 {}, 500 {}]", unit) for unit in ("s", "ms", "min")]
+    + [("speed in [0 {}, 50 {}]", unit) for unit in ("m/s", "km/h", "m/min")],
+)
+def test_a_number_without_a_unit_has_none_where_others_are_declared(declared: str, unit: str) -> None:
+    text = f"signal it: {declared.replace('{}', unit)}\nspec s {{ reach it > 3 }}\n"
+    given = [fix.title for _, fix in all_fixes(SourceFile("a.tltl", text))]
+    assert given == ([f"Write `3 {unit}`"] if unit in ("m", "s", "m/s") else [])

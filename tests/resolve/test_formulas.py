@@ -145,6 +145,16 @@ def test_growth_without_end_is_an_error() -> None:
     assert codes(f"signal a: bool let d0(p) = a {silent} let e0(p) = a {again} spec s = d60(a) & e60(a)") == ["TLT0315"]
 
 
+def test_growth_of_defaults_is_an_error() -> None:
+    # Without a limit, the last of these would be as large as no memory is.
+    formulas = ", ".join(f"p{i + 1} = (p{i} & p{i})" for i in range(60))
+    assert codes(f"signal a: bool let d(p0 = a, {formulas}) = p0 spec s = F d") == ["TLT0315"]
+    numbers = ", ".join(f"p{i + 1} = (p{i} + p{i}) / 2" for i in range(60))
+    text = f"signal x in [0, 1] predicate d(p0 = x, {numbers}) in [0, 1] = p0"
+    assert set(codes(f"{text} spec s = F d")) == {"TLT0315"}
+    assert codes(text) == ["TLT0315"]
+
+
 def test_deep_arithmetic_is_an_error_not_a_crash() -> None:
     long = " + ".join(["x"] * 900)
     assert codes(f"signal x in [0, 1] spec s = F ({long}) > 0.5") == ["TLT0317"]

@@ -34,6 +34,8 @@ _LIMITS: Final = frozenset(
     )
 )
 """The words beside the number ``N``, without its unit, that mean a limit of the episode and nothing else."""
+_MARKS: Final = frozenset("-–—*+•·.:)")
+"""Signs with which the lines of lists begin; others, as `!`, may say something of the clause behind them."""
 _LONGEST_LIMIT: Final = 7
 _FEW: Final = 4
 """Of how many words and signs a line with a time is most likely nothing but a time."""
@@ -88,7 +90,8 @@ def clause_inside(place: Place) -> Diagnostic | None:
         return None
     title = f"{shown(place.found)} begins a clause, and stands in no formula"
     start, stop, clause = formula_start(place), formula_stop(place), _clause(place)
-    found = None
+    # It would take all that follows, where it may belong to what stands right behind it.
+    found, is_alone = None, not has(place, at + 1, stop, INFIX - {"THEN"} if word == "reach" else INFIX)
     if before.type == "THEN" and not _is_next_goal(place, word):
         return place.error("TLT0107", title, _BEHIND_THEN)
     if before.type == "EQUAL" and place.tokens[0].type == "SPEC":
@@ -100,9 +103,9 @@ def clause_inside(place: Place) -> Diagnostic | None:
         # Of clauses that are joined by `or`, each one is a formula of its own.
         either, other = operand(place, start - 1, at - 1), operand(place, at, stop)
         text = f"require ({either}) {before.text} ({other})"
-        if not has(place, start, at, UNCLEAR | TEMPORAL):
+        if is_alone and not has(place, start, at, UNCLEAR | TEMPORAL):
             found = reworded(place, 0, stop, text, title, code="TLT0107")
-    elif _is_clear_operator(place, start, at):
+    elif is_alone and _is_clear_operator(place, start, at):
         found = reworded(place, at, stop, operand(place, at, stop), title, code="TLT0107")
     return found or place.error("TLT0107", title, _inside(word, word))
 
@@ -211,7 +214,7 @@ def _no_clause(place: Place, title: str) -> Diagnostic | None:
     if found:
         return found
     mark = next((index for index in (1, 2) if tokens[index:] and tokens[index].text in CLAUSES), None)
-    if mark and not any(_is_word(each) for each in tokens[:mark]):
+    if mark and all(each.type == "NUMBER" or each.text in _MARKS for each in tokens[:mark]):
         word, signs, span = tokens[mark].text, written(place, 0, mark), span_of(tokens[: mark + 1])
         title = f"no clause begins with `{signs}`"
         return place.error("TLT0107", title, f"write `{word}` alone", span=span, write=word)
@@ -220,11 +223,15 @@ def _no_clause(place: Place, title: str) -> Diagnostic | None:
     found = conditional(place)
     if found:
         return found
+    if token.type in _OF_OPERATOR and tokens[1].text in CLAUSES:
+        return place.error("TLT0107", title, f"leave it out, and say with `{tokens[1].text}` alone what is meant")
     if token.type in _OF_OPERATOR:
         # A keyword belongs to all of its line, an operator to what stands right behind it; and no clause has a bound.
         bound = len(tokens) > 2 and tokens[1].text in ("within", "for", "[")
         stop = len(tokens) - 1
-        if bound or has(place, 1, stop, INFIX):
+        if has(place, 1, stop, INFIX):
+            return place.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
+        if bound:
             text = f"require {written(place, 0, stop)}"
             found = reworded(place, 0, stop, text, title, ": the formula as it is written", "TLT0107")
             return found or place.error("TLT0107", title, _IN_BRACKETS.format(word=token.text))
@@ -240,7 +247,9 @@ def _no_clause(place: Place, title: str) -> Diagnostic | None:
     if token.text.lower() in SYNONYMS["clause"]:
         return None
     text = written(place, 0, len(tokens) - 1)
-    return reworded(place, 0, len(tokens) - 1, f"reach {text}", title, f", or `keep {text}` for every step", "TLT0107")
+    if not reworded(place, 0, len(tokens) - 1, f"reach {text}", title):
+        return None
+    return place.error("TLT0107", title, f"write `reach {text}`, or `keep {text}` for every step")
 
 
 def _limit(place: Place, title: str) -> Diagnostic | None:

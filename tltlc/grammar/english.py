@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
@@ -25,6 +25,8 @@ from tltlc.grammar.words import CASES, CLAUSES, CONDITIONS, OPERATORS, UNITS_ELS
 from tltlc.record import record
 
 _FILLERS: Final = frozenset(("the", "an", "to", "be", "being", "either", "both", "first"))
+_JOINED: Final[dict[str, Collection[str]]] = {"either": {"OR"}, "both": {"AND"}, "first": {"THEN"}, "to": (), "be": ()}
+"""Fillers that say something behind another word, as `next to` and `not either`, with the operators beside them."""
 _COMPARISONS: Final = {
     ("at", "least"): ">=",
     ("at", "most"): "<=",
@@ -98,6 +100,11 @@ _PREFIX: Final = {"reach": "{b} and {a}", "avoid": "{b} and {a}", "": "{b} impli
 _PREFIXES: Final[dict[str, Forms]] = dict.fromkeys(CONDITIONS, _PREFIX)
 """What `WORD b, a` and `WORD b then a` are."""
 
+_FROM_THEN_ON: Final = {
+    "keep": "`keep b implies a` asks for `a` wherever `b` holds, `keep b implies always a` from then on, too",
+    "avoid": "`avoid a and b` forbids `a` wherever `b` holds, `keep b implies always not a` from then on, too",
+}
+"""What `if b, keep a` and `if b, avoid a` may be."""
 _REASONS: Final = {
     ("if", "reach"): " for both at one step, `{b} then {a}` for one after the other",
     ("when", "reach"): " for both at one step, `{b} then {a}` for one after the other",
@@ -152,11 +159,27 @@ def filler(place: Place) -> Diagnostic | None:
         word = place.tokens[index]
         if place.wants_operator and index > 0 and word.type == "NAME" and word.text in _FILLERS:
             title, next_ = f"{shown(word)} says nothing here", place.tokens[index + 1]
-            if next_.type == "NAME":
+            if next_.type == "NAME" and _is_clear_filler(place, index):
                 return reworded(place, index, index + 2, next_.text, title, " alone") or place.error(
                     "TLT0101", title, "leave it out", span=word.span
                 )
+            if next_.type == "NAME":
+                help_ = "say it with a predicate, as in `near(a)`"
+                if word.text in ("either", "both"):
+                    help_ = "say what it joins by brackets: `not (a or b)`, `c and (a or b)`"
+                return place.error("TLT0101", f"{shown(word)} is no operator", help_, span=word.span)
     return None
+
+
+def _is_clear_filler(place: Place, at: int) -> bool:
+    """Whether a word can be left out: it stands alone, or first, before operators that join what it speaks of."""
+    word, kind = place.tokens[at].text, _kind(place)
+    if word not in _JOINED:
+        return True
+    # `reach both a and b` may be met one after the other, and `avoid both` may forbid each of the two.
+    if at != formula_start(place) or (word == "both" and kind not in ("keep", "require")):
+        return False
+    return not has(place, at, formula_stop(place), INFIX - {*_JOINED[word]})
 
 
 def conditional(place: Place) -> Diagnostic | None:
@@ -239,7 +262,16 @@ def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic
     is_clear = is_clear and not (_kind(place) in ("reach", "avoid") and has(place, behind, stop, TEMPORAL))
     # `if a then b until c` may be a rule until `c`; a keyword would take the `until` and the `or` behind it, too.
     is_clear = is_clear and not has(place, behind, stop, UNCLEAR)
-    is_clear = is_clear and not (place.tokens[behind].text in OPERATORS and has(place, behind, stop, INFIX))
+    asked = place.tokens[behind].text
+    if asked in _FROM_THEN_ON:
+        title = (
+            f"{shown(place.tokens[at])} is no operator" if at else f"no clause begins with {shown(place.tokens[at])}"
+        )
+        code = "TLT0101" if at else "TLT0107"
+        return place.error(code, title, _FROM_THEN_ON[asked], span=place.tokens[at].span)
+    if asked in OPERATORS:
+        is_clear = is_clear and asked == "reach" and place.tokens[at].text != "while"
+        is_clear = is_clear and not has(place, behind, stop, INFIX)
     wrapped = form if previous in (None, "THEN") else f"({form})"
     return _told(place, at, (at, stop), wrapped, said if is_clear else None)
 

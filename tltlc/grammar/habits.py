@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from tltlc.diagnostics.diagnostic import Diagnostic
+from tltlc.diagnostics.diagnostic import Diagnostic, instead
 from tltlc.grammar.clear import clause_asked
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
@@ -21,10 +21,10 @@ from tltlc.grammar.place import (
     shown,
     touch,
 )
-from tltlc.grammar.punctuation import NAME
 from tltlc.grammar.rewording import formula_start, formula_stop, reworded, span_of, written
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import UNITS_ELSEWHERE
+from tltlc.record import replace
 
 _VALUE: Final = {"NAME", "NUMBER", "UNIT", "TRUE", "FALSE", *ARITHMETIC} - COMPARISONS
 _SAME, _OTHER = "{a} >= {b} and {a} <= {b}", "{a} < {b} or {a} > {b}"
@@ -42,7 +42,7 @@ def equality(place: Place) -> Diagnostic | None:
         return place.error("TLT0110", title, "compare with `<`, `<=`, `>` or `>=`")
     start, stop = side(place.tokens, at, -1), side(place.tokens, at, 1)
     a, b = written(place, start, at), written(place, at + 1, stop)
-    unequal = _EQUAL[sign] == _OTHER
+    unequal, alike = _EQUAL[sign] == _OTHER, ""
     if b in ("true", "false"):
         text, reason = a if (b == "true") != unequal else f"not {a}", ": a `bool` signal is an atom by itself"
     else:
@@ -52,12 +52,23 @@ def equality(place: Place) -> Diagnostic | None:
         if b in ("0", "1"):
             alike = a if (b == "1") != unequal else f"not {a}"
             reason = f", or `{alike}` where it is true or false"
-        elif NAME.fullmatch(b):
+        elif _is_atom(place, start, at) and _is_atom(place, at + 1, stop):
             alike = f"({a} iff {b})" if is_part or unequal else f"{a} iff {b}"
-            reason = f", or `{'not ' * unequal}{alike}` where both are true or false"
+            alike = f"{'not ' * unequal}{alike}"
+            reason = f", or `{alike}` where both are true or false"
     general = f"write `{_EQUAL[sign].format(a='a', b='b')}`; a `bool` signal is an atom by itself"
     found = reworded(place, start, stop, text, title, reason, "TLT0110") if a and b else None
+    if found and found.fixes and alike:
+        # A predicate can be compared as a number and as what holds or does not.
+        found = replace(found, fixes=(*found.fixes, instead(place.source, span_of(place.tokens[start:stop]), alike)))
     return found or place.error("TLT0110", title, general)
+
+
+def _is_atom(place: Place, start: int, stop: int) -> bool:
+    """Whether some tokens are a name, with or without arguments."""
+    kinds = [token.type for token in place.tokens[start:stop]]
+    behind = outside(place.tokens, start + 1, stop)
+    return kinds[:1] == ["NAME"] and all(place.tokens[index].type in ("LPAR", "RPAR") for index in behind)
 
 
 def chained(place: Place) -> Diagnostic | None:
@@ -87,7 +98,10 @@ def arrow(place: Place) -> Diagnostic | None:
     meant = "<=" if sign == "=<" else ">=" if number else "implies"
     help_ = f"write `{meant}`" + (" or `->`" if meant == "implies" else "")
     span = span_of(place.tokens[at : at + 2])
-    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span, write=meant)
+    # Between goals, an arrow may be one of their order.
+    write = None if meant == "implies" and place.tokens[0].type == "REACH" else meant
+    help_ = help_ if write else "write `then` for an order, `implies` for a condition"
+    return place.error("TLT0104", f"`{sign}` means nothing here", help_, span=span, write=write)
 
 
 def comment(place: Place) -> Diagnostic | None:
@@ -153,9 +167,9 @@ def prefix_between(place: Place) -> Diagnostic | None:
     goal = keyword == "reach" and found.type in ("NEXT", "EVENTUALLY")
     meant = "then" if goal else f"and {found.text}"
     title = f"{shown(found)} stands before one formula, not between two"
-    # Beside another operator, `and` may take too little.
+    # Beside another operator, `and` may take too little; `next` and `always` may follow `and`, `implies` or `then`.
     stops = outside(place.tokens, formula_start(place), formula_stop(place))
-    is_clear = goal or all(place.tokens[index].type not in INFIX - {"AND"} for index in stops)
+    is_clear = found.type == "NOT" and all(place.tokens[index].type not in INFIX - {"AND"} for index in stops)
     return place.error("TLT0101", title, f"write `{meant}`", write=meant if is_clear else None)
 
 

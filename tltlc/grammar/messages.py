@@ -9,14 +9,14 @@ from typing import Final
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
 from tltlc.grammar import lalr
 from tltlc.grammar.clauses import CLAUSE_RULES
-from tltlc.grammar.clear import has
+from tltlc.grammar.clear import QUANTIFIERS, has
 from tltlc.grammar.english import compared, filler, plain_english
 from tltlc.grammar.habits import HABITS, comment, side
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
 from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, OPERAND, UNTILS, Place, shown
 from tltlc.grammar.punctuation import PUNCTUATION, missing_comma
-from tltlc.grammar.rewording import formula_stop, reworded, span_of, written
+from tltlc.grammar.rewording import formula_start, formula_stop, reworded, span_of, written
 from tltlc.grammar.strange import strange
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CASES, CLAUSES, DECLARATIONS, closest
@@ -196,11 +196,14 @@ def _is(place: Place) -> Diagnostic | None:
     start = side(place.tokens, at, -1)
     value = written(place, start, at)
     words = {"true": "{}", "false": "not {}", "not": "not {}"}
-    found = None
+    found: Diagnostic | None = None
     if after[0] in words:
         stop = at + 2 + (after[0] == "not" and after[1:2] in (["true"], ["false"]))
         text = words[after[0]].format(value)
-        found = reworded(place, start, stop, text, title, ": a `bool` signal is an atom by itself")
+        # `a or b is false` and `always a is false` may be about all that stands before it.
+        is_clear = text == value or not has(place, formula_start(place), start, INFIX | BEFORE_ONE | QUANTIFIERS)
+        if is_clear:
+            found = reworded(place, start, stop, text, title, ": a `bool` signal is an atom by itself")
     help_ = f"`{value}` by itself says that it is true, `not {value}` that it is not; numbers compare by `<` and `>`"
     return found or place.error("TLT0101", title, help_)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
@@ -103,12 +104,18 @@ class Place:
     ) -> Diagnostic:
         """An error at the token that was found; at the end of a piece, at its last token.
 
-        Its fix is to ``write`` something else there, where that is given.
+        Its fix is to ``write`` something else there, where that is given and no comment stands there.
         """
         if span is None:
             span = self.before.span if self.at_end and self.before else self.found.span
-        fixes = (instead(self.source, span, write),) if write is not None else ()
+        fixes = (instead(self.source, span, write),) if write is not None and not self._has_comment(span) else ()
         return Diagnostic(code, title, (Label(self.source, span, message),), help_, fixes=fixes)
+
+    def _has_comment(self, span: Span) -> bool:
+        """Whether a comment stands between the tokens of a span."""
+        text = self.source.text
+        inside = [token for token in self.tokens if span.start <= token.start and token.end <= span.end]
+        return any("//" in text[one.end : other.start] for one, other in pairwise(inside))
 
     def expectation(self) -> str:
         """``expected … after …, found …``."""

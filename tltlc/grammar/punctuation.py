@@ -8,10 +8,10 @@ from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.clear import QUANTIFIERS, UNCLEAR, has
-from tltlc.grammar.lexer import END
+from tltlc.grammar.lexer import END, tokenize
 from tltlc.grammar.pieces import is_first_on_line
 from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, Place, outside, touch
-from tltlc.grammar.rewording import formula_start, formula_stop, operand, reworded, span_of, written
+from tltlc.grammar.rewording import LOOSE, formula_start, formula_stop, operand, reworded, span_of, written
 from tltlc.grammar.words import CLAUSES, TEST_ITEMS
 
 NAME: Final = re.compile("[A-Za-z_][A-Za-z0-9_]*")
@@ -192,11 +192,18 @@ def quoted(place: Place) -> Diagnostic | None:
     if not name.strip("_"):
         help_ = "names are ASCII letters, digits and `_`, without quotes"
         return place.error("TLT0101", place.expectation(), help_)
-    for written_ in dict.fromkeys((text, name)):
+    for written_ in dict.fromkeys((unquoted(place, at, at + 1, text), name)):
         found = reworded(place, at, at + 1, written_, place.expectation(), ": no quotes around names and formulas")
         if found:
             return found
     return place.error("TLT0101", place.expectation(), f"write `{name}`: no quotes around names and formulas")
+
+
+def unquoted(place: Place, start: int, stop: int, text: str) -> str:
+    """The text between quotes, in brackets where it is several operands and is not the whole formula."""
+    whole = (start, stop) == (formula_start(place), formula_stop(place))
+    several = any(token.type in LOOSE or token.type == "NOT" for token in tokenize(text).tokens)
+    return f"({text})" if several and not whole else text
 
 
 def no_name(place: Place) -> Diagnostic | None:

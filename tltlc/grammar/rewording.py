@@ -15,7 +15,8 @@ from tltlc.grammar.tree import Clause
 from tltlc.grammar.words import OPERATORS
 from tltlc.source import SourceFile, Span
 
-_LOOSE: Final = INFIX | {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "ALL", "ANY", "WHEN"}
+LOOSE: Final = INFIX | {"EVENTUALLY", "ALWAYS", "NEXT", "WEAK_NEXT", "ALL", "ANY", "WHEN"}
+"""What makes several operands of a text, or takes what follows it."""
 _LONGEST: Final = 90
 """Longer texts are no help."""
 
@@ -53,7 +54,7 @@ def operand(place: Place, start: int, stop: int) -> str:
         operator = OPERATORS[place.tokens[start].text]
         start += 1
     text = written(place, start, stop)
-    several = any(place.tokens[index].type in _LOOSE for index in outside(place.tokens, start, stop))
+    several = any(place.tokens[index].type in LOOSE for index in outside(place.tokens, start, stop))
     return f"{operator} {f'({text})' if several else text}".strip()
 
 

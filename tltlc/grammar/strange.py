@@ -8,7 +8,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.habits import equality
 from tltlc.grammar.lexer import BAD
 from tltlc.grammar.place import Place, shown
-from tltlc.grammar.punctuation import left_out
+from tltlc.grammar.punctuation import left_out, unquoted
 from tltlc.grammar.rewording import reworded
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CASES
@@ -89,7 +89,10 @@ def _quotes(place: Place) -> Diagnostic:
     title = f"{_sign(place.found.text)} means nothing here"
     if last is not None:
         inner = place.source.slice(Span(place.found.end, tokens[last].start)).strip()
-        for text, reason in ((inner, ": no quotes around names and formulas"), (f'"{inner}"', "")):
+        for text, reason in (
+            (unquoted(place, at, last + 1, inner), ": no quotes around names and formulas"),
+            (f'"{inner}"', ""),
+        ):
             found = reworded(place, at, last + 1, text, title, reason, "TLT0104") if inner else None
             if found:
                 return found

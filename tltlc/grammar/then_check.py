@@ -99,7 +99,7 @@ def _readings(source: SourceFile, operand: Expr, other: Expr, last: bool) -> str
 
 
 def _fixes(source: SourceFile, sequence: list[Expr], place: int, lenient: bool) -> tuple[Fix, ...]:
-    """Brackets around the operand, and around its one half with what follows or precedes it, where that can be read."""
+    """Brackets around the operand, and around its half with what follows or precedes it; none that lose the order."""
     operand = sequence[place]
     bare = [each for each in sequence if _lacks_brackets(each, lenient)]
     whole = _text(source, operand)
@@ -112,7 +112,14 @@ def _fixes(source: SourceFile, sequence: list[Expr], place: int, lenient: bool) 
         text = f"{_text(source, first)} then {_text(source, second)}"
         if len(text) <= _SHORT:
             fixes.append(Fix(f"Write `({text})`", around(first.span.to(second.span))))
-    return tuple(fixes)
+    # `(F a) then b` says nothing of the order: it is met by `b` before `a`.
+    loses_order = any(_begins_with_f(each) for each in bare if each is not sequence[-1])
+    return () if loses_order and len(fixes) == 1 else tuple(fixes)
+
+
+def _begins_with_f(operand: Expr) -> bool:
+    leading = _leading(operand)
+    return leading is not None and leading.op == "F"
 
 
 def _lacks_brackets(operand: Expr, lenient: bool) -> bool:

@@ -116,7 +116,7 @@ class Context:
         arithmetic (TLT0315).
         """
         if name not in self.atoms:
-            self._count_arithmetic(expression, source, span)
+            self._arithmetic += self.arithmetic_of(expression, source, span, self._arithmetic)
         known = self.atoms.setdefault(name, Atom(name, expression, doc))
         if known.expression != expression:
             raise problem(
@@ -128,8 +128,9 @@ class Context:
             )
         return atom(name)
 
-    def _count_arithmetic(self, expression: Expression, source: SourceFile, span: Span) -> None:
-        left = WORK["arithmetic of all atoms"] - self._arithmetic
+    def arithmetic_of(self, expression: Expression, source: SourceFile, span: Span, others: int = 0) -> int:
+        """How many parts an expression has; raises ResolutionError (TLT0315) where that is too many beside others."""
+        left = WORK["arithmetic of all atoms"] - others
         size = sum(1 for _ in islice(nodes(expression), left + 1))
         if size > left:
             raise problem(
@@ -140,7 +141,7 @@ class Context:
                 "with the predicates that it uses written out",
                 advice="use predicates inside each other less often, or let the game compute the value",
             )
-        self._arithmetic += size
+        return size
 
     def recursion(self, declaration: int, source: SourceFile, span: Span) -> ResolutionError:
         """The problem of a let or predicate that is being expanded already, reported once."""
@@ -188,15 +189,15 @@ class Context:
         return formula
 
 
-def too_large(what: str, source: SourceFile, span: Span, most: int = LARGEST_EXPANSION) -> ResolutionError:
-    """The problem of an expansion to more than ``most`` parts; ``what`` names what expands, e.g. a bound or a let."""
+def too_large(what: str, source: SourceFile, span: Span) -> ResolutionError:
+    """The problem of an expansion past the limit; ``what`` names the bound, let, quantifier or parameter."""
     if what.startswith("the bound"):
         advice = "choose a smaller bound or a slower clock, or let a signal count the time"
     else:
         advice = "it multiplies with each use inside another: say the same with fewer of them"
     return problem(
         "TLT0315",
-        f"{what} expands to more than {most:,} parts",
+        f"{what} expands to more than {LARGEST_EXPANSION:,} parts",
         source,
         span,
         advice=advice,

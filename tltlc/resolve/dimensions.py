@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from tltlc.diagnostics.diagnostic import instead
-from tltlc.grammar.tree import Expr, Group, Number
+from tltlc.grammar.tree import Expr, Group, Name, Number, ParamDecl, SignalDecl
+from tltlc.grammar.walk import expressions, parts
 from tltlc.resolve import units
 from tltlc.resolve.problem import ResolutionError, problem
 from tltlc.resolve.units import Dimension
@@ -27,6 +28,23 @@ def _goes_on(written: str | None, wanted: str | None, found: Dimension) -> bool:
     return written is None or wanted.startswith(f"{written}/")
 
 
+def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
+    """Whether a visible signal or param of this dimension is declared in other units than that of SI alone."""
+    usual = {unit, *unit.split("/")}
+    for binding in env.scope.names.values():
+        declaration = binding.declaration
+        if isinstance(declaration, (SignalDecl, ParamDecl)) and units.TYPES.get(declaration.type or "") == dimension:
+            written = [part for whole in expressions(declaration) for part in parts(whole)]
+            of_numbers = {part.unit for part in written if isinstance(part, Number) and part.unit}
+            if of_numbers and not of_numbers & usual:
+                return True
+            # The unit of time behind the `/` of a speed is read as a name.
+            names = {part.name for part in written if isinstance(part, Name)}
+            if any(units.in_si(1.0, name) for name in names - usual):
+                return True
+    return False
+
+
 def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str) -> ResolutionError:
     """The problem of a quantity of the wrong dimension at ``at``."""
     while isinstance(at, Group):
@@ -41,7 +59,7 @@ def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str
         why += f"; write `{meant}`" if meant else ""
         if expected == units.TYPES["angle"]:
             why, meant = f"{why} or `{digits} deg`", ""
-        elif not _goes_on(at.unit, unit, found):
+        elif not _goes_on(at.unit, unit, found) or (at.unit is None and unit and _has_other_units(expected, unit, env)):
             meant = ""
     elif unit:
         advice = f"give {units.described(expected)} there, e.g. `3 {unit}`"

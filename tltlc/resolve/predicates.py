@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import islice
 from typing import Final, cast
 
 from tltlc.diagnostics.diagnostic import Label, instead
-from tltlc.expression import Const, nodes
+from tltlc.expression import Const
 from tltlc.grammar import tree
 from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
 from tltlc.grammar.words import UNITS_ELSEWHERE
-from tltlc.limits import WORK
 from tltlc.record import record, replace
 from tltlc.resolve import units
 from tltlc.resolve.arguments import match
 from tltlc.resolve.constants import interval
-from tltlc.resolve.context import Instance, too_large
+from tltlc.resolve.context import Instance
 from tltlc.resolve.declared_values import of_signal
 from tltlc.resolve.dimensions import mismatch
 from tltlc.resolve.kinds import entity, kind_of
@@ -110,10 +108,7 @@ def argument_value(parameter: Parameter, argument: Expr, env: Env, binding: Bind
     if type_ == "bool" and isinstance(argument, tree.Constant):
         return constant(float(argument.value), units.PLAIN)
     value = quantity(argument, env, depth)
-    most = WORK["arithmetic of all atoms"]
-    # A default may use the parameters before it, and so double at each of them.
-    if sum(1 for _ in islice(nodes(value.expression), most + 1)) > most:
-        raise too_large(f"`{parameter.name}` of `{binding.name}`", env.scope.source, argument.span, most)
+    env.context.arithmetic_of(value.expression, env.scope.source, argument.span)
     if type_ is None or value.dimension is None:
         return value
     wanted = units.TYPES[type_]
