@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import pytest
 
 from tests.lsp.client import Client
 from tests.lsp.texts import ENDLESS
-from tests.waiting import HANG_S
+from tests.waiting import HANG_S, until
 from tltlc.limits import MESSAGE
 from tltlc.lsp.paths import name_of
 from tltlc.lsp.server import create
@@ -44,6 +45,14 @@ def client(tmp_path: Path) -> Iterator[Client]:
         started.kill()
 
 
+@pytest.fixture(scope="module")
+def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    """One server for all that does not end it: what one test sends may cost no message of the next one, either."""
+    started = Client(tmp_path_factory.mktemp("malformed"))
+    yield started
+    assert started.close() == 0
+
+
 def send(client: Client, data: bytes, header: bytes | None = None) -> None:
     assert client.process.stdin
     client.process.stdin.write((b"Content-Length: %d\r\n\r\n" % len(data) if header is None else header) + data)
@@ -61,14 +70,26 @@ def lives(client: Client) -> bool:
     return client.ask("textDocument/documentSymbol", {"textDocument": {"uri": HERE}}) is None
 
 
+NUMBERS = count()
+
+
+def lines_so_far(client: Client) -> int:
+    """How many lines the server has logged, up to one that it is made to log now."""
+    uri = f"file:///nowhere/{next(NUMBERS)}.tltl"
+    change = told("textDocument/didChange", textDocument={"uri": uri, "version": 1}, contentChanges=[{"text": ""}])
+    send(client, json.dumps(change).encode())
+    until(lambda: any(uri in line for line in client.errors), "a line of the log")
+    return next(number for number, line in enumerate(client.errors, 1) if uri in line)
+
+
 NO_JSON = {"broken": b'{"jsonrpc": "2.0", oh', "UTF-16": b"\xff\xfe{}", "deep": b"[" * 100_000, "no text": b"\x80"}
 
 
 @pytest.mark.parametrize("data", NO_JSON.values(), ids=NO_JSON)
-def test_what_is_no_json(data: bytes, client: Client) -> None:
-    send(client, data)
-    assert code_of(client, None) == -32700
-    assert lives(client)
+def test_what_is_no_json(data: bytes, lasting: Client) -> None:
+    send(lasting, data)
+    assert code_of(lasting, None) == -32700
+    assert lives(lasting)
 
 
 WRONG = [
@@ -105,14 +126,6 @@ WRONG = [
     (hover("file:///dev/zero"), 900, None),
     (asked("textDocument/codeLens", textDocument={"uri": HERE}), 900, None),
 ]
-
-
-@pytest.fixture(scope="module")
-def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    """One server for all of them."""
-    started = Client(tmp_path_factory.mktemp("malformed"))
-    yield started
-    assert started.close() == 0
 
 
 @pytest.mark.parametrize(("message", "number", "code"), WRONG, ids=lambda each: json.dumps(each)[:60])
@@ -211,10 +224,10 @@ def test_what_comes_behind_the_end(client: Client) -> None:
     "header",
     ["content-length: %d\r\n\r\n", "Content-Length:%d\r\n\r\n", "Content-Type: a/b\r\nContent-Length: %d\n\n"],
 )
-def test_headers_in_other_ways(header: str, client: Client) -> None:
+def test_headers_in_other_ways(header: str, lasting: Client) -> None:
     data = json.dumps(hover()).encode()
-    send(client, data, (header % len(data)).encode())
-    assert code_of(client, 900) is None
+    send(lasting, data, (header % len(data)).encode())
+    assert code_of(lasting, 900) is None
 
 
 @pytest.mark.parametrize(
@@ -233,70 +246,70 @@ def test_headers_in_other_ways(header: str, client: Client) -> None:
     ],
     ids=lambda each: repr(each)[:24],
 )
-def test_headers_that_are_wrong(header: str, client: Client) -> None:
+def test_headers_that_are_wrong(header: str, lasting: Client) -> None:
     """The message is lost, and none behind it."""
-    send(client, json.dumps(hover()).encode(), header.encode())
-    assert lives(client)
-    assert lives(client)
-    client.kill()
-    client._listening.join()
-    assert client.errors
-    assert all(each.startswith("a message ") for each in client.errors)
+    before = lines_so_far(lasting)
+    send(lasting, json.dumps(hover()).encode(), header.encode())
+    assert lives(lasting)
+    assert lives(lasting)
+    errors = lasting.errors[before : lines_so_far(lasting) - 1]
+    assert errors
+    assert all(each.startswith("a message ") for each in errors)
 
 
 @pytest.mark.parametrize("length", [MESSAGE.size + 1, 10**9, 10**12, 10**40])
-def test_a_length_above_the_limit_is_answered_at_once_and_keeps_nobody_waiting(length: int, client: Client) -> None:
+def test_a_length_above_the_limit_is_answered_at_once_and_keeps_nobody_waiting(length: int, lasting: Client) -> None:
     """Nothing of the message comes, or all of it; the bytes that are missing are not waited for."""
-    send(client, b"", b"Content-Length: %d\r\n\r\n" % length)
-    assert code_of(client, None) == -32600
-    send(client, json.dumps(hover()).encode(), b"Content-Length: %d\r\n\r\n" % length)
-    assert code_of(client, None) == -32600
-    assert lives(client)
+    send(lasting, b"", b"Content-Length: %d\r\n\r\n" % length)
+    assert code_of(lasting, None) == -32600
+    send(lasting, json.dumps(hover()).encode(), b"Content-Length: %d\r\n\r\n" % length)
+    assert code_of(lasting, None) == -32600
+    assert lives(lasting)
 
 
-def test_a_message_above_the_limit_is_passed_over_as_a_whole(client: Client) -> None:
+def test_a_message_above_the_limit_is_passed_over_as_a_whole(lasting: Client) -> None:
     item = {"uri": HERE, "languageId": "tltl", "version": 1, "text": "// Content-Length: 5\n" * (MESSAGE.size // 20)}
-    send(client, json.dumps(told("textDocument/didOpen", textDocument=item)).encode())
-    assert code_of(client, None) == -32600
-    assert lives(client)
+    send(lasting, json.dumps(told("textDocument/didOpen", textDocument=item)).encode())
+    assert code_of(lasting, None) == -32600
+    assert lives(lasting)
 
 
 @pytest.mark.parametrize("more", [1, 10, 26, 100, 4000, MESSAGE.size - 1000])
-def test_a_length_that_reaches_into_the_next_messages_loses_none(more: int, client: Client) -> None:
+def test_a_length_that_reaches_into_the_next_messages_loses_none(more: int, lasting: Client) -> None:
+    before = lines_so_far(lasting)
     data = json.dumps(hover()).encode()
-    send(client, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
-    later = client.start("textDocument/documentSymbol", {"textDocument": {"uri": HERE}})
-    assert code_of(client, 900) is None
-    assert code_of(client, later) is None
-    assert lives(client)
-    client.kill()
-    client._listening.join()
-    assert [each[:39] for each in client.errors] == ["a message is shorter than its header sa"]
+    send(lasting, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
+    later = lasting.start("textDocument/documentSymbol", {"textDocument": {"uri": HERE}})
+    assert code_of(lasting, 900) is None
+    assert code_of(lasting, later) is None
+    assert lives(lasting)
+    errors = lasting.errors[before : lines_so_far(lasting) - 1]
+    assert [each[:39] for each in errors] == ["a message is shorter than its header sa"]
 
 
 @pytest.mark.parametrize("more", [1, 10, 4000, MESSAGE.size - 1000])
-def test_a_length_that_is_too_large_keeps_no_answer_back(more: int, client: Client) -> None:
+def test_a_length_that_is_too_large_keeps_no_answer_back(more: int, lasting: Client) -> None:
     """The editor waits for the answer before it sends anything else."""
     data = json.dumps(hover()).encode()
-    send(client, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
-    assert code_of(client, 900) is None
-    assert lives(client)
+    send(lasting, data, b"Content-Length: %d\r\n\r\n" % (len(data) + more))
+    assert code_of(lasting, 900) is None
+    assert lives(lasting)
 
 
-def test_an_empty_line_that_is_missing(client: Client) -> None:
+def test_an_empty_line_that_is_missing(lasting: Client) -> None:
     data = json.dumps(hover()).encode()
-    send(client, data, b"Content-Length: %d\r\n" % len(data))
-    assert code_of(client, 900) is None
-    assert lives(client)
+    send(lasting, data, b"Content-Length: %d\r\n" % len(data))
+    assert code_of(lasting, 900) is None
+    assert lives(lasting)
 
 
 @pytest.mark.parametrize("other", [-3, 0, 3])
-def test_a_length_that_is_repeated(other: int, client: Client) -> None:
+def test_a_length_that_is_repeated(other: int, lasting: Client) -> None:
     data = json.dumps(hover()).encode()
     header = b"Content-Length: %d\r\nContent-Length: %d\r\n\r\n" % (len(data) + other, len(data))
-    send(client, data, header)
-    assert code_of(client, 900) is None
-    assert lives(client)
+    send(lasting, data, header)
+    assert code_of(lasting, 900) is None
+    assert lives(lasting)
 
 
 def test_a_document_is_closed_while_a_request_is_under_way(client: Client, tmp_path: Path) -> None:
