@@ -16,7 +16,7 @@ from tltlc.pipeline import compile_source
 from tltlc.source import SourceFile
 
 FOLDER = Path(codes.__file__).parent / "pages"
-ABBREVIATED = {"TLT0103", "TLT0317"}
+ABBREVIATED = {"TLT0012", "TLT0103", "TLT0317"}
 """What causes these is too long for a page; the examples hint at it."""
 AT_RUN_TIME = {"TLT0613": "TLT0306", "TLT0616": "TLT0306"}
 """A source that would cause these is answered before it runs, as their pages say."""
