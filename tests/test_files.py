@@ -78,6 +78,20 @@ def test_only_files_are_replaced_by_what_is_written(tmp_path: Path) -> None:
         assert not was_read(os.devnull)
 
 
+def test_a_round_of_watching_forgets_what_earlier_rounds_have_read(tmp_path: Path) -> None:
+    source, link = tmp_path / "a", tmp_path / "link"
+    source.write_text("1")
+    link.hardlink_to(source)
+    with noted():
+        with noted():
+            read_source(source)
+            assert was_read(source) and was_read(link)
+        with noted():
+            assert not was_read(source)
+        assert was_read(source)
+    assert not was_read(source)
+
+
 @pytest.fixture
 def deep(tmp_path: Path) -> Iterator[Path]:
     """A folder with a thousand folders in each other, more than Python's stack has room for."""

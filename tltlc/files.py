@@ -130,9 +130,13 @@ def note_stream(stream: BinaryIO) -> None:
 
 
 def was_read(path: str | os.PathLike[str]) -> bool:
-    """Whether the file at a path, under this name or another, was read since the outermost :func:`noted` began."""
+    """Whether the file at a path, under this name or another, was read since the innermost :func:`noted` began.
+
+    A command that watches begins one for each round.  The system may give a source's number to an output once an
+    editor has replaced the source, so what earlier rounds read does not count.
+    """
     # What is written to a device or a pipe replaces nothing.
-    return bool(_noted) and _identity(path) in _noted[0].read
+    return bool(_noted) and _identity(path) in _noted[-1].read
 
 
 def _note_identity(file: str | os.PathLike[str] | int) -> None:
