@@ -226,7 +226,7 @@ with_python = pytest.mark.parametrize(
 
 
 def notices_output(program: Program) -> tuple[Path, list[str]]:
-    """The folder and the command of a program that is told whether its rows could be written."""
+    """Return the folder and the command of a program that can tell when its output fails."""
     runner, folder, command = program
     if runner.target in UNAWARE:
         pytest.skip(f"{runner.name}: the engine does not say whether it could print")

@@ -17,7 +17,7 @@ IMPOSSIBLE = block("reach at(x) and at(y)", before=APART)
 
 
 def told(text: str, levels: Mapping[str, str]) -> dict[str, str]:
-    """What is told of a text under these levels: the severities by their codes."""
+    """Lint a text with these levels; return the severity of each code."""
     found = lint(SourceFile("a.tltl", text), levels=levels)
     return {each.diagnostic.code: each.diagnostic.severity for each in found}
 

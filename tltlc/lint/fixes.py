@@ -35,7 +35,7 @@ class Offer:
 def of_findings(found: Iterable[Finding], module: Module) -> Iterator[Offer]:
     """The fixes of rules in a module, as ``tltlc lint --fix`` applies them: comments keep what they allow.
 
-    Where there are comments, each fix is tried once, and only so many are tried at all.
+    If the module has comments, this tries each fix once, and stops after ``WORK["fixes tried"]`` fixes.
     """
     has_comments = bool(spoken_of(module))
     tried: dict[tuple[Edit, ...], tuple[Edit, ...] | None] = {}

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 @record
 class Remark:
-    """What a rule has to say, fields as of :class:`~tltlc.diagnostics.diagnostic.Diagnostic`; with a fix or none.
+    """The message of a rule.  Its fields mean what those of :class:`~tltlc.diagnostics.diagnostic.Diagnostic` mean.
 
-    The fix changes nothing that a spec of the file asks of the game.
+    The fix, if there is one, does not change the meaning of any spec in the file.
     """
 
     title: str

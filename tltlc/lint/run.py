@@ -31,7 +31,7 @@ def lint(
     """What is to be said of a file that compiles, in the order of its text; the compiler's own warnings are among it.
 
     All specs of the file are looked at, whatever the options name; ``elsewhere`` are names that other files may use
-    of it, and ``levels`` are as of :func:`levelled`.
+    of it; :func:`levelled` explains ``levels``.
     Errors: :class:`TltlError` with everything that was found, as of :func:`tltlc.pipeline.compile_source`.
     """
     return findings(replace(view_of(source, options or CompileOptions()), elsewhere=elsewhere), levels)

@@ -59,7 +59,7 @@ def _remark(view: View, chain: Unary, steps: float, awaited: Expr) -> Remark:
 
 
 def _seconds(steps: float, period: float, env: Env) -> str:
-    """A time of few digits, in seconds, that is read as so many steps: it never is longer, as times are rounded up."""
+    """Return a short time in seconds that covers exactly this many steps.  Times round up, so it is never longer."""
     exact = steps * period
     shorter = (str(Context(prec=digits, rounding=ROUND_DOWN).create_decimal(exact)) for digits in range(3, 18))
     texts = [f"{exact:.6g}", *shorter]
