@@ -234,14 +234,6 @@ def _leads_to_folder(entry: os.DirEntry[str]) -> bool:
         return False
 
 
-def is_same(one: str | os.PathLike[str], other: str | os.PathLike[str]) -> bool:
-    """Whether two paths name one file that is there."""
-    try:
-        return os.path.samefile(one, other)  # noqa: PTH121
-    except (OSError, ValueError):
-        return False
-
-
 def read_source(
     path: str | os.PathLike[str], name: str | None = None, *, max_bytes: int = MAX_SOURCE_BYTES
 ) -> SourceFile:
