@@ -95,6 +95,19 @@ def test_a_pipe_is_written_by_the_name_of_its_descriptor(name: str) -> None:
     assert (done.returncode, done.stdout) == (0, "é".encode()), done.stderr
 
 
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
+@pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1", "/dev/stderr", "log"])
+@pytest.mark.parametrize("again", [False, True])
+def test_the_file_that_output_goes_to_keeps_what_others_write(tmp_path: Path, name: str, *, again: bool) -> None:
+    code = "import sys, pathlib, tltlc.writing as w; w.write_file(pathlib.Path(sys.argv[1]), 'new')"
+    log = tmp_path / "log"
+    log.write_text("new" if again else "before, ")
+    with log.open("ab") as file:
+        for _ in range(2):
+            subprocess.run([sys.executable, "-c", code, name], stdout=file, stderr=file, cwd=tmp_path, check=True)
+    assert log.read_text() == ("new" if again else "before, ") + "newnew"
+
+
 def test_a_file_is_removed_where_it_is_there(tmp_path: Path) -> None:
     (tmp_path / "a").touch()
     for _ in range(2):

@@ -139,6 +139,12 @@ def was_read(path: str | os.PathLike[str]) -> bool:
     return bool(_noted) and _identity(path) in _noted[-1].read
 
 
+def descriptor_of(path: str | os.PathLike[str]) -> int | None:
+    """1 or 2 where standard output or standard error of this process goes to the file at a path, by any name of it."""
+    there = _identity(path)
+    return next((each for each in (1, 2) if there is not None and _identity(each) == there), None)
+
+
 def _note_identity(file: str | os.PathLike[str] | int) -> None:
     identity = _identity(file) if _noted else None
     if identity is not None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import reason, was_read
+from tltlc.files import descriptor_of, reason, was_read
 from tltlc.limits import SOURCE
 from tltlc.temporary import new_folders, temporaries
 
@@ -53,7 +53,9 @@ def write_files(
 def write_file(
     path: Path, content: str | bytes, advice: str = _OPTION, *, durable: bool = False, over_inputs: bool = False
 ) -> None:
-    """Write one file into a folder that exists, in the same way; a device or a pipe is written to directly."""
+    """Write one file into a folder that exists, in the same way; a device, a pipe, and the file that standard output or
+    standard error goes to are written to directly.
+    """
     _write({path: content}, advice, durable=durable, over_inputs=over_inputs)
 
 
@@ -115,12 +117,18 @@ def _write(files: Mapping[Path, str | bytes], advice: str, *, durable: bool, ove
             for shown, content in files.items():
                 data = content.encode() if isinstance(content, str) else content
                 mode = _mode(shown)
+                descriptor = descriptor_of(shown)
                 # Nobody knows whether what is there would outlast a loss of power.
-                if not durable and mode is not None and _holds(shown, mode, data):
+                if not durable and descriptor is None and mode is not None and _holds(shown, mode, data):
                     continue
                 if not over_inputs:
                     check_not_read(shown, advice)
                 written.append(shown)
+                if descriptor is not None:
+                    # What others write there, before and after this command, stays.
+                    with os.fdopen(descriptor, "wb", closefd=False) as file:
+                        file.write(data)
+                    continue
                 if mode is not None and not stat.S_ISREG(mode):
                     # A device or a pipe keeps its place, which a link of `/dev/fd` alone may name; a folder refuses.
                     with shown.open("wb") as file:

@@ -23,11 +23,16 @@ from tltl_runtime.stealth.pictures.plan import draw_episode
 from tltl_runtime.stealth.pictures.trajectories import draw_trajectories
 from tltl_runtime.stealth.recording import writable_folder
 from tltlc.cli.paths import is_stdout
-from tltlc.diagnostics.diagnostic import TltlError
-from tltlc.files import may_be_file
+from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
+from tltlc.files import exists, may_be_file
+from tltlc.json_text import load
+from tltlc.limits import REPORT
 from tltlc.writing import write_file, write_files
 
 _REPORT: Final = "evaluation.json"
+_PICTURES: Final = {sampled: f"ways-{choice}.png" for sampled, choice in CHOICES.items()}
+_KEYS: Final = frozenset({"level", "variant", "level_hash", "spec", "policy", "versions"})
+"""What every report has had."""
 
 
 class EvaluationFiles:
@@ -40,7 +45,8 @@ class EvaluationFiles:
     of another policy on this level: ``removed`` has their names.
 
     Raises:
-        TltlError: TLT0005, nothing can be written there; of ``add`` and ``write`` too.
+        TltlError: TLT0005, nothing can be written there; of ``add`` and ``write`` too.  TLT0722, a file is in the way
+            that has the name of a report or of a picture, and that no evaluation wrote.
     """
 
     def __init__(
@@ -62,6 +68,7 @@ class EvaluationFiles:
         self._recorded: list[str] = []
         self._removed: tuple[str, ...] = ()
         if folder is not None:
+            _check_place(folder)
             writable_folder(folder)
 
     @property
@@ -143,9 +150,7 @@ class EvaluationFiles:
         for sampled, trajectories in self._trajectories.items():
             if trajectories:
                 title = f"{self._level.name} {self._level.variant}: {len(trajectories)} episodes, {CHOICES[sampled]}"
-                pictures[f"ways-{CHOICES[sampled]}.png"] = draw_trajectories(
-                    self._level, self._setup.fspa, trajectories, title
-                )
+                pictures[_PICTURES[sampled]] = draw_trajectories(self._level, self._setup.fspa, trajectories, title)
         write_files(self._folder, {_REPORT: text, **pictures})
         count = len(self._recorded)
         recorded = f"{count or 'no'} recording{'s' * (count != 1)}{' with plans' * (count > 0)}"
@@ -165,7 +170,8 @@ class EvaluationFiles:
         """Remove what is written anew, and recordings of this level that another policy played: their names."""
         choices = "|".join(CHOICES.values())
         recording = re.compile(rf"({re.escape(self._name)}-\d+-\d+-({choices})(-\d+)?){re.escape(SUFFIX)}")
-        older = [folder / _REPORT, *(folder / f"ways-{choice}.png" for choice in CHOICES.values())]
+        # The report goes last: it says that the pictures are an evaluation's.
+        older = [folder / name for name in (*_PICTURES.values(), _REPORT)]
         for path in sorted(filter(may_be_file, folder.iterdir())):
             if (found := recording.fullmatch(path.name)) and self._is_of_another(path):
                 older += [path, folder / f"{found[1]}.png"]
@@ -190,6 +196,23 @@ class EvaluationFiles:
 
     def _evaluations(self) -> dict[bool, Evaluation]:
         return {sampled: evaluation_of(played) for sampled, played in self._played.items() if played}
+
+
+def _check_place(folder: Path) -> None:
+    """Raise TltlError, TLT0722, where a file of the user would be replaced by the report or by a picture."""
+    there = [folder / name for name in (_REPORT, *_PICTURES.values()) if exists(folder / name)]
+    if there and not _is_report(folder / _REPORT):
+        title = f"`{there[0]}` is there already, and no evaluation wrote it"
+        raise TltlError([Diagnostic("TLT0722", title, help="name another folder with --out")])
+
+
+def _is_report(path: Path) -> bool:
+    """Whether an evaluation wrote this file."""
+    try:
+        document = load(path, REPORT) if may_be_file(path) else None
+    except (TltlError, OSError, ValueError):
+        return False
+    return isinstance(document, dict) and document.keys() >= _KEYS
 
 
 def _as_json(found: Evaluation) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from tempfile import TemporaryFile
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, TltlError
-from tltlc.files import exists, is_file, reason
+from tltlc.files import descriptor_of, exists, is_file, reason
 from tltlc.writing import check_not_read
 
 _OUTPUT: Final = ("-", "/dev/stdout")
@@ -63,8 +63,10 @@ def check_no_training(folder: Path) -> None:
 
 
 def is_output(path: Path) -> bool:
-    """Whether a file that is asked for is standard output: by `-`, or by its name among the devices."""
-    return str(path) in _OUTPUT
+    """Whether a file that is asked for is standard output: by `-`, by its name among the devices, or by the name of
+    the file that standard output goes to.
+    """
+    return str(path) in _OUTPUT or descriptor_of(path) == 1
 
 
 def _takes_a_place(path: Path) -> bool:

@@ -167,6 +167,32 @@ def test_recordings_and_pictures(
     ]
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("evaluation.json", "of mine"),
+        ("evaluation.json", '{"level": 3}'),
+        ("evaluation.json", "[" * 1000),
+        ("ways-sampled.png", "mine"),
+        ("ways-arg-max.png", "mine"),
+    ],
+)
+def test_a_file_that_no_evaluation_wrote_is_in_the_way(
+    tltlc: Run,  # noqa: F811
+    policy: Path,
+    tmp_path: Path,
+    name: str,
+    text: str,
+) -> None:
+    path = tmp_path / "runs" / name
+    path.parent.mkdir()
+    path.write_text(text)
+    found = tltlc("evaluate", policy, "--episodes", "1", "--out", path.parent)
+    assert (found.status, found.out) == (2, "")
+    assert f"error[TLT0722]: `{path}` is there already, and no evaluation wrote it" in found.err
+    assert (path.read_text(), len([*path.parent.iterdir()])) == (text, 1)
+
+
 @pytest.mark.skipif(not Path("/dev/fd").exists(), reason="descriptors have no names here")
 def test_the_report_for_programs_goes_into_a_pipe(tltlc: Run, policy: Path) -> None:  # noqa: F811
     there, here = os.pipe()

@@ -202,7 +202,7 @@ def test_what_is_refused(tltlc: Run, game: Path, words: tuple[str, ...], said: s
 
 
 @pytest.mark.slow
-def test_asked_to_end_it_keeps_what_there_is(game: Path) -> None:  # noqa: F811
+def test_asked_to_end_it_keeps_what_there_is(game: Path) -> None:
     command = [sys.executable, "-m", "tltlc"]
     words = [*command, "regress", "game.toml", "--retrain", "--minutes", "60", *ONE]
     with subprocess.Popen([*words, "--json", "report.json"], stderr=subprocess.PIPE, text=True) as training:
