@@ -111,7 +111,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("reach (eventually a) before b", None),
     ("require (a then b) before c", None),
     # Each word, alone.
-    ("reach a before b", "reach a then b"),
+    ("reach a before b", None),
     ("reach a after b", "reach b then a"),
     ("reach a followed by b", "reach a then b"),
     ("reach a without b", "reach a avoid b"),
@@ -138,7 +138,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("avoid a if b", "avoid a and b"),
     ("avoid a within 5 steps", "require not eventually within 5 steps a"),
     ("avoid a for 5 steps", "require always for 5 steps not a"),
-    ("require a before b", "require a then b"),
+    ("require a before b", None),
     ("require a after b", "require b then a"),
     ("require a without b", "require a and not b"),
     ("require a unless b", "require a weak_until b"),
@@ -162,7 +162,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("keep a and b without c", "keep a and b avoid c"),
     ("reach a after b then c", None),
     ("reach a unless b then c", None),
-    ("reach a before b then c", "reach a then b then c"),
+    ("reach a before b then c", None),
     ("keep a if b then c", None),
     ("keep a unless b or c", "keep a or (b or c)"),
     ("keep a and b unless c", None),
@@ -357,7 +357,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("require always (if b, a)", "require always (b implies a)"),
     ("require (a if b) and c", "require (b implies a) and c"),
     ("require (a while b) and c", None),
-    ("require (a before b) and c", "require (a then b) and c"),
+    ("require (a before b) and c", None),
     ("require (a before b) implies c", None),
     ("require c until (a before b)", None),
     ("keep not (a if b)", None),
@@ -383,7 +383,7 @@ ROWS: list[tuple[str, str | None]] = [
     (f"require {ALL} after b", None),
     (f"require {ANY} unless b", None),
     (f"require {ALL} within 5 steps", None),
-    ("require all x in (k, d): (p(x) before b)", "require all x in (k, d): (p(x) then b)"),
+    ("require all x in (k, d): (p(x) before b)", None),
 ]
 
 
@@ -490,6 +490,9 @@ def reading(clause: str, around: str, join: str, operator: str, word: str, right
     """The one meaning of such a clause; None where it has more, or is not what was meant in any."""
     outer = AROUND[around]
     if clause == "require" and word == "while" and around != "always ({})":
+        return None
+    if word == "before" and clause not in ("keep", "avoid"):
+        # `b` may be asked for later, or only be what must not come first.
         return None
     asked = clause
     if outer is not None:

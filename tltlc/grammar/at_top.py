@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Sequence
+
 from tltlc.diagnostics.diagnostic import Edit
-from tltlc.grammar.tree import Import, Module
+from tltlc.grammar.tree import Comment, Import, Module
 from tltlc.source import SourceFile, Span
 
 
@@ -20,12 +23,22 @@ def at_top(module: Module, line: str) -> Edit:
         # The line goes on, perhaps with a spec of several lines.
         return Edit(Span(start, start), f"{newline}{line}{newline}")
     first = min((each.span.start for each in module.declarations), default=len(source.text))
-    number, column = source.position(first)
-    start = first - column + 1
-    while number > 1 and source.line(number - 1).lstrip().startswith("///"):
-        number -= 1
-        start = source.text.rfind("\n", 0, start - 1) + 1
+    _, column = source.position(documented(source, first, module.comments))
+    start = documented(source, first, module.comments) - column + 1
     return Edit(Span(start, start), f"{line}{newline}")
+
+
+def documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
+    """Where the documentation of a place begins, with other comments in it; the place itself where there is none."""
+    first = start
+    for index in reversed(range(bisect_right(comments, start, key=lambda each: each.span.end))):
+        comment = comments[index]
+        if source.text[comment.span.end : start].strip():
+            break
+        start = comment.span.start
+        if comment.text.startswith("///"):
+            first = start
+    return first
 
 
 def _line_end(source: SourceFile, offset: int) -> int:

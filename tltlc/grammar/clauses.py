@@ -9,7 +9,7 @@ from tltlc.diagnostics.diagnostic import Diagnostic
 from tltlc.grammar.clear import QUANTIFIERS, TEMPORAL, UNCLEAR, has, is_of_one_step
 from tltlc.grammar.english import conditional
 from tltlc.grammar.lexer import BAD, END, Token
-from tltlc.grammar.place import BEFORE_ONE, INFIX, KEYWORDS, NOUNS, OPENING, UNTILS, Place, shown
+from tltlc.grammar.place import BEFORE_ONE, INFIX, KEYWORDS, NOUNS, OPENING, UNTILS, Place, declares_clock, shown
 from tltlc.grammar.rewording import formula_start, formula_stop, operand, reworded, span_of, written
 from tltlc.grammar.tables import load
 from tltlc.grammar.words import CLAUSES, DECLARATIONS, JUDGE, OPERATORS, SYNONYMS, TEST_ITEMS, UNITS_ELSEWHERE, closest
@@ -271,7 +271,12 @@ def _limit(place: Place, title: str) -> Diagnostic | None:
         return None
     words = " ".join(token.text.lower() for token in tokens if token not in units)
     text, code = f"limit {numbers[0].text} {unit}", "TLT0101" if place.stop.index else "TLT0107"
-    if words.replace(numbers[0].text, "N") in _LIMITS and (place.tokens[0].type == "LIMIT" or _is_own_line(place)):
+    is_clear = bool(units) or not ("time" in words or declares_clock(place.source))
+    if (
+        is_clear
+        and words.replace(numbers[0].text, "N") in _LIMITS
+        and (place.tokens[0].type == "LIMIT" or _is_own_line(place))
+    ):
         found = reworded(place, 0, len(place.tokens) - 1, text, title, code=code)
         if found:
             return found

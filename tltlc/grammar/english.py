@@ -19,7 +19,7 @@ from tltlc.grammar.clear import (
     is_of_one_step,
 )
 from tltlc.grammar.lexer import Token
-from tltlc.grammar.place import BEFORE_ONE, INFIX, Place, outside, shown
+from tltlc.grammar.place import BEFORE_ONE, INFIX, Place, declares_clock, outside, shown
 from tltlc.grammar.rewording import formula_start, formula_stop, last_of, operand, reworded, span_of
 from tltlc.grammar.words import CASES, CLAUSES, CONDITIONS, OPERATORS, UNITS_ELSEWHERE
 from tltlc.record import record
@@ -110,7 +110,6 @@ _REASONS: Final = {
     ("when", "reach"): " for both at one step, `{b} then {a}` for one after the other",
     ("while", "reach"): " for both at one step; a clause `keep {b}` asks for it at every step",
     ("for", "reach"): "; past the end of play `always for` asks nothing, so the last step is asked for, too",
-    ("before", "reach"): "; where only the order counts, `require (not {b}) until {a}`",
 }
 _WHERE: Final = ": where `{b}` holds, `{a}` must, too"
 _ONCE: Final = "; a clause `keep {b} implies {a}` asks for it at every step"
@@ -223,7 +222,7 @@ def _timed(place: Place, forms: Forms) -> Diagnostic:
     at, kind = place.stop.index, _kind(place)
     goals, stop = _goals(place, at), formula_stop(place)
     begin = goals[-1]
-    time, behind = _time(place, at + 1)
+    time, behind, is_clear_unit = _time(place, at + 1)
     if len(goals) > 1:
         before = operand(place, goals[-2], begin - 1)
         is_clear = not has(place, goals[-2], begin - 1, UNCLEAR | TEMPORAL)
@@ -239,7 +238,7 @@ def _timed(place: Place, forms: Forms) -> Diagnostic:
         is_clear = is_clear and not has(place, formula_start(place), at, TEMPORAL | QUANTIFIERS)
     if kind != "keep":
         is_clear = is_clear and place.tokens[begin].type not in _UNARY
-    is_clear = is_clear and behind == stop and _is_clear_operand(place, begin, at)
+    is_clear = is_clear and is_clear_unit and behind == stop and _is_clear_operand(place, begin, at)
     said = _Said(operand(place, begin, at), time, before)
     return _told(place, at, (start, stop), form, said if is_clear else None)
 
@@ -278,9 +277,9 @@ def _prefixed(place: Place, at: int, forms: Forms, *, timed: bool) -> Diagnostic
 
 def _prefixed_time(place: Place, at: int, forms: Forms) -> Diagnostic:
     stop, kind, first = formula_stop(place), _kind(place), formula_start(place)
-    time, behind = _time(place, at + 1)
+    time, behind, is_clear_unit = _time(place, at + 1)
     before, start = "", at
-    is_clear = _is_clear_operand(place, behind, stop)
+    is_clear = is_clear_unit and _is_clear_operand(place, behind, stop)
     if at == first:
         form = forms.get(kind, forms[""])
         is_own = form != forms[""]
@@ -328,6 +327,9 @@ def _told(place: Place, at: int, part: tuple[int, int], form: str, said: _Said |
     if _is_clause(form):
         start = 0
     text = said.put_in(form) if said and said.a and said.b and not (timed and _is_zero(said.b)) else ""
+    if word.text == "before" and form == _SEQUENCE[""]:
+        # `b` may be a goal that comes later, or what must not happen first.
+        text = ""
     if said and text:
         reason = ((word.text == "for" or not timed) and _REASONS.get((word.text, kind))) or (
             (_WHERE if _is_of_every_step(place, at) else _ONCE) if form == _CONDITION[""] else ""
@@ -348,6 +350,11 @@ def _in_general(place: Place, at: int, form: str) -> str:
         return (
             f"`{english}` is `b implies a` where it is about one step, a clause `keep b implies a` where it is about "
             "every one, and `a and b` where both are asked for"
+        )
+    if word == "before" and form == _SEQUENCE[""]:
+        return (
+            "`a then b` asks for `a` and later for `b`; where `b` is not asked for, `require (not b) until a` asks for "
+            "`a` first"
         )
     if "{c}" in form:
         english = f"c then {english}"
@@ -421,11 +428,12 @@ def _kind(place: Place) -> str:
     return place.tokens[0].text if place.start == "clause" and not place.open_brackets else ""
 
 
-def _time(place: Place, at: int) -> tuple[str, int]:
-    """A number with its unit, as it is written here, and where it ends."""
+def _time(place: Place, at: int) -> tuple[str, int, bool]:
+    """A number with its unit, as it is written here, where it ends, and whether no other unit can be meant."""
     unit = place.tokens[at + 1]
     known = UNITS_ELSEWHERE.get(unit.text.lower(), unit.text if unit.type == "UNIT" else "")
-    return f"{place.tokens[at].text} {known or 'steps'}", at + 1 + bool(known)
+    is_clear = bool(known) or not declares_clock(place.source)
+    return f"{place.tokens[at].text} {known or 'steps'}", at + 1 + bool(known), is_clear
 
 
 _SEPARATORS: Final = ("then", ",", ":")

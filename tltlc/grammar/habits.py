@@ -72,13 +72,17 @@ def _is_atom(place: Place, start: int, stop: int) -> bool:
 
 
 def chained(place: Place) -> Diagnostic | None:
-    """``a < b < c``."""
+    """``a < b < c``, with as many comparisons as there are."""
     at = place.stop.index
     if place.found.type not in COMPARISONS or not place.wants_operator:
         return None
     middle, title = side(place.tokens, at, -1), "comparisons cannot be chained"
     start, stop = side(place.tokens, middle - 1, -1), side(place.tokens, at, 1)
-    text = f"{written(place, start, at)} and {written(place, middle, stop)}"
+    comparisons = [written(place, start, at), written(place, middle, stop)]
+    while place.tokens[stop].type in COMPARISONS:
+        middle, at, stop = at + 1, stop, side(place.tokens, stop, 1)
+        comparisons.append(written(place, middle, stop))
+    text = " and ".join(comparisons)
     if (start, stop) != (formula_start(place), formula_stop(place)):
         text = f"({text})"
     found = reworded(place, start, stop, text, title, code="TLT0110")
@@ -129,6 +133,12 @@ def unit(place: Place) -> Diagnostic | None:
         return None
     title = f"there is no unit {shown(found)}"
     known = UNITS_ELSEWHERE.get(found.text.lower())
+    if known == "%":
+        # Of something from 0 to 100 it is the number alone.
+        help_ = (
+            f"of a ratio, write `{number.text} %`, which is a hundredth of {number.text}; else `{number.text}` alone"
+        )
+        return place.error("TLT0111", title, help_)
     if known:
         text = f"{number.text} {known}"
         return place.error("TLT0111", title, None, f"write `{text}`", span_of([number, found]), write=text)

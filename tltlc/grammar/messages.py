@@ -14,7 +14,7 @@ from tltlc.grammar.english import compared, filler, plain_english
 from tltlc.grammar.habits import HABITS, comment, side
 from tltlc.grammar.lexer import Token
 from tltlc.grammar.pieces import is_first_on_line
-from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, OPERAND, UNTILS, Place, shown
+from tltlc.grammar.place import BEFORE_ONE, INFIX, OPENING, OPERAND, UNTILS, Place, declares_clock, shown
 from tltlc.grammar.punctuation import PUNCTUATION, missing_comma
 from tltlc.grammar.rewording import formula_start, formula_stop, reworded, span_of, written
 from tltlc.grammar.strange import strange
@@ -70,7 +70,8 @@ def _bounds(place: Place) -> Diagnostic | None:
     if place.allowed == {"UNIT"} and before:
         help_ = f"write `{before.text} steps` or, with a clock, `{before.text} s`"
         title = f"expected a unit after {shown(before)}"
-        return place.error("TLT0111", title, help_, span=before.span, write=f"{before.text} steps")
+        write = None if declares_clock(place.source) else f"{before.text} steps"
+        return place.error("TLT0111", title, help_, span=before.span, write=write)
     if place.found.type == "RSQB" and before and "COMMA" in place.allowed and _is_bound(place):
         return _one_end(place, before.text)
     if place.found.type == "LSQB" and before and before.type in UNTILS:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import pairwise
@@ -171,3 +172,8 @@ def shown(token: Token | None) -> str:
 def _spellings(terminals: dict[str, str]) -> dict[str, str]:
     """One spelling of each terminal, in ASCII where there is one."""
     return {terminal: text for text, terminal in sorted(terminals.items(), key=lambda item: item[0].isascii())}
+
+
+def declares_clock(source: SourceFile) -> bool:
+    """Whether the file seems to declare a clock, so that a number of time may be one of steps or of seconds."""
+    return re.search(r"^[ \t]*clock[ \t]+[0-9.]", source.text, re.MULTILINE) is not None

@@ -70,6 +70,9 @@ def _is_clear_list(place: Place, start: int, stop: int, word: str) -> bool:
     if operator == "THEN":
         last = [kind for index, kind in kinds if index > commas[-1] and kind in INFIX]
         begun = [tokens[index + 1].type for index in commas if tokens[index + 1].type in INFIX]
+        # What is no goal may be what must not hold at one: `reach a, not b`.
+        if any(kind == "NOT" for _, kind in kinds):
+            return False
         return set(last) <= {"THEN"} and set(begun) <= {"THEN"} and not has(place, start, stop, UNCLEAR - {"THEN"})
     # `not a, b` and `always a, b` may be about both.
     return not has(place, start, stop, INFIX - {operator}) and not has(place, start, commas[-1], BEFORE_ONE)

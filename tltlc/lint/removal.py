@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Sequence
 
+from tltlc.grammar.at_top import documented
 from tltlc.grammar.tree import Comment
 from tltlc.source import SourceFile, Span
 
@@ -12,7 +12,7 @@ from tltlc.source import SourceFile, Span
 def without(source: SourceFile, span: Span, comments: Sequence[Comment] = ()) -> Span:
     """The span of what stands there, with its documentation and the end of its line where nothing else is on it."""
     text = source.text
-    start, end = _documented(source, span.start, comments), span.end
+    start, end = documented(source, span.start, comments), span.end
     line = text.rfind("\n", 0, start) + 1
     after = text.find("\n", end)
     after = len(text) if after < 0 else after
@@ -37,16 +37,3 @@ def item(spans: Sequence[Span], index: int, comments: Sequence[Comment]) -> tupl
 
 def _is_comment(text: str, start: int, end: int) -> bool:
     return text[start:end].lstrip().startswith("//")
-
-
-def _documented(source: SourceFile, start: int, comments: Sequence[Comment]) -> int:
-    """Where the documentation of a place begins, with other comments in it; the place itself where there is none."""
-    first = start
-    for index in reversed(range(bisect_right(comments, start, key=lambda each: each.span.end))):
-        comment = comments[index]
-        if source.text[comment.span.end : start].strip():
-            break
-        start = comment.span.start
-        if comment.text.startswith("///"):
-            first = start
-    return first

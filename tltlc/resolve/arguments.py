@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tltlc.diagnostics.diagnostic import Label, instead
+from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import Argument, Call, Expr, Name, Parameter
-from tltlc.grammar.words import says_otherwise
 from tltlc.resolve.problem import problem
 from tltlc.resolve.scope import Binding, Scope
 from tltlc.source import Span
@@ -49,15 +49,13 @@ def _parameter_for(
     if argument.name is not None:
         if argument.name in names:
             return argument.name
-        from difflib import get_close_matches
-
-        close = [n for n in get_close_matches(argument.name, names, n=1) if not says_otherwise(argument.name, n)]
-        hint = f"did you mean `{close[0]}`?" if close else ""
+        close = meant(argument.name, names)
+        hint = f"did you mean `{close}`?" if close else ""
         listed = ", ".join(f"`{name}`" for name in names)
         advice = None if close else f"it takes {listed}" if names else "it takes no arguments"
         title = f"`{binding.name}` has no `{argument.name}`"
         place = Span(argument.span.start, argument.span.start + len(argument.name))
-        fixes = tuple(instead(scope.source, place, name) for name in close)
+        fixes = (instead(scope.source, place, close),) if close else ()
         raise problem("TLT0210", title, scope.source, argument.span, hint, advice=advice, fixes=fixes)
     if position >= len(names):
         count = {0: "no arguments", 1: "one argument"}.get(len(names), f"{len(names)} arguments")

@@ -6,7 +6,8 @@ import sys
 from math import inf
 
 from tltlc.diagnostics.diagnostic import Edit, Fix, instead
-from tltlc.grammar.tree import Binary, Number
+from tltlc.grammar.tree import Binary, Expr, Name, Number, ParamDecl, SignalDecl
+from tltlc.grammar.walk import expressions, parts
 from tltlc.logic.formula import Formula, atom, not_
 from tltlc.resolve import units
 from tltlc.resolve.dimensions import same_dimension
@@ -82,7 +83,7 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
         fix = instead(source, expr.span, constant, "safe")
         if x.is_constant:
             message, advice = "both sides are constant", f"compare a signal, or write `{constant}`"
-        elif _is_percentage(x, c, op, expr):
+        elif _is_percentage(x, c, op, expr, env):
             text, end = f"{' '.join(source.slice(expr.span).split())} %", expr.span.end
             advice = f"write `{text}`: a ratio is a number in [0, 1]"
             fix = Fix(f"Write `{text}`", (Edit(Span(end, end), " %"),))
@@ -93,10 +94,21 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
         raise _unbounded(x, needed, expr, env)
 
 
-def _is_percentage(x: Quantity, c: float, op: str, expr: Binary) -> bool:
-    """Whether something in [0, 1] is compared with a plain number that is a percentage, and then says something."""
+def _is_percentage(x: Quantity, c: float, op: str, expr: Binary, env: Env) -> bool:
+    """Whether a ratio is compared with a plain number that is a percentage, and then says something."""
     is_plain = isinstance(expr.right, Number) and expr.right.unit is None
-    return (x.low, x.high) == (0, 1) and is_plain and (2 <= c < 100 or (c == 100 and op == "<"))
+    is_percentage = is_plain and (2 <= c < 100 or (c == 100 and op == "<"))
+    return is_percentage and (x.low, x.high) == (0, 1) and _is_ratio(expr.left, env)
+
+
+def _is_ratio(expr: Expr, env: Env) -> bool:
+    """Whether this is a signal or a param that is declared as a ratio, by its type or by a range in percent."""
+    binding = env.scope.names.get(expr.name) if isinstance(expr, Name) else None
+    declaration = binding.declaration if binding else None
+    if not isinstance(declaration, (SignalDecl, ParamDecl)):
+        return False
+    written = (part for whole in expressions(declaration) for part in parts(whole))
+    return declaration.type == "ratio" or any(isinstance(part, Number) and part.unit == "%" for part in written)
 
 
 def _unbounded(x: Quantity, needed: list[bool], expr: Binary, env: Env) -> ResolutionError:

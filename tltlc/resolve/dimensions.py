@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tltlc.diagnostics.diagnostic import instead
-from tltlc.grammar.tree import Expr, Group, Name, Number, ParamDecl, SignalDecl
+from tltlc.grammar.tree import Declaration, Expr, Group, LetDecl, Name, Number, ParamDecl, PredicateDecl, SignalDecl
 from tltlc.grammar.walk import expressions, parts
 from tltlc.resolve import units
 from tltlc.resolve.problem import ResolutionError, problem
@@ -29,11 +29,11 @@ def _goes_on(written: str | None, wanted: str | None, found: Dimension) -> bool:
 
 
 def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
-    """Whether a visible signal or param of this dimension is declared in other units than that of SI alone."""
+    """Whether a visible signal, param or parameter of this dimension is declared in other units than that of SI."""
     usual = {unit, *unit.split("/")}
     for binding in env.scope.names.values():
         declaration = binding.declaration
-        if isinstance(declaration, (SignalDecl, ParamDecl)) and units.TYPES.get(declaration.type or "") == dimension:
+        if not isinstance(declaration, Name) and _is_of(dimension, declaration):
             written = [part for whole in expressions(declaration) for part in parts(whole)]
             of_numbers = {part.unit for part in written if isinstance(part, Number) and part.unit}
             if of_numbers and not of_numbers & usual:
@@ -42,6 +42,15 @@ def _has_other_units(dimension: Dimension, unit: str, env: Env) -> bool:
             names = {part.name for part in written if isinstance(part, Name)}
             if any(units.in_si(1.0, name) for name in names - usual):
                 return True
+    return False
+
+
+def _is_of(dimension: Dimension, declaration: Declaration) -> bool:
+    """Whether a declaration is of a signal or a param of this dimension, or has a parameter that is."""
+    if isinstance(declaration, (SignalDecl, ParamDecl)):
+        return units.TYPES.get(declaration.type or "") == dimension
+    if isinstance(declaration, (LetDecl, PredicateDecl)):
+        return any(units.TYPES.get(each.type or "") == dimension for each in declaration.parameters)
     return False
 
 
@@ -59,7 +68,7 @@ def mismatch(expected: Dimension, found: Dimension, at: Expr, env: Env, why: str
         why += f"; write `{meant}`" if meant else ""
         if expected == units.TYPES["angle"]:
             why, meant = f"{why} or `{digits} deg`", ""
-        elif not _goes_on(at.unit, unit, found) or (at.unit is None and unit and _has_other_units(expected, unit, env)):
+        elif not _goes_on(at.unit, unit, found) or (unit and _has_other_units(expected, unit, env)):
             meant = ""
     elif unit:
         advice = f"give {units.described(expected)} there, e.g. `3 {unit}`"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, TltlError, instead
 from tltlc.files import is_file, may_be_file, may_read, outside, read_source
+from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import Import, Module
 from tltlc.record import record, replace
 from tltlc.resolve.options import ResolveOptions
@@ -140,17 +141,18 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
             raise problem("TLT0010", _NO_FILE.format(target), source, declaration.target_span, advice=advice)
         _check_inside(shown, declaration, source)
         if not is_file(shown):
-            close = _close(target, [path.name for path in _files(shown.parent) if path.name != itself])
+            wanted = f"{shown.name.removesuffix('.tltl')}.tltl"
+            close = meant(wanted, [path.name for path in _files(shown.parent) if path.name != itself])
             unquoted = None if close else _library(target, folders)
             beginning = target[: target.rfind("/") + 1]
-            meant = [f'"{beginning}{name}"' for name in close] or ([unquoted] if unquoted else [])
+            offered = f'"{beginning}{close}"' if close else unquoted
             raise problem(
                 "TLT0010",
                 _NO_FILE.format(target),
                 source,
                 declaration.target_span,
                 advice=_similar(close) or _unquoted(unquoted) or "a path begins at the folder of this file",
-                fixes=tuple(instead(source, declaration.target_span, text) for text in meant),
+                fixes=(instead(source, declaration.target_span, offered),) if offered else (),
             )
         return Path(_normal(shown.absolute())), _shown(shown)
     name = target.replace(".", "/") + ".tltl"
@@ -159,10 +161,10 @@ def _find(declaration: Import, source: SourceFile, options: ResolveOptions) -> t
         if is_file(folder / name):
             return Path(_normal((folder / name).absolute())), _shown(folder / name)
     known = sorted({path.stem for folder in folders for path in _files(folder) if path.name != itself})
-    close = _close(target, known)
+    close = meant(target, known)
     advice = _similar(close) or "a library is a file NAME.tltl beside this one or in a --library folder"
     title, place = f"there is no library `{target}`", declaration.target_span
-    fixes = tuple(instead(source, place, name) for name in close)
+    fixes = (instead(source, place, close),) if close else ()
     raise problem("TLT0010", title, source, place, advice=advice, fixes=fixes)
 
 
@@ -186,15 +188,8 @@ def _check_inside(path: Path, declaration: Import, source: SourceFile) -> None:
         raise ResolutionError(outside(declaration.target, (Label(source, declaration.target_span),)))
 
 
-def _close(target: str, known: list[str]) -> list[str]:
-    """The known name that is most like the target, if any is."""
-    from difflib import get_close_matches
-
-    return get_close_matches(target, known, n=1)
-
-
-def _similar(close: Sequence[str]) -> str | None:
-    return f"did you mean `{close[0]}`?" if close else None
+def _similar(close: str | None) -> str | None:
+    return f"did you mean `{close}`?" if close else None
 
 
 def _library(target: str, folders: tuple[Path, ...]) -> str | None:

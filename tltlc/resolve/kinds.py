@@ -26,7 +26,7 @@ _MOST_HINTS = 50
 """Behind so many problems an unknown name is not compared with all that are known: of many, that takes long."""
 _DECLARATIONS = {
     "predicate": "signal {name}: bool",
-    "signal or param": "signal {name} in [0, 1]",
+    "signal or param": "signal {name} in [0, 100]",
     "entity": "entity {name}",
 }
 """How a name can be declared of which nothing alike is known, by the kind that was looked for."""

@@ -8,6 +8,7 @@ from typing import Final, cast
 from tltlc.diagnostics.diagnostic import Label, instead
 from tltlc.expression import Const
 from tltlc.grammar import tree
+from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import Call, Expr, Group, Name, Parameter, PredicateDecl
 from tltlc.grammar.words import UNITS_ELSEWHERE
 from tltlc.record import record, replace
@@ -135,6 +136,7 @@ def parameter_type(parameter: Parameter, binding: Binding) -> str | None:
 
 _TYPES_ELSEWHERE: Final = {
     **dict.fromkeys(("int", "integer", "float", "double", "real"), "number"),
+    "boolean": "bool",
     "distance": "length",
     "duration": "time",
     "velocity": "speed",
@@ -144,15 +146,13 @@ _TYPES_ELSEWHERE: Final = {
 
 def unknown_type(name: str, at: Parameter | tree.SignalDecl | tree.ParamDecl, scope: Scope) -> ResolutionError:
     """The problem of a type that the language has not."""
-    from difflib import get_close_matches
-
     known = [*units.TYPES, "entity"]
-    meant = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
-    close = [meant] if meant else get_close_matches(name.lower(), known, n=1)
-    advice = f"did you mean `{close[0]}`?" if close else f"the types are {', '.join(known)}"
+    elsewhere = units.type_of_unit(UNITS_ELSEWHERE.get(name.lower(), name)) or _TYPES_ELSEWHERE.get(name.lower())
+    close = elsewhere or meant(name, known)
+    advice = f"did you mean `{close}`?" if close else f"the types are {', '.join(known)}"
     start = scope.source.text.find(name, at.name_span.end, at.span.end)
     span = Span(start, start + len(name)) if start >= 0 else at.span
-    fixes = tuple(instead(scope.source, span, known_type) for known_type in close) if start >= 0 else ()
+    fixes = (instead(scope.source, span, close),) if close and start >= 0 else ()
     return problem("TLT0211", f"there is no type `{name}`", scope.source, span, advice=advice, fixes=fixes)
 
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal, Union
 
 from tltlc.diagnostics.diagnostic import Diagnostic, Label, instead
+from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import EntityDecl, Import, LetDecl, Module, Name, ParamDecl, PredicateDecl, SignalDecl
-from tltlc.grammar.words import says_otherwise
 from tltlc.limits import IMPORTED
 from tltlc.record import record, replace
 from tltlc.resolve.imports import Loaded
@@ -77,17 +77,9 @@ def build_scopes(modules: Iterable[Loaded], log: Log) -> tuple[Scope, ...]:
 
 
 def closest_name(name: str, scope: Scope, kinds: Iterable[Kind], local: Iterable[str] = ()) -> str | None:
-    """The visible name of one of these kinds that an unknown name is most likely a misspelling of, if any is."""
-    from difflib import get_close_matches
-
+    """The visible name of one of these kinds that an unknown name is a slip of, if any is."""
     wanted = set(kinds)
-    known = [n for n, binding in scope.names.items() if binding.kind in wanted]
-    names = [*local, *known]
-    alike = [n for n in names if n.lower() == name.lower()]
-    if alike:
-        return alike[0]
-    close = get_close_matches(name, names, n=1, cutoff=0.6)
-    return close[0] if close and not says_otherwise(name, close[0]) else None
+    return meant(name, [*local, *(n for n, binding in scope.names.items() if binding.kind in wanted)])
 
 
 class _Room:
@@ -203,11 +195,9 @@ def _offer(scope: Scope, name: str, binding: Binding, span: Span) -> Diagnostic 
 
 
 def _not_offered(scope: Scope, wanted: Name, library: str, offered: Mapping[str, Binding]) -> Diagnostic | None:
-    from difflib import get_close_matches
-
-    close = [n for n in get_close_matches(wanted.name, list(offered), n=1) if not says_otherwise(wanted.name, n)]
-    hint = f"did you mean `{close[0]}`?" if close else ""
-    fixes = tuple(instead(scope.source, wanted.span, name) for name in close)
+    close = meant(wanted.name, offered)
+    hint = f"did you mean `{close}`?" if close else ""
+    fixes = (instead(scope.source, wanted.span, close),) if close else ()
     title = f"{library} offers no `{wanted.name}`"
     return problem("TLT0205", title, scope.source, wanted.span, hint, fixes=fixes).diagnostic
 

@@ -34,14 +34,14 @@ def spec(declaration: SpecDecl, groups: tuple[tuple[str, ...], ...], env: Env) -
     log, source = env.context.log, env.scope.source
     parts: list[Part] = []
     metadata: dict[str, Clause] = {}
-    tags: list[str] = []
+    tags: dict[str, None] = {}
     complete = True
     for clause in declaration.clauses:
         try:
             if clause.kind in _READERS:
                 parts.extend(_parts(clause, env))
             elif clause.kind == "tag":
-                tags.extend(tag.name for tag in cast("tuple[Name, ...]", clause.value) if tag.name not in tags)
+                tags.update(dict.fromkeys(tag.name for tag in cast("tuple[Name, ...]", clause.value)))
             else:
                 _remember(clause, metadata, env)
         except ResolutionError as failure:
@@ -169,7 +169,8 @@ def _limit(clause: Clause | None, env: Env) -> int | None:
     if clause.value.unit is None:
         digits = env.scope.source.slice(clause.value.span)
         advice = f"write `{digits} steps` or, with a clock, `{digits} s`"
-        fixes = (instead(env.scope.source, clause.value.span, f"{digits} steps"),)
+        units = ("steps",) if env.context.clock_s is None else ("steps", "s")
+        fixes = tuple(instead(env.scope.source, clause.value.span, f"{digits} {unit}") for unit in units)
         title, place = "a limit needs a unit", clause.value.span
         raise problem("TLT0312", title, env.scope.source, place, advice=advice, fixes=fixes)
     steps = samples(clause.value, env)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Literal, cast
 
 from tltlc.diagnostics.diagnostic import instead
+from tltlc.grammar.slips import meant
 from tltlc.grammar.tree import Expr, Group, TestDecl, TestExpect, TestStep, Unary
 from tltlc.grammar.walk import conjuncts
 from tltlc.resolve.formulas import formula
@@ -22,14 +23,12 @@ def resolved_test(declaration: TestDecl, specs: dict[str, Spec | None], env: Env
     context, source = env.context, env.scope.source
     name = declaration.spec.name
     if name not in specs:
-        from difflib import get_close_matches
-
-        close = get_close_matches(name, list(specs), n=1)
-        hint = f"did you mean `{close[0]}`?" if close else ""
+        close = meant(name, specs)
+        hint = f"did you mean `{close}`?" if close else ""
         listed = ", ".join(f"`{known}`" for known in specs)
         advice = None if close else f"the specs are {listed}" if specs else f"declare it: `spec {name} {{ … }}`"
         title, place = f"no spec `{name}` here", declaration.spec.span
-        fixes = tuple(instead(source, place, known) for known in close)
+        fixes = (instead(source, place, close),) if close else ()
         context.log.add(problem("TLT0208", title, source, place, hint, advice=advice, fixes=fixes).diagnostic)
         return None
     spec = specs[name]

@@ -53,7 +53,7 @@ def _remarks(spec: SpecView, parts: Sequence[Part], reasons: Sequence[Part]) -> 
             )
             title = f"{'another clause asks' if len(needed) == 1 else 'other clauses ask'} for this already"
             remaining = [each for each in remaining if each.formula is not part.formula]
-            yield Remark(title, labels, f"{leave_out(remaining, spec)}, or say what more it should ask for")
+            yield Remark(title, labels, f"{leave_out(part, remaining, spec)}, or say what more it should ask for")
 
 
 def _known(part: Part, spec: SpecView) -> list[Part]:

@@ -26,7 +26,9 @@ def check(view: View) -> Iterator[Remark]:
             if _is_always_met(part, spec):
                 remaining = [each for each in remaining if each is not part]
                 label = Label(part.source, part.span, "every trace satisfies this")
-                yield Remark("this clause asks nothing of the game", (label,), f"{leave_out(remaining, spec)}{_OR}")
+                yield Remark(
+                    "this clause asks nothing of the game", (label,), f"{leave_out(part, remaining, spec)}{_OR}"
+                )
 
 
 def _is_always_met(part: Part, spec: SpecView) -> bool:

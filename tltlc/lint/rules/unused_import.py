@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Sequence
 
-from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import
+from tltlc.grammar.tree import ClockDecl, ExclusiveDecl, Import, ParamDecl, SignalDecl
 from tltlc.lint.removal import item, without
 from tltlc.lint.rule import Remark, Rule, removal
 from tltlc.lint.view import View
@@ -71,13 +72,24 @@ def _prefix(declaration: Import) -> str:
 
 
 def _count_unnamed(modules: Iterable[Loaded]) -> set[int]:
-    """The modules, by identity, that say what counts without being named: a clock, or what is exclusive.
+    """The modules, by identity, that say what counts without being named: a clock, what is exclusive, or the range of
+    a signal or a param that another module declares as well.
 
     They may say it by what they import, which stands before them.
     """
     found: set[int] = set()
+    modules = tuple(modules)
+    declaring = Counter(
+        name
+        for loaded in modules
+        for name in {each.name for each in loaded.module.declarations if isinstance(each, (SignalDecl, ParamDecl))}
+    )
     for loaded in modules:
-        own = any(isinstance(each, (ClockDecl, ExclusiveDecl)) for each in loaded.module.declarations)
+        own = any(
+            isinstance(each, (ClockDecl, ExclusiveDecl))
+            or (isinstance(each, (SignalDecl, ParamDecl)) and declaring[each.name] > 1)
+            for each in loaded.module.declarations
+        )
         if own or any(id(other) in found for _, other in loaded.imports):
             found.add(id(loaded))
     return found
