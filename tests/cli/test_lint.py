@@ -85,6 +85,20 @@ def test_fixes_are_written_and_told(tltlc: Command, inside: Path) -> None:
     assert "fixed" not in again.err
 
 
+def test_a_link_out_of_the_folder_is_left_as_it_is(tltlc: Command, inside: Path) -> None:
+    text = "signal a: bool\nsignal  u: bool\nspec s { limit 5 steps reach a }\n"
+    (inside / "out").mkdir()
+    (inside / "in").mkdir()
+    (inside / "out" / "o.tltl").write_text(text)
+    (inside / "in" / "link.tltl").symlink_to("../out/o.tltl")
+    for command in (("lint", "--fix", "in"), ("fmt", "in")):
+        found = tltlc(*command)
+        assert "in/link.tltl is left as it is: it is a link out of the folder" in found.err
+        assert (inside / "out" / "o.tltl").read_text() == text
+    tltlc("lint", "--fix", "in/link.tltl")
+    assert "u: bool" not in (inside / "out" / "o.tltl").read_text()
+
+
 def test_what_other_files_use_is_neither_unused_nor_removed(tltlc: Command, inside: Path) -> None:
     Path("deep").mkdir()
     level = "entity exit\nsignal at(e): bool\nlet out = F at(exit)\nlet later = F out\nsignal b: bool\n"

@@ -200,7 +200,7 @@ ROWS: list[tuple[str, str | None]] = [
     ("require never a until b", None),
     ("require never a or b", None),
     ("require never a and always b", None),
-    ("keep a implies never b", "keep a implies always not b"),
+    ("keep a implies never b", None),
     ("keep a or never b", None),
     ("reach a and never b", None),
     ("keep no a", "keep not a"),

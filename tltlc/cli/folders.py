@@ -71,6 +71,14 @@ def in_the_way(folder: Path, advice: str) -> TltlError:
     return TltlError([Diagnostic("TLT0722", f"`{folder}` is there already, and not empty", help=advice)])
 
 
+def leads_out(path: str, arguments: Iterable[str]) -> bool:
+    """Whether a file that no argument names is a link out of the folder in which it was found."""
+    arguments = tuple(arguments)
+    folders = [os.path.realpath(each) for each in arguments if _is_folder(each)]
+    place = os.path.realpath(path)
+    return path not in arguments and not any(Path(place).is_relative_to(folder) for folder in folders)
+
+
 def _unreadable(error: OSError) -> None:
     # A folder may be removed meanwhile.
     if not isinstance(error, FileNotFoundError):

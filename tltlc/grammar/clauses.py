@@ -105,7 +105,7 @@ def clause_inside(place: Place) -> Diagnostic | None:
         text = f"require ({either}) {before.text} ({other})"
         if is_alone and not has(place, start, at, UNCLEAR | TEMPORAL):
             found = reworded(place, 0, stop, text, title, code="TLT0107")
-    elif is_alone and _is_clear_operator(place, start, at):
+    elif is_alone and _is_clear_operator(place, start, at, word):
         found = reworded(place, at, stop, operand(place, at, stop), title, code="TLT0107")
     return found or place.error("TLT0107", title, _inside(word, word))
 
@@ -121,7 +121,7 @@ def synonym_inside(place: Place) -> Diagnostic | None:
         return place.error("TLT0101", title, _BEHIND_THEN, span=before.span)
     found = None
     if not has(place, at + 1, stop, INFIX) and (
-        place.tokens[at - 1].type == "THEN" or _is_clear_operator(place, start, at)
+        place.tokens[at - 1].type == "THEN" or _is_clear_operator(place, start, at, meant)
     ):
         operator = "" if place.tokens[at - 1].type == "THEN" else OPERATORS[meant]
         text = f"{operator} {operand(place, at + 1, stop)}".strip()
@@ -139,16 +139,22 @@ def _is_next_goal(place: Place, word: str) -> bool:
     return word == "reach" and _clause(place) not in ("keep", "avoid")
 
 
-def _is_clear_operator(place: Place, start: int, at: int) -> bool:
+def _is_clear_operator(place: Place, start: int, at: int, word: str) -> bool:
     """Whether a keyword at this place of a formula can be nothing but its operator."""
     before, clause = place.tokens[at - 1].type, _clause(place)
+    if before in ("IMPLIES", "IFF", "NOT") and word != "reach":
+        # What is to be kept may be so where the condition holds, and no longer.
+        return False
     if clause in ("reach", "avoid") or before in UNTILS or has(place, start, at, TEMPORAL):
         return False
     return clause != "keep" or before != "OR"
 
 
 def _inside(word: str, meant: str) -> str:
-    return f"inside a formula, `{word} a` is `{f'{OPERATORS[meant]} a'.strip()}`"
+    help_ = f"inside a formula, `{word} a` is `{f'{OPERATORS[meant]} a'.strip()}`"
+    if meant in ("keep", "avoid"):
+        help_ += f", from there to the end; of one step, write `{'a' if meant == 'keep' else 'not a'}`"
+    return help_
 
 
 def joined_clauses(place: Place) -> Diagnostic | None:

@@ -43,8 +43,8 @@ def equality(place: Place) -> Diagnostic | None:
     start, stop = side(place.tokens, at, -1), side(place.tokens, at, 1)
     a, b = written(place, start, at), written(place, at + 1, stop)
     unequal, alike = _EQUAL[sign] == _OTHER, ""
-    if b in ("true", "false"):
-        text, reason = a if (b == "true") != unequal else f"not {a}", ": a `bool` signal is an atom by itself"
+    if b.lower() in ("true", "false"):
+        text, reason = a if (b.lower() == "true") != unequal else f"not {a}", ": a `bool` signal is an atom by itself"
     else:
         text, reason = _EQUAL[sign].format(a=a, b=b), ""
         is_part = (start, stop) != (formula_start(place), formula_stop(place))

@@ -54,6 +54,11 @@ def _check_operand(source: SourceFile, sequence: list[Expr], place: int, lenient
             first, second = _text(source, before), _text(source, after)
             if len(first) + len(second) <= _SHORT:
                 help_ = f"`reach {first} then {second}` means: {second} after {first}\n{help_}"
+        elif leading is operand and leading.op != "F" and leading.bound is None and last:
+            first, second = _text(source, other), _text(source, leading.operand)
+            behind, when = ("next always", "from the next one on") if leading.op == "G" else ("next", "at the next one")
+            if len(first) + len(second) <= _SHORT:
+                help_ += f", which begins at some later step; {when}, `{first} and {behind} {second}`"
     yield Diagnostic("TLT0102", title, (Label(source, span),), help_, fixes=_fixes(source, sequence, place, lenient))
 
 
@@ -114,7 +119,15 @@ def _fixes(source: SourceFile, sequence: list[Expr], place: int, lenient: bool) 
             fixes.append(Fix(f"Write `({text})`", around(first.span.to(second.span))))
     # `(F a) then b` says nothing of the order: it is met by `b` before `a`.
     loses_order = any(_begins_with_f(each) for each in bare if each is not sequence[-1])
+    if any(_is_of_another_step(each) for each in bare if each is not sequence[0]):
+        return ()
     return () if loses_order and len(fixes) == 1 else tuple(fixes)
+
+
+def _is_of_another_step(operand: Expr) -> bool:
+    """Whether an operand behind `then`, which means "later", says when by itself: `next a`, `always a`."""
+    leading = _leading(operand)
+    return leading is not None and (leading.op != "F" or leading is not operand)
 
 
 def _begins_with_f(operand: Expr) -> bool:

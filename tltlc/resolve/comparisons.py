@@ -87,8 +87,12 @@ def _check_truth(left: Quantity, op: str, right: Quantity, negated: bool, expr: 
             text, end = f"{' '.join(source.slice(expr.span).split())} %", expr.span.end
             advice = f"write `{text}`: a ratio is a number in [0, 1]"
             fix = Fix(f"Write `{text}`", (Edit(Span(end, end), " %"),))
+        fixes: tuple[Fix, ...] = (fix,)
+        if source.text[expr.left.span.end :].lstrip().startswith("<-"):
+            # An arrow that points to the left, most likely.
+            fixes, advice = (), f"{advice}; an implication is written `b implies a`"
         title = f"this comparison {'always' if holds else 'never'} holds"
-        raise problem("TLT0310", title, source, expr.span, message, advice=advice, fixes=(fix,))
+        raise problem("TLT0310", title, source, expr.span, message, advice=advice, fixes=fixes)
     needed = [inf in (left.high, -right.low), inf in (-left.low, right.high)]
     if any(needed):
         raise _unbounded(x, needed, expr, env)

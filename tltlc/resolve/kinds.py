@@ -56,6 +56,12 @@ def lookup(use: Name | Call, env: Env, wanted: tuple[Kind, ...], what: str) -> B
     meant = _in_two_words(use.name, env, wanted) if is_helped and what == "predicate" else None
     if meant:
         raise problem("TLT0201", title, source, span, f"did you mean `{meant}`?", fixes=(instead(source, span, meant),))
+    if source.text[: span.start].endswith("-- "):
+        raise problem("TLT0201", title, source, span, advice="comments begin with `//`")
+    constant = use.name.lower()
+    if what == "predicate" and constant in ("true", "false"):
+        hint = f"did you mean `{constant}`?"
+        raise problem("TLT0201", title, source, span, hint, fixes=(instead(source, span, constant),))
     near = closest_name(use.name, env.scope, wanted, env.local) if is_helped else None
     if near:
         binding = env.scope.names.get(near)

@@ -5,7 +5,12 @@ from __future__ import annotations
 import pytest
 
 import tltlc
+from tests.calls import calls
 from tests.lint.helpers import SIGNALS, mended, of
+from tltlc.lint.rules.duplicate_clause import RULE
+from tltlc.lint.run import view_of
+from tltlc.pipeline import CompileOptions
+from tltlc.source import SourceFile
 
 
 @pytest.mark.parametrize(
@@ -50,3 +55,11 @@ def test_a_clause_that_decides_when_the_spec_is_judged_is_not_removed(clauses: t
 def test_what_stands_twice_beside_such_a_clause_is_removed() -> None:
     text = "signal a: bool\nspec s {\n    limit 9 steps\n    require a\n    require F[0,0] a\n    require a\n}\n"
     assert mended(text).source.text == text.replace("    require a\n}", "}")
+
+
+def test_the_work_grows_with_the_clauses() -> None:
+    def work(clauses: int) -> int:
+        view = view_of(SourceFile("a.tltl", f"{SIGNALS}spec s {{\n{'    avoid a' * clauses}\n}}"), CompileOptions())
+        return calls(lambda: list(RULE.check(view)))
+
+    assert work(400) < 3 * work(200)

@@ -6,9 +6,14 @@ import pytest
 from hypothesis import given
 
 import tltlc
+from tests.calls import calls
 from tests.lint.helpers import APART, PLACES, RANGES, SIGNALS, found, of, remarks
 from tests.lint.strategies import World, specs
 from tltlc.lint.rules import needless_clause
+from tltlc.lint.rules.needless_clause import RULE
+from tltlc.lint.run import view_of
+from tltlc.pipeline import CompileOptions
+from tltlc.source import SourceFile
 
 
 @pytest.mark.parametrize(
@@ -70,3 +75,12 @@ def test_what_makes_a_clause_a_goal_is_said_where_it_may_be_left_out(clauses: tu
     assert (ours.judge != theirs.judge) == judged
     # Of several the last says it, without which the spec would have no goal.
     assert ["`judge at goal`" in (each.help or "") for each in told] == [*[False] * (len(told) - 1), judged]
+
+
+def test_the_work_grows_with_the_clauses() -> None:
+    def work(clauses: int) -> int:
+        text = f"{SIGNALS}spec s {{ reach b\n{'    keep a or not a' * clauses}\n}}"
+        view = view_of(SourceFile("a.tltl", text), CompileOptions())
+        return calls(lambda: list(RULE.check(view)))
+
+    assert work(400) < 3 * work(200)

@@ -17,6 +17,16 @@ def test_an_import_may_count_without_being_named(tmp_path, monkeypatch) -> None:
     assert codes("import rules\nimport idle\nsignal a: bool\nspec s { limit 3 s reach a }") == ["TLT0422"]
 
 
+def test_an_import_counts_where_it_narrows_what_another_file_declares(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wide.tltl").write_text("signal x: number\npredicate big = clamp((x - 50) / 100, -1, 1)\n")
+    (tmp_path / "narrow.tltl").write_text("signal x in [0, 60]\nlet other = x > 5\n")
+    (tmp_path / "another.tltl").write_text("signal y in [0, 60]\nlet more = y > 5\n")
+    text = "import wide\nimport {}\nspec s {{ limit 5 steps reach big }}"
+    assert codes(text.format("narrow")) == []
+    assert codes(text.format("another")) == ["TLT0422"]
+
+
 def test_each_file_behind_an_import_is_looked_at_once(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
     text = "import m0\nsignal a: bool\nspec s { limit 3 steps reach a }"

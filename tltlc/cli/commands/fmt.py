@@ -39,7 +39,7 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
     status is 1.
     """
     from tltlc.cli import exits
-    from tltlc.cli.folders import every_source
+    from tltlc.cli.folders import every_source, leads_out
     from tltlc.cli.report import Report, counted
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.project import project_for
@@ -49,6 +49,9 @@ def command(paths: tuple[str, ...], check: bool, diff: bool, style: str | None) 
         for path in every_source(paths or (".",), report):
             try:
                 wanted = style or project_for(path).formatting
+                if not check and not diff and leads_out(path, paths or (".",)):
+                    report.say(f"{path} is left as it is: it is a link out of the folder")
+                    continue
                 is_same = _format(path, wanted, report, check=check, diff=diff)
             except TltlError as error:
                 report.add(error.diagnostics)

@@ -38,7 +38,7 @@ def command(paths: tuple[str, ...], fixing: bool, settings: Settings, format: st
     Every warning of the compiler is among it, and without arguments the current folder is searched.  The exit status
     is 1 where there is an error or a warning, and 0 where there are notes at most.
     """
-    from tltlc.cli.folders import every_source
+    from tltlc.cli.folders import every_source, leads_out
     from tltlc.cli.report import Report, counted, tally
     from tltlc.diagnostics.diagnostic import TltlError
     from tltlc.lint.importers import used_elsewhere, words
@@ -49,7 +49,10 @@ def command(paths: tuple[str, ...], fixing: bool, settings: Settings, format: st
         others = {path: words(str(path), text) for path, text in neighbours(every).items()}
         for path in every:
             try:
-                found = _of_file(path, used_elsewhere(path, others.values()), fixing, settings, report)
+                mending = fixing and not leads_out(path, paths or (".",))
+                if fixing and not mending:
+                    report.say(f"{path} is left as it is: it is a link out of the folder")
+                found = _of_file(path, used_elsewhere(path, others.values()), mending, settings, report)
             except TltlError as error:
                 found = error.diagnostics
             report.add(found)
