@@ -94,6 +94,32 @@ def test_a_project_file_that_is_ignored_is_named(tmp_path: Path) -> None:
         assert said_behind_the_address(folder=folder) == ""
 
 
+ELSEWHERE = """
+import signal, sys
+from threading import Thread, get_ident, main_thread
+from time import sleep
+number = int(sys.argv.pop())
+def send():
+    while True:
+        frame = sys._current_frames()[main_thread().ident]
+        if frame.f_code.co_name == "select" and frame.f_locals["timeout"] in (None, -1):
+            signal.pthread_kill(get_ident(), number)
+            return
+        sleep(0.001)
+Thread(target=send, daemon=True).start()
+from tltlc.cli.main import main
+main()
+"""
+"""The process gets a signal in another thread once the main thread waits for requests."""
+
+
+@needs_signals
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_that_another_thread_gets_ends_the_wait_for_requests(number: signal.Signals) -> None:
+    with served(str(number.value), program=("-c", ELSEWHERE)) as (running, _):
+        assert running.wait(HANG_S) == 128 + number
+
+
 BROWSER = """
 import json, os, re, sys, urllib.request
 path = urllib.request.url2pathname(sys.argv[1].removeprefix("file:"))

@@ -6,11 +6,13 @@ import asyncio
 import mimetypes
 import os
 import secrets
+import signal
 import socket
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from http import HTTPStatus
-from threading import Event
+from threading import Event, current_thread, main_thread
 from types import TracebackType
 from typing import Final
 
@@ -149,6 +151,12 @@ def _within_descriptors(connections: Connections) -> Connections:
     return connections
 
 
+def _read_all(reader: socket.socket) -> None:
+    with suppress(BlockingIOError):
+        while reader.recv(4096):
+            pass
+
+
 class Server:
     """Serves the page at :data:`HOST`, and at no other address; port 0 is any that is free.
 
@@ -186,14 +194,15 @@ class Server:
         self._loop.call_soon(self._look)
         if os.name == "nt":
             self._loop.call_soon(self._wake)
-        try:
-            self._loop.run_forever()
-        finally:
-            self._loop.remove_reader(self._listener)
+        with self._woken_by_signals():
             try:
-                self._loop.run_until_complete(self._end_all())
+                self._loop.run_forever()
             finally:
-                self._stopped.set()
+                self._loop.remove_reader(self._listener)
+                try:
+                    self._loop.run_until_complete(self._end_all())
+                finally:
+                    self._stopped.set()
 
     def shutdown(self) -> None:
         """Stop :meth:`serve_forever`, which runs in another thread, and wait for its end."""
@@ -257,6 +266,28 @@ class Server:
         for task in tasks:
             task.cancel()
         await asyncio.gather(asyncio.sleep(0), *tasks, return_exceptions=True)
+
+    @contextmanager
+    def _woken_by_signals(self) -> Iterator[None]:
+        """Within, each signal ends the wait of the loop.
+
+        Python runs the handler of a signal between two steps of the main thread.  A signal that another thread gets,
+        or that comes just before the wait begins, would not be handled until a request comes.
+        """
+        if current_thread() is not main_thread():
+            yield
+            return
+        reader, writer = socket.socketpair()
+        with reader, writer:
+            for end in (reader, writer):
+                end.setblocking(False)
+            self._loop.add_reader(reader, _read_all, reader)
+            before = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+            try:
+                yield
+            finally:
+                signal.set_wakeup_fd(before)
+                self._loop.remove_reader(reader)
 
     def _wake(self) -> None:
         """Windows tells of Ctrl-C only when something else happens, too."""
