@@ -55,9 +55,9 @@ def edit_of(source: SourceFile, edit: types.TextEdit) -> Edit:
         ("signal a: boool¦\nspec s = G a", "Write `bool`", "signal a: bool\nspec s = G a"),
         ("signal a: bool\nspec s { kep¦ a }", "Write `keep`", "signal a: bool\nspec s { keep a }"),
         (
-            'signal a: bool\nspec s = F a\ntest "t" for z¦s { step a expect holding }',
-            "Write `s`",
-            'signal a: bool\nspec s = F a\ntest "t" for s { step a expect holding }',
+            'signal a: bool\nspec hide = F a\ntest "t" for hi¦ed { step a expect holding }',
+            "Write `hide`",
+            'signal a: bool\nspec hide = F a\ntest "t" for hide { step a expect holding }',
         ),
     ],
 )  # fmt: skip

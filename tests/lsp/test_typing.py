@@ -130,7 +130,7 @@ def test_edits_are_for_the_version_that_they_were_made_for(tmp_path: Path) -> No
         ("common.tltl", None),
         ("main.tltl", 7),
     ]
-    client.change(uri, text.replace("loud", "lout"), 8)
+    client.change(uri, text.replace("loud", "luod"), 8)
     (found,) = client.diagnostics(uri, bool)
     where = {"textDocument": {"uri": uri}, "range": found["range"], "context": {"diagnostics": [found]}}
     (action,) = client.ask("textDocument/codeAction", where)
