@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import pytest
 
 from tests.automaton.test_blowup import with_parts
@@ -9,8 +11,10 @@ from tests.reference_formulas import read_formula
 from tltlc.automaton.diagrams import OutOfSteps
 from tltlc.automaton.guards import TooManyPrimes
 from tltlc.diagnostics.diagnostic import Diagnostic, Label
+from tltlc.limits import WORK
 from tltlc.rabin import blowup
 from tltlc.rabin.blowup import blow_up
+from tltlc.rabin.contradiction import unsatisfiable
 from tltlc.rabin.work import OutOfWork
 from tltlc.record import replace
 from tltlc.resolve.spec import Bound, Spec
@@ -75,3 +79,10 @@ def test_other_reasons_are_told_apart() -> None:
     assert found(fair(2), RecursionError()).title == "the automaton of `spec` needs formulas that nest too deeply"
     primes = found(fair(2), TooManyPrimes("a guard", 10))
     assert (primes.code, primes.title) == ("TLT0502", "a guard of `spec` has more than 10 prime implicants")
+
+
+def test_an_automaton_with_too_many_edges_shows_no_contradiction(monkeypatch: pytest.MonkeyPatch) -> None:
+    spec = with_parts(read_formula("G F a"), read_formula("F G !a"))
+    assert unsatisfiable(spec.parts, spec)
+    monkeypatch.setitem(cast("dict[str, int]", WORK), "edges", 0)
+    assert not unsatisfiable(spec.parts, spec)

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from typing import Final
 
 from tltlc.automaton.blowup import recursion_room
+from tltlc.automaton.diagrams import OutOfSteps
+from tltlc.automaton.guards import TooManyPrimes
 from tltlc.logic.formula import and_
 from tltlc.rabin.analysis import analysis_of_rabin
 from tltlc.rabin.construct import rabin
@@ -24,5 +26,5 @@ def unsatisfiable(parts: Sequence[Part], spec: Spec) -> bool:
         with recursion_room():
             automaton = rabin(whole, names, spec.exclusive, _WORK)
             return analysis_of_rabin(automaton, Work(_WORK)).verdict(0) == "violated"
-    except (OutOfWork, RecursionError):
+    except (OutOfWork, OutOfSteps, TooManyPrimes, RecursionError):
         return False
