@@ -142,7 +142,7 @@ def was_read(path: str | os.PathLike[str]) -> bool:
 def descriptor_of(path: str | os.PathLike[str]) -> int | None:
     """1 or 2 where standard output or standard error of this process goes to the file at a path, by any name of it."""
     there = _identity(path)
-    return next((each for each in (1, 2) if there is not None and _identity(each) == there), None)
+    return next((number for number in (1, 2) if there is not None and _identity(number) == there), None)
 
 
 def _note_identity(file: str | os.PathLike[str] | int) -> None:

@@ -74,7 +74,7 @@ def in_the_way(folder: Path, advice: str) -> TltlError:
 def leads_out(path: str, arguments: Iterable[str]) -> bool:
     """Whether a file that no argument names is a link out of the folder in which it was found."""
     arguments = tuple(arguments)
-    folders = [os.path.realpath(each) for each in arguments if _is_folder(each)]
+    folders = [os.path.realpath(argument) for argument in arguments if _is_folder(argument)]
     place = os.path.realpath(path)
     return path not in arguments and not any(Path(place).is_relative_to(folder) for folder in folders)
 

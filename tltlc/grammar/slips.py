@@ -1,8 +1,7 @@
-"""Slips of the hand: which word was meant where another one is written.
+"""Slips of the hand: the known word that a misspelt word stands for.
 
-A word that is like another one may as well mean something else: `doorB` is not `doorA`, `unlocked` not `locked`.  So a
-slip is one letter too many, too few or exchanged with its neighbour, or one wrong letter inside of a word that is
-long enough; a word of seven letters or more may have two of them.
+Similar words may mean different things: `doorB` is not `doorA`, and `unlocked` is not `locked`.  A slip is therefore
+one letter too many, one letter too few, two neighbours exchanged, or one wrong letter inside a word.
 """
 
 from __future__ import annotations
@@ -12,34 +11,33 @@ from collections.abc import Iterable
 from typing import Final
 
 _SHORT: Final = 3
-"""Of so few letters, most words are one letter away from other words, so that only two kinds of slips count."""
+"""In words of at most this length, only an exchange and a doubled letter count: they are often one letter apart."""
 _LONG: Final = 7
-"""A word of so many letters may have two slips."""
+"""Words of at least this length may have two slips, all others one."""
 _MOST_COMPARED: Final = 2_000
 _PARTS: Final = re.compile(r"[0-9]+|[A-Z]?[a-z]+|[A-Z]+(?![a-z])|[^\W\d_]+")
 """The parts of a name: numbers, words in camel case, capitals, and letters of other alphabets."""
-_NEGATING: Final = frozenset(
-    ("no", "non", "not", "nt", "never", "dont", "cant", "isnt", "less", "un", "in", "im", "il")
-)
+_NEGATING: Final = ("no", "nt")
+"""Endings that negate a word and are no longer than two slips."""
 
 
 def meant(name: str, known: Iterable[str]) -> str | None:
-    """The known name that a name is a slip of, where there is one, and no other is as likely.
+    """The known name that a misspelt name stands for; None if there is none, or if two are equally likely.
 
-    A name that differs in capital letters and underscores alone comes first, then one that is it behind a dot.  Among
-    more than 2,000 names, no others are looked for.
+    A name that differs only in capital letters and underscores comes first, then one that ends with a dot and the name.
+    Slips are searched for among at most 2,000 names.
     """
     names = tuple(dict.fromkeys(known))
-    same = [each for each in names if _plain(each) == _plain(name)]
-    same = same or [each for each in names if each.endswith(f".{name}")]
+    same = [candidate for candidate in names if _plain(candidate) == _plain(name)]
+    same = same or [candidate for candidate in names if candidate.endswith(f".{name}")]
     if same or len(names) > _MOST_COMPARED:
         return same[0] if same else None
-    slips: dict[int, list[str]] = {}
-    for each in names:
-        count = _slips_in_parts(name, each)
+    by_count: dict[int, list[str]] = {}
+    for candidate in names:
+        count = _slips_in_parts(name, candidate)
         if count is not None:
-            slips.setdefault(count, []).append(each)
-    closest = slips[min(slips)] if slips else []
+            by_count.setdefault(count, []).append(candidate)
+    closest = by_count[min(by_count)] if by_count else []
     return closest[0] if len(closest) == 1 else None
 
 
@@ -52,8 +50,8 @@ def slips(word: str, known: str) -> int | None:
         return 1 if _is_exchanged(word, known) or _is_doubled(word, known) else None if word != known else 0
     if _ends_differ(word, known) or _is_negated(word, known):
         return None
-    found = _distance(word, known)
-    return found if found <= most else None
+    distance = _distance(word, known)
+    return distance if distance <= most else None
 
 
 def _plain(name: str) -> str:
@@ -71,10 +69,10 @@ def _slips_in_parts(name: str, known: str) -> int | None:
     for part, other in zip(parts, others, strict=True):
         if part.lower() == other.lower():
             continue
-        found = None if part.isdigit() or other.isdigit() else slips(part.lower(), other.lower())
-        if found is None:
+        count = None if part.isdigit() or other.isdigit() else slips(part.lower(), other.lower())
+        if count is None:
             return None
-        total += found
+        total += count
     return total
 
 
@@ -84,7 +82,7 @@ def _begin_alike(word: str, known: str) -> bool:
 
 
 def _ends_differ(word: str, known: str) -> bool:
-    """Whether the last letter of all is another one, as in `keyb` for `keya`."""
+    """Whether only the last letter differs, as in `keyb` for `keya`."""
     return len(word) == len(known) and word[:-1] == known[:-1] and word != known
 
 
@@ -101,11 +99,9 @@ def _is_doubled(word: str, known: str) -> bool:
 
 
 def _is_negated(word: str, known: str) -> bool:
-    """Whether one is the other with a syllable that makes the opposite of it, in front or behind."""
+    """Whether one word is the other with a negating ending; other beginnings are no slips anyway."""
     longer, shorter = (word, known) if len(word) > len(known) else (known, word)
-    if longer.startswith(shorter):
-        return longer[len(shorter) :] in _NEGATING
-    return longer.endswith(shorter) and longer[: -len(shorter)] in _NEGATING
+    return longer.startswith(shorter) and longer[len(shorter) :] in _NEGATING
 
 
 def _distance(word: str, known: str) -> int:

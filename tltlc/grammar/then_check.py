@@ -119,7 +119,7 @@ def _fixes(source: SourceFile, sequence: list[Expr], place: int, lenient: bool) 
             fixes.append(Fix(f"Write `({text})`", around(first.span.to(second.span))))
     # `(F a) then b` says nothing of the order: it is met by `b` before `a`.
     loses_order = any(_begins_with_f(each) for each in bare if each is not sequence[-1])
-    if any(_is_of_another_step(each) for each in bare if each is not sequence[0]):
+    if any(_is_of_another_step(later) for later in bare if later is not sequence[0]):
         return ()
     return () if loses_order and len(fixes) == 1 else tuple(fixes)
 
