@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from threading import Thread
+from types import FrameType
 
 import pytest
 
@@ -433,3 +434,44 @@ def test_where_no_process_can_be_started_the_next_request_tries_again(monkeypatc
 
 def fails() -> subprocess.Popen[bytes]:
     raise BlockingIOError("Resource temporarily unavailable")
+
+
+@pytest.mark.filterwarnings("ignore:coroutine .* was never awaited:RuntimeWarning")
+def test_an_interrupt_at_any_point_of_serving_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = 0
+    while is_interrupted_at(steps, monkeypatch):
+        steps += 1
+    assert steps > 100
+
+
+def is_interrupted_at(step: int, monkeypatch: pytest.MonkeyPatch) -> bool:
+    """Whether an interrupt after so many steps ends a server, which otherwise stops once its loop runs."""
+    code = (Server.serve_forever.__code__, Server._woken_by_signals.__wrapped__.__code__)  # type: ignore[attr-defined]
+    left = step
+
+    def trace(frame: FrameType, event: str, _: object) -> object:
+        nonlocal left
+        if frame.f_code not in code:
+            return None
+        frame.f_trace_opcodes = True
+        left -= event == "opcode"
+        if left < 0:
+            raise KeyboardInterrupt
+        return trace
+
+    def stop() -> None:
+        if left >= 0:
+            server._loop.stop()
+
+    with Server(0) as server:
+        monkeypatch.setattr(server._stopped, "wait", lambda: pytest.fail("it waits for itself"))
+        server._loop.call_soon(stop)
+        before = sys.gettrace()
+        sys.settrace(trace)  # type: ignore[arg-type]
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            return True
+        finally:
+            sys.settrace(before)
+    return False

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from http import HTTPStatus
-from threading import Event, current_thread, main_thread
+from threading import Event, Thread, current_thread, main_thread
 from types import TracebackType
 from typing import Final
 
@@ -180,6 +180,7 @@ class Server:
         self._loop = asyncio.SelectorEventLoop()
         self._again: asyncio.TimerHandle | None = None
         self._accepted: set[asyncio.Task[object]] = set()
+        self._thread: Thread | None = None
         self._stopped = Event()
         self._stopped.set()
 
@@ -190,23 +191,27 @@ class Server:
 
     def serve_forever(self) -> None:
         """Answer until :meth:`shutdown` is called, or until Ctrl-C, which raises KeyboardInterrupt."""
-        self._stopped.clear()
-        self._loop.call_soon(self._look)
-        if os.name == "nt":
-            self._loop.call_soon(self._wake)
-        with self._woken_by_signals():
-            try:
-                self._loop.run_forever()
-            finally:
-                self._loop.remove_reader(self._listener)
+        self._thread = current_thread()
+        try:
+            self._stopped.clear()
+            self._loop.call_soon(self._look)
+            if os.name == "nt":
+                self._loop.call_soon(self._wake)
+            with self._woken_by_signals():
                 try:
-                    self._loop.run_until_complete(self._end_all())
+                    self._loop.run_forever()
                 finally:
-                    self._stopped.set()
+                    self._loop.remove_reader(self._listener)
+                    self._loop.run_until_complete(self._end_all())
+        finally:
+            self._stopped.set()
 
     def shutdown(self) -> None:
-        """Stop :meth:`serve_forever`, which runs in another thread, and wait for its end."""
-        if not self._stopped.is_set():
+        """Stop :meth:`serve_forever` if it runs in another thread, and wait for its end.
+
+        In the same thread, it has ended; an interrupt may have ended it at any point.
+        """
+        if self._thread is not current_thread() and not self._stopped.is_set():
             self._loop.call_soon_threadsafe(self._loop.stop)
             self._stopped.wait()
 
