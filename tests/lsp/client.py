@@ -54,6 +54,8 @@ class Client:
         self.said: list[dict[str, Any]] = []
         self.errors: list[str] = []
         self._number = 0
+        self._after_notification = 0
+        """How many messages had come when the last notification was sent, or when diagnostics were last returned."""
         threading.Thread(target=self._read, daemon=True).start()
         self._listening = threading.Thread(target=self._read_errors, daemon=True)
         self._listening.start()
@@ -73,6 +75,7 @@ class Client:
     # --- messages -----------------------------------------------------------------------------
 
     def tell(self, method: str, params: Any) -> None:
+        self._after_notification = len(self.said)
         self._send({"method": method, "params": params})
 
     def start(self, method: str, params: Any) -> int:
@@ -96,14 +99,22 @@ class Client:
         return next(filter(is_it, self.said), None) or self._next(is_it)
 
     def diagnostics(self, uri: str, wanted: Callable[[list[Any]], bool] = lambda _: True) -> list[dict[str, Any]]:
-        """The next diagnostics of a document that are as wanted."""
-        message = self._next(
-            lambda message: (
+        """The next diagnostics of a document that are as wanted, since the last notification to the server.
+
+        They may have come before the answer to a request that was sent after the notification.
+        """
+
+        def is_it(message: dict[str, Any]) -> bool:
+            return (
                 message.get("method") == "textDocument/publishDiagnostics"
                 and message["params"]["uri"] == uri
                 and wanted(message["params"]["diagnostics"])
             )
-        )
+
+        earlier = self.said[self._after_notification :]
+        place = next((place for place, message in enumerate(earlier, 1) if is_it(message)), None)
+        message = earlier[place - 1] if place else self._next(is_it)
+        self._after_notification = self._after_notification + place if place else len(self.said)
         found: list[dict[str, Any]] = message["params"]["diagnostics"]
         return found
 

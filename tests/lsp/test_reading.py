@@ -163,6 +163,13 @@ def test_times_are_shown_in_steps() -> None:
     assert steps_behind(without_clock, whole) == []
 
 
+def test_the_client_of_these_tests_finds_diagnostics_that_came_before_an_answer(client: Client, tmp_path: Path) -> None:
+    uri = client.open(tmp_path / "plan.tltl", "signal a: boolean")
+    client.message("textDocument/publishDiagnostics")
+    assert client.ask("workspace/symbol", {"query": "a"})
+    assert client.diagnostics(uri, bool)
+
+
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
 def test_a_named_pipe_keeps_nobody_waiting(client: Client, tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.tltl")
