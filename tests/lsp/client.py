@@ -54,8 +54,8 @@ class Client:
         self.said: list[dict[str, Any]] = []
         self.errors: list[str] = []
         self._number = 0
-        self._after_notification = 0
-        """How many messages had come when the last notification was sent, or when diagnostics were last returned."""
+        self._first_unread = 0
+        """The index in ``said`` of the first message after the last notification or the last diagnostics."""
         threading.Thread(target=self._read, daemon=True).start()
         self._listening = threading.Thread(target=self._read_errors, daemon=True)
         self._listening.start()
@@ -75,7 +75,7 @@ class Client:
     # --- messages -----------------------------------------------------------------------------
 
     def tell(self, method: str, params: Any) -> None:
-        self._after_notification = len(self.said)
+        self._first_unread = len(self.said)
         self._send({"method": method, "params": params})
 
     def start(self, method: str, params: Any) -> int:
@@ -111,10 +111,13 @@ class Client:
                 and wanted(message["params"]["diagnostics"])
             )
 
-        earlier = self.said[self._after_notification :]
-        place = next((place for place, message in enumerate(earlier, 1) if is_it(message)), None)
-        message = earlier[place - 1] if place else self._next(is_it)
-        self._after_notification = self._after_notification + place if place else len(self.said)
+        for index in range(self._first_unread, len(self.said)):
+            if is_it(message := self.said[index]):
+                self._first_unread = index + 1
+                break
+        else:
+            message = self._next(is_it)
+            self._first_unread = len(self.said)
         found: list[dict[str, Any]] = message["params"]["diagnostics"]
         return found
 
