@@ -287,8 +287,10 @@ class Server:
             for end in (reader, writer):
                 end.setblocking(False)
             self._loop.add_reader(reader, _read_all, reader)
-            before = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+            # An interrupt between the two calls leaves no descriptor that is closed below.
+            before = signal.set_wakeup_fd(-1)
             try:
+                signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
                 yield
             finally:
                 signal.set_wakeup_fd(before)
